@@ -1,0 +1,26 @@
+// What the docking force costs on this machine: for `tact bench docking`.
+//
+// Method   the servo's force model over a map of 128^3 voxels of 2 A made in memory and 100 000 atoms at the
+//          density of protein; each step the body moves a little, as in a hand. Numbers are of whole steps,
+//          on one core, with the caches as the steps leave them.
+// Takes    about three seconds, one of them to make the codebook stand-in and the map.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace tact {
+
+struct DockingBench {
+    std::string kernel;              // instruction set in use
+    double force_us_n200_p50 = 0.0;  // 200 codebook vectors
+    double force_us_n200_p99 = 0.0;
+    double force_us_atoms100k_p50 = 0.0;  // all atoms
+    double force_us_atoms100k_p99 = 0.0;
+    double ns_per_point_n200 = 0.0, ns_per_point_atoms = 0.0;
+    std::uint64_t map_bytes = 0;  // of coefficients in memory
+};
+
+[[nodiscard]] DockingBench bench_docking();
+
+}  // namespace tact

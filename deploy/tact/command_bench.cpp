@@ -1,0 +1,102 @@
+// tact bench: the figures by which an operator judges a PC, measured on it.
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/bench_docking.hpp"
+#include "deploy/tact/bench_ipc.hpp"
+#include "deploy/tact/bench_servo.hpp"
+#include "deploy/tact/commands.hpp"
+
+namespace tact::launch {
+namespace {
+
+using nlohmann::json;
+
+struct Measure {
+    const char* name;
+    const char* help;
+    json (*run)();
+};
+
+json ipc() {
+    const IpcBench b = bench_ipc();
+    return {{"publish_ns_p50", b.publish_ns_p50},
+            {"publish_ns_max", b.publish_ns_max},
+            {"publish_contended_ns_p50", b.publish_contended_ns_p50},
+            {"publish_tool_ns_p50", b.publish_tool_ns_p50},
+            {"read_ns_p50", b.read_ns_p50},
+            {"read_contended_ns_p50", b.read_contended_ns_p50},
+            {"trace_push_ns_p50", b.trace_push_ns_p50},
+            {"torn", b.torn}};
+}
+
+json servo() {
+    const ServoBench b = bench_servo();
+    return {{"lateness_us_p50", b.lateness.p50_us},
+            {"lateness_us_p99", b.lateness.p99_us},
+            {"lateness_us_p999", b.lateness.p999_us},
+            {"lateness_us_max", b.lateness.max_us},
+            {"lateness_asleep_us_p50", b.lateness_asleep.p50_us},
+            {"lateness_asleep_us_p99", b.lateness_asleep.p99_us},
+            {"lateness_asleep_us_max", b.lateness_asleep.max_us},
+            {"lateness_cycles", b.lateness.cycles},
+            {"lateness_overruns", b.overruns},
+            {"lateness_fifo", b.fifo},
+            {"lateness_core", b.core}};
+}
+
+json docking() {
+    const DockingBench b = bench_docking();
+    return {{"force_kernel", b.kernel},
+            {"force_us_n200_p50", b.force_us_n200_p50},
+            {"force_us_n200_p99", b.force_us_n200_p99},
+            {"force_us_atoms100k_p50", b.force_us_atoms100k_p50},
+            {"force_us_atoms100k_p99", b.force_us_atoms100k_p99},
+            {"force_ns_per_point_n200", b.ns_per_point_n200},
+            {"force_ns_per_point_atoms100k", b.ns_per_point_atoms},
+            {"force_map_bytes", b.map_bytes}};
+}
+
+constexpr Measure kMeasures[] = {
+    {"servo", "how late a cycle of 1 ms begins", &servo},
+    {"docking", "one force of the docking model", &docking},
+    {"ipc", "publishing and reading the state of a servo cycle", &ipc},
+};
+
+int bench(const std::vector<std::string>& wanted, bool as_json) {
+    json all = json::object();
+    for (const Measure& m : kMeasures) {
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), m.name) == wanted.end()) continue;
+        const json numbers = m.run();
+        if (!as_json) {
+            std::printf("%s: %s\n", m.name, m.help);
+            for (const auto& [key, value] : numbers.items())
+                std::printf("  %-28s %s\n", key.c_str(),
+                            value.is_number_float() ? (std::to_string(value.get<double>())).c_str()
+                                                    : value.dump().c_str());
+            std::fflush(stdout);
+        }
+        all.update(numbers);  // the keys differ and say what they are
+    }
+    if (as_json) std::printf("%s\n", all.dump(2).c_str());
+    return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand("bench", "measure what this machine is good for");
+    const auto wanted = std::make_shared<std::vector<std::string>>();
+    const auto as_json = std::make_shared<bool>(false);
+    std::vector<std::string> names;
+    std::string help = "which; default: all.";
+    for (const Measure& m : kMeasures) {
+        names.emplace_back(m.name);
+        help += std::string(" ") + m.name + ": " + m.help + ".";
+    }
+    command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
+    command->add_flag("--json", *as_json, "for programs");
+    command->callback([=, &exit_code] { exit_code = bench(*wanted, *as_json); });
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,29 @@
+// tact demo dock: a synthetic ring of six, started away from its place, is drawn into its 12 A map.
+#include <memory>
+
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/run.hpp"
+#include "deploy/tact/scene_cache.hpp"
+
+namespace tact::launch {
+
+void add_demo(CLI::App& app, int& exit_code) {
+    auto* const demo = app.add_subcommand("demo", "show what Tact does, without files or devices");
+    demo->require_subcommand(1);
+    auto* const dock =
+        demo->add_subcommand("dock", "a ring of six is drawn by the force to its place in a 12 A map");
+    const auto options = std::make_shared<RunOptions>();
+    add_run_options(*dock, *options);
+    dock->callback([options, &exit_code] {
+        // Far enough to be seen moving, near enough to be drawn back (tact dock on real data uses the same
+        // start).
+        for (const auto& [name, value] :
+             {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
+            if (!options->has_controller_option(name))
+                options->controller.insert(options->controller.end(), {name, value});
+        const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+}
+
+}  // namespace tact::launch

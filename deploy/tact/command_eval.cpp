@@ -1,0 +1,46 @@
+// tact eval: the servo's own force model over poses from a file, to compare with other programs.
+#include <memory>
+
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/eval.hpp"
+
+namespace tact::launch {
+
+namespace {
+
+struct EvalOptions {
+    std::filesystem::path scene, poses, out;
+    double fidelity = 1.0;
+};
+
+int eval(const EvalOptions& o) {
+    const EvalSummary s = run_eval(o.scene, o.poses, o.out, o.fidelity);
+    std::printf(
+        "%llu poses, %llu of them not ok; largest force %.3f N; a step took %.2f us, at most %.2f us\nwrote "
+        "%s\n",
+        static_cast<unsigned long long>(s.poses), static_cast<unsigned long long>(s.not_ok), s.force_n_max,
+        s.cost_us_p50, s.cost_us_max, o.out.c_str());
+    return 0;
+}
+
+}  // namespace
+
+void add_eval(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand(
+        "eval",
+        "the servo's force over given poses: t_s,x_m,y_m,z_m,qx,qy,qz,qw in; force, torque, cost out");
+    const auto o = std::make_shared<EvalOptions>();
+    command->add_option("SCENE", o->scene, "file written by tact-prep")->required()->check(CLI::ExistingFile);
+    command->add_option("--poses", o->poses, "poses of the tool in the world")
+        ->required()
+        ->type_name("IN.csv")
+        ->check(CLI::ExistingFile);
+    command->add_option("--out", o->out, "one line per pose")->required()->type_name("OUT.csv");
+    command->add_option("--fidelity", o->fidelity, "1: all atoms; 0: the smallest codebook")
+        ->type_name("F")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    command->callback([o, &exit_code] { exit_code = eval(*o); });
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,115 @@
+// tact status: how the running controller is doing.
+#include <poll.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/observer.hpp"
+#include "deploy/tact/run_record.hpp"
+#include "deploy/tact/run_report.hpp"
+#include "deploy/tact/signals.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr auto kPatience = std::chrono::seconds(2);
+
+struct StatusOptions {
+    std::string session = "default";
+    bool json = false, watch = false;
+};
+
+std::optional<Places> places_of(const RtRegion& region) {
+    try {
+        return Places(SceneFile::open(field_text(region.scene_path, sizeof region.scene_path)));
+    } catch (const std::exception&) {
+        return std::nullopt;  // moved away since; the place is then not told
+    }
+}
+
+void show(const Observer& observer, bool as_json) {
+    nlohmann::json report = controller_report(observer.region());
+    if (as_json) {
+        std::fputs(report_text(report).c_str(), stdout);
+        return;
+    }
+    const auto places = places_of(observer.region());
+    const auto sample = take_sample(observer.region(), places ? &*places : nullptr, 0.0);
+    if (!sample) return;
+    std::printf("state %s: %s\nscene %s\n", report["state"].get<std::string>().c_str(),
+                report["reason"].get<std::string>().c_str(),
+                report["scene"]["path"].get<std::string>().c_str());
+    std::printf("law %s, goal %.0f Hz\n",
+                report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
+                sample->health.goal_hz);
+    std::fputs(report_summary(report).c_str(), stdout);
+    std::fputs((table_header() + table_row(*sample)).c_str(), stdout);
+}
+
+int watch(Observer& observer) {
+    Signals signals;
+    std::optional<Places> places;
+    Instant due{}, began = Monotonic::now();
+    std::uint64_t generation = 0;
+    bool said_waiting = false;
+    int lines = 0;
+    while (signals.wait(50) == 0) {
+        observer.poll();
+        if (!observer.attached()) {
+            if (!said_waiting) std::printf("%s\n", observer.status_text().c_str());
+            said_waiting = true;
+            std::fflush(stdout);
+            continue;
+        }
+        if (!observer.seen() || Monotonic::now() < due) continue;
+        if (generation != observer.generation()) {
+            generation = observer.generation();
+            places = places_of(observer.region());
+            began = Monotonic::now();
+        }
+        said_waiting = false;
+        due = Monotonic::now() + std::chrono::seconds(1);
+        const auto sample =
+            take_sample(observer.region(), places ? &*places : nullptr, to_s(Monotonic::now() - began));
+        if (!sample) continue;
+        if (lines++ % 20 == 0) std::fputs(table_header().c_str(), stdout);
+        std::fputs(table_row(*sample).c_str(), stdout);
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
+int status(const StatusOptions& o) {
+    Observer observer(o.session);
+    if (o.watch) return watch(observer);
+    const Instant end = Monotonic::now() + kPatience;
+    while (Monotonic::now() < end) {
+        observer.poll();
+        if (observer.seen() && newest(observer.region().health)) {
+            show(observer, o.json);
+            return 0;
+        }
+        ::poll(nullptr, 0, 20);
+    }
+    std::fprintf(stderr, "%s\n  mend: start one with tact demo dock, or name its session with --session\n",
+                 observer.status_text().c_str());
+    return 1;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& exit_code) {
+    auto* const command =
+        app.add_subcommand("status", "how the running controller is doing; exit code 1: none runs");
+    const auto o = std::make_shared<StatusOptions>();
+    command->add_option("--session", o->session, "name of the session")
+        ->type_name("NAME")
+        ->capture_default_str();
+    auto* const json = command->add_flag("--json", o->json, "for programs");
+    command->add_flag("--watch", o->watch, "a line a second, also across restarts, until Ctrl-C")
+        ->excludes(json);
+    command->callback([o, &exit_code] { exit_code = status(*o); });
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,20 @@
+// The words that a user types behind `tact`; one file each, named command_<word>.cpp.
+//
+// A command adds itself to the parser with a callback that puts the exit code into `exit_code`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tact::launch {
+
+void add_demo(CLI::App& app, int& exit_code);
+void add_dock(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
+void add_status(CLI::App& app, int& exit_code);
+void add_doctor(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
+void add_eval(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
+void add_reproduce(CLI::App& app, int& exit_code);
+
+}  // namespace tact::launch

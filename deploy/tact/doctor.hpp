@@ -1,0 +1,59 @@
+// What of this machine helps or hinders a steady force rate, and the mend of each finding.
+//
+// read_machine() gathers plain texts and numbers; judge() is pure, so that texts recorded on other machines
+// test it. Levels    fail: Tact will not run here. warn: it runs, but force rate or picture will be worse.
+// ok: as wanted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tact::launch {
+
+enum class FindingLevel : std::uint8_t { ok, warn, fail };
+
+struct Finding {
+    std::string name;  // stable, for programs: "kernel", "rtprio"
+    FindingLevel level = FindingLevel::ok;
+    std::string says;
+    std::string mend;  // "" where nothing is to be mended
+};
+
+// As the kernel tells it; "" where a file is missing.
+struct Machine {
+    std::string kernel_version;  // uname -v
+    std::string realtime;        // /sys/kernel/realtime
+    std::string isolated;        // /sys/devices/system/cpu/isolated
+    std::string nohz_full;
+    std::vector<std::string> governors;  // scaling_governor of each core
+    std::string rt_runtime_us;           // /proc/sys/kernel/sched_rt_runtime_us
+    std::string swaps;                   // /proc/swaps
+    std::string huge_pages;              // /sys/kernel/mm/transparent_hugepage/enabled
+    std::string clocksource;
+    std::string cpuinfo;                  // /proc/cpuinfo
+    std::string capabilities;             // /proc/self/status
+    std::uint64_t rtprio_max = 0;         // RLIMIT_RTPRIO
+    std::uint64_t memlock_bytes_max = 0;  // RLIMIT_MEMLOCK; all ones: no limit
+    int cores = 0;
+    int fifo_error = 0;         // errno of asking for SCHED_FIFO; 0: granted
+    int dma_latency_error = 0;  // errno of opening /dev/cpu_dma_latency for writing
+};
+
+Machine read_machine(const std::filesystem::path& root = "/");
+std::vector<Finding> judge(const Machine& machine);
+
+// Programs, folders, display, OpenGL, session: tried, not read.
+std::vector<Finding> try_surroundings(const std::string& session);
+
+// "2-3,5" as core numbers; what is not such a list gives none.
+std::vector<int> parse_core_list(const std::string& text);
+// Bit of the effective capabilities in a /proc/<pid>/status text.
+bool has_capability(const std::string& status, int bit);
+// The word in brackets of "always [madvise] never"; "" where there is none.
+std::string chosen_word(const std::string& text);
+// Device names of /proc/swaps.
+std::vector<std::string> parse_swaps(const std::string& text);
+
+}  // namespace tact::launch

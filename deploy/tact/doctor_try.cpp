@@ -1,0 +1,125 @@
+// The part of the doctor that tries things instead of reading them.
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/doctor.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/gl_probe.hpp"
+#include "deploy/tact/observer.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/shm/session_path.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr const char* kFolderMend = "set TACT_RUNTIME_DIR to a folder of your own (mode 0700)";
+
+// The text of a StartupError as a finding: its first line says what, its second how to mend it.
+Finding failed(const std::string& name, const std::exception& e) {
+    const std::string text = e.what();
+    const auto cut = text.find("\n  mend: ");
+    return {name, FindingLevel::fail, text.substr(0, cut),
+            cut == std::string::npos ? "" : text.substr(cut + 9)};
+}
+
+Finding programs() {
+    try {
+        std::string folders;
+        for (const char* const name : {"tact-prep", "tact-rt", "tact-gui"}) {
+            const auto path = find_program(name);
+            if (folders.find(path.parent_path().string()) == std::string::npos)
+                folders += (folders.empty() ? "" : ", ") + path.parent_path().string();
+        }
+        return {"programs", FindingLevel::ok, "tact-prep, tact-rt and tact-gui are in " + folders, ""};
+    } catch (const StartupError& e) {
+        return failed("programs", e);
+    }
+}
+
+Finding runtime_folder(const std::string& session) {
+    try {
+        const std::filesystem::path folder =
+            std::filesystem::path(session_socket_path(session)).parent_path();
+        const bool made_later = std::getenv("TACT_RUNTIME_DIR") == nullptr &&
+                                !std::filesystem::exists(folder) &&
+                                access(folder.parent_path().c_str(), W_OK | X_OK) == 0;
+        const std::string distrust = made_later ? "" : distrust_runtime_folder(folder);
+        if (!distrust.empty()) return {"runtime_folder", FindingLevel::fail, distrust, kFolderMend};
+        if (!made_later && access(folder.c_str(), R_OK | W_OK | X_OK) != 0)
+            return {"runtime_folder", FindingLevel::fail,
+                    folder.string() + " cannot be used: " + std::strerror(errno), kFolderMend};
+        return {"runtime_folder", FindingLevel::ok, "the processes meet in " + folder.string(), ""};
+    } catch (const StartupError& e) {
+        return failed("runtime_folder", e);
+    }
+}
+
+Finding cache() {
+    try {
+        return {"cache", FindingLevel::ok, "baked scenes are kept in " + cache_folder().string(), ""};
+    } catch (const StartupError& e) {
+        return failed("cache", e);
+    }
+}
+
+Finding display() {
+    const auto value = [](const char* name) {
+        const char* const v = std::getenv(name);
+        return std::string(v != nullptr ? v : "");
+    };
+    const std::string x = value("DISPLAY"), wayland = value("WAYLAND_DISPLAY");
+    const bool xvfb = !find_in_path("Xvfb").empty();
+    if (!x.empty() || !wayland.empty())
+        return {"display", FindingLevel::ok,
+                "a window opens on " + (x.empty() ? wayland : x) +
+                    (xvfb ? "; Xvfb is there for --headless" : "; no Xvfb for --headless"),
+                xvfb ? "" : "sudo apt-get install xvfb"};
+    if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is there for --headless", ""};
+    return {"display", FindingLevel::fail, "there is no display and no Xvfb, so nothing can be drawn",
+            "sudo apt-get install xvfb"};
+}
+
+Finding opengl() {
+    const GlAnswer gl = probe_gl();
+    if (gl.renderer.empty())
+        return {"opengl", FindingLevel::fail, "no OpenGL 3.3: " + gl.why,
+                "sudo apt-get install libegl1 libgl1-mesa-dri; on a PC with a graphics card also its driver"};
+    if (gl.software())
+        return {"opengl", FindingLevel::warn,
+                "OpenGL 3.3 in software (" + gl.renderer + "): drawing takes processor time from the rest",
+                "use a machine with a graphics card and its driver, and be a member of the group render"};
+    return {"opengl", FindingLevel::ok, "OpenGL 3.3: " + gl.renderer, ""};
+}
+
+Finding session_in_use(const std::string& session) {
+    try {
+        Observer observer(session);
+        for (int i = 0; i < 30 && !observer.seen(); ++i) {
+            observer.poll();
+            ::poll(nullptr, 0, 10);
+        }
+        const auto health = observer.seen() ? newest(observer.region().health) : std::nullopt;
+        if (!observer.attached()) return {"session", FindingLevel::ok, "session " + session + " is free", ""};
+        return {"session", FindingLevel::ok,
+                "a controller runs in session " + session +
+                    (health ? std::string(", state ") + run_state_text(static_cast<RunState>(health->state))
+                            : ""),
+                ""};
+    } catch (const StartupError& e) {
+        return failed("session", e);
+    }
+}
+
+}  // namespace
+
+std::vector<Finding> try_surroundings(const std::string& session) {
+    return {programs(), runtime_folder(session), cache(), session_in_use(session), display(), opengl()};
+}
+
+}  // namespace tact::launch

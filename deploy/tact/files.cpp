@@ -1,0 +1,125 @@
+#include "deploy/tact/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr const char* kSpaceMend = "free some space, mend the permissions, or give another path";
+
+std::filesystem::path user_folder_in_tmp() { return "/tmp/tact-cache-" + std::to_string(getuid()); }
+
+}  // namespace
+
+void write_whole(const std::filesystem::path& path, const std::string& content) {
+    std::error_code failed;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+    std::string temporary = path.string() + ".XXXXXX";
+    const int fd = mkostemp(temporary.data(), O_CLOEXEC);
+    if (fd < 0) throw StartupError("writing " + path.string(), std::strerror(errno), kSpaceMend);
+    std::size_t done = 0;
+    bool ok = fchmod(fd, 0644) == 0;
+    while (ok && done < content.size()) {
+        const ssize_t n = write(fd, content.data() + done, content.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        ok = n > 0;
+        done += ok ? static_cast<std::size_t>(n) : 0;
+    }
+    ok = ok && fsync(fd) == 0;
+    const int why = errno;
+    close(fd);
+    if (ok && std::rename(temporary.c_str(), path.c_str()) == 0) return;
+    const int reason = ok ? errno : why;
+    unlink(temporary.c_str());
+    throw StartupError("writing " + path.string(), std::strerror(reason), kSpaceMend);
+}
+
+std::string read_small(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::string text(65536, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+    return text;
+}
+
+std::filesystem::path cache_folder() {
+    const char* const xdg = std::getenv("XDG_CACHE_HOME");
+    const char* const home = std::getenv("HOME");
+    std::filesystem::path folder;
+    if (xdg != nullptr && xdg[0] == '/') {
+        folder = std::filesystem::path(xdg) / "tact";
+    } else if (home != nullptr && home[0] == '/') {
+        folder = std::filesystem::path(home) / ".cache" / "tact";
+    } else {
+        folder = user_folder_in_tmp();
+    }
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    struct stat info {};
+    if (failed || stat(folder.c_str(), &info) != 0 || info.st_uid != getuid() ||
+        access(folder.c_str(), W_OK) != 0)
+        throw StartupError("using the cache folder " + folder.string(),
+                           failed ? failed.message() : "it is not a folder of this user that can be written",
+                           "set XDG_CACHE_HOME to a folder of your own");
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
+    return folder;
+}
+
+ScratchFolder::ScratchFolder() {
+    std::error_code failed;
+    std::string name = (std::filesystem::temp_directory_path(failed) / "tact-run-XXXXXX").string();
+    if (failed || mkdtemp(name.data()) == nullptr)
+        throw StartupError("making a temporary folder", std::strerror(errno),
+                           "set TMPDIR to a folder that can be written");
+    path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+void ContentHash::bytes(const char* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+        state_ = (state_ ^ static_cast<unsigned char>(data[i])) * 1099511628211ULL;
+}
+
+void ContentHash::add(const std::string& text) {
+    const std::string length = std::to_string(text.size()) + ":";
+    bytes(length.data(), length.size());
+    bytes(text.data(), text.size());
+}
+
+void ContentHash::add_file(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::vector<char> some(1U << 20U);
+    std::uint64_t total = 0;
+    while (in.read(some.data(), static_cast<std::streamsize>(some.size())) || in.gcount() > 0) {
+        bytes(some.data(), static_cast<std::size_t>(in.gcount()));
+        total += static_cast<std::uint64_t>(in.gcount());
+    }
+    if (!in.eof() || std::filesystem::is_directory(path))
+        throw StartupError("reading " + path.string(), std::strerror(errno != 0 ? errno : EISDIR),
+                           "check the path and that the file may be read");
+    add(std::to_string(total));
+}
+
+std::string ContentHash::hex() const {
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(state_));
+    return text.data();
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,35 @@
+// tact: the one name that a user types.
+//
+// Exit codes  0 all went as asked; 1 an error, said on standard error with its mend, or a process that died;
+//             2 wrong usage; 130 ended by a signal before a run had begun.
+#include <cstdio>
+
+#include "deploy/tact/commands.hpp"
+#include "ipc/base/error.hpp"
+
+int main(int argc, char** argv) {
+    CLI::App app{"Tact: feel density maps and structures. Start with: tact demo dock"};
+    app.set_version_flag("--version", "tact " TACT_VERSION);
+    app.require_subcommand(1);
+    app.footer("Exit codes: 0 as asked; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
+    int exit_code = 0;
+    using namespace tact::launch;
+    add_demo(app, exit_code);
+    add_dock(app, exit_code);
+    add_run(app, exit_code);
+    add_status(app, exit_code);
+    add_doctor(app, exit_code);
+    add_info(app, exit_code);
+    add_eval(app, exit_code);
+    add_bench(app, exit_code);
+    add_reproduce(app, exit_code);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact: %s\n", e.what());
+        return 1;
+    }
+    return exit_code;
+}

@@ -1,0 +1,261 @@
+#include "deploy/tact/run.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/observer.hpp"
+#include "deploy/tact/place.hpp"
+#include "deploy/tact/run_record.hpp"
+#include "deploy/tact/run_report.hpp"
+#include "deploy/tact/signals.hpp"
+#include "deploy/tact/x_server.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/shm/session_path.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr auto kAttachLimit = std::chrono::seconds(30);     // loading a large map takes seconds
+constexpr auto kWindowPatience = std::chrono::seconds(20);  // start of a window under software drawing
+constexpr auto kAnswerLimit = std::chrono::milliseconds(400);
+constexpr auto kSampleEvery = std::chrono::milliseconds(100);
+constexpr auto kLineEvery = std::chrono::seconds(1);
+constexpr int kHeaderEvery = 20;
+
+// What to do about a program that ended otherwise than asked.
+std::string advice(const std::string& name, const Ending& e) {
+    if (e.by_signal && e.number == SIGKILL && !e.forced)
+        return "somebody killed it, or the machine ran out of memory (dmesg shows which)";
+    if (e.by_signal) return "this is a fault of " + name + "; run it alone under gdb, or look at coredumpctl";
+    if (e.forced) return "it hung; run it alone to see where";
+    return "see what it said above";
+}
+
+class Run {
+public:
+    Run(const std::filesystem::path& scene, RunOptions options)
+        : options_(std::move(options)),
+          file_(SceneFile::open(scene)),
+          places_(file_),
+          observer_(options_.session) {
+        facts_.scene = std::filesystem::absolute(scene);
+        facts_.session = options_.session;
+    }
+
+    int go() {
+        refuse_second();
+        start();
+        while (!over()) {
+            const int asked = signals_.wait(20);
+            look();
+            if (asked != 0 && !ending_) end(true, std::string("asked by ") + sigdescr_np(asked));
+        }
+        return finish();
+    }
+
+private:
+    void refuse_second() {
+        if (!std::filesystem::exists(session_paths(options_.session).socket)) return;
+        // Somebody left the socket, or serves it: a controller answers within some milliseconds.
+        const Instant end = Monotonic::now() + kAnswerLimit;
+        while (!observer_.attached() && Monotonic::now() < end) {
+            observer_.poll();
+            signals_.wait(10);
+        }
+        if (observer_.attached())
+            throw StartupError("starting a run in session " + options_.session,
+                               "a controller runs in it already",
+                               "end that one, or give this run another name with --session");
+    }
+
+    void start() {
+        if (options_.gui) prepare_display();
+        ChildSettings rt;
+        rt.arguments = {facts_.scene.string(), "--session", options_.session,
+                        options_.gui ? "--arm-with-gui" : "--arm"};
+        rt.arguments.insert(rt.arguments.end(), options_.controller.begin(), options_.controller.end());
+        rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
+        if (options_.gui) {
+            ChildSettings gui;
+            gui.arguments = {facts_.scene.string(), "--session", options_.session, "--size", options_.size};
+            gui.environment = display_;
+            if (!options_.screenshot.empty())
+                gui.arguments.insert(gui.arguments.end(), {"--screenshot", options_.screenshot.string()});
+            if (options_.seconds > 0.0)
+                gui.arguments.insert(gui.arguments.end(), {"--seconds", std::to_string(options_.seconds)});
+            gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
+            gui.grace = std::chrono::seconds(5);  // it may be writing the picture
+            gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
+        }
+        started_ = Monotonic::now();
+    }
+
+    void prepare_display() {
+        if (options_.headless) {
+            int width = 0, height = 0;
+            if (std::sscanf(options_.size.c_str(), "%dx%d", &width, &height) != 2 || width < 64 ||
+                height < 64 || width > 16384 || height > 16384)
+                throw StartupError("reading --size " + options_.size, "it is not WIDTHxHEIGHT in 64..16384",
+                                   "--size 1280x800");
+            scratch_.emplace();
+            x_.emplace(scratch_->path(), width, height);
+            display_ = x_->environment();
+            return;
+        }
+        const auto set = [](const char* name) {
+            const char* const v = std::getenv(name);
+            return v != nullptr && v[0] != '\0';
+        };
+        if (!set("DISPLAY") && !set("WAYLAND_DISPLAY"))
+            throw StartupError(
+                "opening a window", "neither DISPLAY nor WAYLAND_DISPLAY is set",
+                "add --headless to draw without a screen, or --no-gui for the controller alone");
+    }
+
+    // One look at everybody: link, samples, table, children.
+    void look() {
+        const Instant now = Monotonic::now();
+        if (observer_.poll() == Observer::News::arrived) {
+            if (!seen_at_) seen_at_ = now;
+        }
+        if (observer_.seen() && !facts_.poses_start)
+            if (const auto bodies = newest(observer_.region().bodies))
+                facts_.poses_start = places_.poses(*bodies);
+        if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
+        judge(now);
+    }
+
+    void take(Instant now) {
+        sample_due_ = now + kSampleEvery;
+        auto sample = take_sample(observer_.region(), &places_, to_s(now - *seen_at_));
+        if (!sample) return;
+        if (!options_.quiet && now >= line_due_) {
+            line_due_ = now + kLineEvery;
+            if (lines_++ % kHeaderEvery == 0) std::fputs(table_header().c_str(), stdout);
+            std::fputs(table_row(*sample).c_str(), stdout);
+            std::fflush(stdout);
+        }
+        if (sample->health.gui_attached != 0 && sample->health.gui_fps > 0.0)
+            fps_.push_back(sample->health.gui_fps);
+        if (!options_.out.empty()) samples_.push_back(*sample);
+    }
+
+    void judge(Instant now) {
+        if (ending_) {
+            if (gui_) gui_->poll();
+            // The controller is asked last, so that the last picture shows it at work.
+            if (!gui_ || gui_->poll()) rt_->stop();
+            rt_->poll();
+            return;
+        }
+        if (rt_->poll()) {
+            end(false, "tact-rt " + rt_->poll()->text());
+        } else if (gui_ && gui_->poll()) {
+            const Ending& e = *gui_->poll();
+            if (e.clean())
+                end(true, options_.seconds > 0.0 ? "the time is over" : "the window was closed");
+            else
+                end(false, "tact-gui " + e.text());
+        } else if (x_ && x_->child().poll()) {
+            end(false, "Xvfb " + x_->child().poll()->text());
+        } else if (!seen_at_ && now > started_ + kAttachLimit) {
+            end(false, "the controller did not come up: " + observer_.status_text());
+        } else if (options_.seconds > 0.0 && seen_at_) {
+            const Duration length(std::llround(options_.seconds * 1e9));
+            if (!gui_ && now >= *seen_at_ + length) end(true, "the time is over");
+            if (gui_ && now >= *seen_at_ + length + kWindowPatience)
+                end(false, "tact-gui did not end in time");
+        }
+    }
+
+    void end(bool intended, std::string why) {
+        ending_ = true;
+        facts_.intended = intended;
+        facts_.why_ended = std::move(why);
+        if (gui_) gui_->stop();
+        if (!gui_ || gui_->poll()) rt_->stop();
+    }
+
+    [[nodiscard]] bool over() { return ending_ && rt_->poll() && (!gui_ || gui_->poll()); }
+
+    int finish() {
+        if (x_) {
+            x_->child().stop();
+            x_->child().wait(std::chrono::seconds(5));
+        }
+        note("tact-rt", *rt_->poll());
+        if (gui_) note("tact-gui", *gui_->poll());
+        if (seen_at_) facts_.length_s = samples_length();
+        if (!fps_.empty()) {
+            const auto middle = fps_.begin() + static_cast<std::ptrdiff_t>(fps_.size() / 2);
+            std::nth_element(fps_.begin(), middle, fps_.end());
+            facts_.fps_median = *middle;
+        }
+        const RtRegion* const region = observer_.seen() ? &observer_.region() : nullptr;
+        const nlohmann::json report = run_report(region, &places_, facts_);
+        std::printf("the run ended: %s\n", facts_.why_ended.c_str());
+        std::fputs(report_summary(report).c_str(), stdout);
+        if (!options_.json.empty()) {
+            write_whole(options_.json, report_text(report));
+            std::printf("wrote %s\n", options_.json.c_str());
+        }
+        if (!options_.out.empty()) write_whole(options_.out / "run.csv", samples_csv(samples_));
+        if (!options_.screenshot.empty()) {
+            if (std::filesystem::exists(options_.screenshot))
+                std::printf("wrote %s\n", options_.screenshot.c_str());
+            else
+                std::fprintf(stderr, "there is no picture %s: the window went before its time\n",
+                             options_.screenshot.c_str());
+        }
+        return facts_.intended ? 0 : 1;
+    }
+
+    void note(const std::string& name, const Ending& e) {
+        facts_.endings[name] = e;
+        if (e.clean() && (e.asked || facts_.intended)) return;
+        // SIGTERM before the program had its own way of ending is what was asked for.
+        if (e.asked && e.by_signal && e.number == SIGTERM) return;
+        facts_.intended = false;
+        std::fprintf(stderr, "%s %s\n  mend: %s\n", name.c_str(), e.text().c_str(), advice(name, e).c_str());
+    }
+
+    [[nodiscard]] double samples_length() const { return to_s(ended_at() - *seen_at_); }
+    [[nodiscard]] Instant ended_at() const {
+        const auto health = observer_.seen() ? newest(observer_.region().health) : std::nullopt;
+        return health ? instant_from_ns(health->taken_at_ns) : Monotonic::now();
+    }
+
+    RunOptions options_;
+    RunFacts facts_;
+    SceneFile file_;
+    Places places_;
+    Signals signals_;
+    Observer observer_;
+    std::optional<ScratchFolder> scratch_;  // outlives the X server that uses it
+    std::optional<XServer> x_;
+    std::vector<std::pair<std::string, std::string>> display_;
+    std::optional<Child> rt_, gui_;
+    bool ending_ = false;
+    int lines_ = 0;
+    Instant started_{}, sample_due_{}, line_due_{};
+    std::optional<Instant> seen_at_;
+    std::vector<Sample> samples_;
+    std::vector<double> fps_;
+};
+
+}  // namespace
+
+int run_scene(const std::filesystem::path& scene, RunOptions options) {
+    options.settle();
+    return Run(scene, std::move(options)).go();
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,113 @@
+#include "deploy/tact/run_options.hpp"
+
+#include <algorithm>
+
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+struct Passed {
+    const char* name;
+    const char* type;
+    const char* help;
+};
+
+// The controller checks the values; here only their names are known, so that there is one place to say what
+// is right.
+constexpr Passed kController[] = {
+    {"--rate", "HZ", "servo rate"},
+    {"--law", "NAME", "law of the governor: sensitus or fixed"},
+    {"--goal", "HZ", "force rate that the governor holds"},
+    {"--level", "PATH=VALUE", "level of a path under the law fixed; may be repeated"},
+    {"--start-offset-a", "A", "move the first structure this far from the place its file gives it"},
+    {"--start-rotation-deg", "DEG", "and turn it by this angle"},
+    {"--seed", "N", "of the random direction and axis of the two above"},
+    {"--config", "FILE", "configuration of the controller, TOML"},
+    {"--core", "N", "processor core of the servo thread"},
+    {"--priority", "P", "real-time priority of the servo thread"},
+    {"--force-scale", "X", "gain of the shown force"},
+};
+
+}  // namespace
+
+bool RunOptions::has_controller_option(const std::string& name) const {
+    return std::find(controller.begin(), controller.end(), name) != controller.end();
+}
+
+void RunOptions::settle() {
+    if (!out.empty()) {
+        out = std::filesystem::absolute(out);
+        if (json.empty()) json = out / "run.json";
+        if (screenshot.empty() && gui) screenshot = out / "run.png";
+    }
+    if (!gui && !screenshot.empty())
+        throw StartupError("reading the options",
+                           "--screenshot needs the visual process, and --no-gui leaves it out",
+                           "leave one of the two away; --headless draws without a screen");
+    if (!json.empty()) json = std::filesystem::absolute(json);
+    if (!screenshot.empty()) {
+        screenshot = std::filesystem::absolute(screenshot);
+        std::error_code failed;
+        std::filesystem::create_directories(screenshot.parent_path(), failed);
+        if (failed)
+            throw StartupError("making the folder " + screenshot.parent_path().string(), failed.message(),
+                               "give another path to --screenshot");
+    }
+}
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+    app.add_option("--seconds", options.seconds,
+                   "end by itself after this time; default: when the window is closed")
+        ->type_name("S")
+        ->check(CLI::Range(0.0, 1e7));
+    app.add_flag("--headless", options.headless, "draw without a screen, on an X server of its own (Xvfb)");
+    app.add_flag_callback(
+        "--no-gui", [&options] { options.gui = false; }, "the controller alone");
+    app.add_option("--screenshot", options.screenshot, "picture of the window at the end")
+        ->type_name("FILE.png");
+    app.add_option("--json", options.json, "what was measured in the run")->type_name("FILE");
+    app.add_option("--out", options.out, "folder for run.json, run.csv (ten rows a second) and run.png")
+        ->type_name("DIR");
+    app.add_option("--session", options.session, "name under which the processes find each other")
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_flag("--quiet", options.quiet, "no table of rates");
+
+    auto* const controller = app.add_option_group("Controller", "options that go on to tact-rt");
+    for (const Passed& p : kController) {
+        controller
+            ->add_option_function<std::vector<std::string>>(
+                p.name,
+                [&options, name = std::string(p.name)](const std::vector<std::string>& values) {
+                    for (const auto& v : values) {
+                        options.controller.push_back(name);
+                        options.controller.push_back(v);
+                    }
+                },
+                p.help)
+            ->type_name(p.type)
+            ->expected(1)
+            ->multi_option_policy(std::string(p.name) == "--level" ? CLI::MultiOptionPolicy::TakeAll
+                                                                   : CLI::MultiOptionPolicy::Throw);
+    }
+    controller->add_flag_callback(
+        "--free-run", [&options] { options.controller.emplace_back("--free-run"); },
+        "as many force updates as the processor gives, in place of --rate");
+
+    auto* const visual = app.add_option_group("Window", "options that go on to tact-gui");
+    visual->add_option("--size", options.size, "of the window in pixels")
+        ->type_name("WxH")
+        ->capture_default_str();
+    visual
+        ->add_option_function<std::string>(
+            "--fps-max",
+            [&options](const std::string& v) {
+                options.visual.emplace_back("--fps-max");
+                options.visual.push_back(v);
+            },
+            "draw no more often")
+        ->type_name("FPS");
+}
+
+}  // namespace tact::launch

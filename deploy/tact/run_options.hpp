@@ -1,0 +1,33 @@
+// The options that all runs share, and those that go on to the controller or the visual process as they are.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tact::launch {
+
+struct RunOptions {
+    double seconds = 0.0;  // 0: until asked to end
+    bool headless = false;
+    bool gui = true;
+    std::filesystem::path screenshot;  // PNG of the last frame
+    std::filesystem::path json;
+    std::filesystem::path out;  // folder for run.json, run.csv and run.png
+    std::string session = "default";
+    std::string size = "1280x800";        // of the window
+    std::filesystem::path programs;       // folder of tact-rt and tact-gui; empty: beside tact
+    bool quiet = false;                   // no table
+    std::vector<std::string> controller;  // options of tact-rt, in order
+    std::vector<std::string> visual;      // options of tact-gui
+
+    [[nodiscard]] bool has_controller_option(const std::string& name) const;
+    // Fills in what --out implies and makes paths absolute; throws StartupError for options that do not go
+    // together.
+    void settle();
+};
+
+void add_run_options(CLI::App& app, RunOptions& options);
+
+}  // namespace tact::launch

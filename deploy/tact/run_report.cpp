@@ -1,0 +1,192 @@
+#include "deploy/tact/run_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/observer.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact::launch {
+namespace {
+
+using nlohmann::json;
+
+double us(double ns) { return ns * 1e-3; }
+
+std::string hex(std::uint64_t value) {
+    std::array<char, 20> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+    return text.data();
+}
+
+json lateness_us(const LatenessTopic& l) {
+    const auto at = [&l](double p) {
+        return us(static_cast<double>(DurationHistogram::percentile_ns(l.counts, l.total, l.max_ns, p)));
+    };
+    return {{"p50", at(0.5)},
+            {"p99", at(0.99)},
+            {"p999", at(0.999)},
+            {"max", us(static_cast<double>(l.max_ns))},
+            {"count", l.total}};
+}
+
+json governor(const RtRegion& region) {
+    const auto levels = newest(region.levels);
+    if (!levels) return nullptr;
+    json paths = json::object();
+    for (std::size_t i = 0; i < std::min<std::size_t>(levels->count, kPathsMax); ++i) {
+        const PathLevel& p = levels->path[i];
+        paths[field_text(p.path, kPathNameMax)] = {
+            {"level", p.level},
+            {"floor", p.floor},
+            {"items", p.items},
+            {"items_max", p.items_max},
+            {"cost_us", p.cost_s * 1e6},
+            {"error", p.error},
+            {"reason", level_reason_text(static_cast<LevelReason>(p.reason))},
+            {"haptic", p.haptic != 0}};
+    }
+    return {{"law", field_text(levels->law, kLawNameMax)},
+            {"goal_hz", levels->goal_hz},
+            {"rate_seen_hz", levels->rate_hz},
+            {"paths", paths}};
+}
+
+json offset_json(const Offset& o) { return {{"offset_a", o.distance_a}, {"angle_deg", o.angle_deg}}; }
+
+json fit_numbers(const Places& places, const std::vector<Pose>& poses, std::size_t body) {
+    const Offset o = places.offset(poses.at(body), body);
+    json j = offset_json(o);
+    const auto fit = places.fit(poses);
+    j["cc_zero"] = fit ? json(fit->cc_zero) : json(nullptr);
+    j["cc_mean"] = fit ? json(fit->cc_mean) : json(nullptr);
+    j["mean_density_sigma"] = fit ? json(fit->mean_density_sigma) : json(nullptr);
+    j["fraction_inside"] = fit ? json(fit->fraction_inside) : json(nullptr);
+    j["region_voxels"] = fit ? json(fit->region_voxels) : json(nullptr);
+    return j;
+}
+
+json fit_report(const RtRegion& region, const Places& places, const RunFacts& facts) {
+    const auto bodies = newest(region.bodies);
+    const auto poses = bodies ? places.poses(*bodies) : std::nullopt;
+    if (!poses || poses->empty()) return nullptr;
+    const std::size_t body = std::min<std::size_t>(bodies->active, poses->size() - 1);
+    json j = fit_numbers(places, *poses, body);
+    j["body"] = places.structures()[body].name;
+    j["region"] = kFitRegion;
+    j["resolution_a"] =
+        places.meta().resolution_m > 0.0 ? json(places.meta().resolution_m * 1e10) : json(nullptr);
+    j["voxel_a"] = places.grid().spacing_m.maxCoeff() * 1e10;
+    if (facts.poses_start) j["at_start"] = fit_numbers(places, *facts.poses_start, body);
+    j["at_file_place"] = fit_numbers(places, places.file_poses(), body);
+    return j;
+}
+
+json ending_json(const Ending& e) {
+    return {{"exit_code", e.by_signal ? json(nullptr) : json(e.number)},
+            {"signal", e.by_signal ? json(e.number) : json(nullptr)},
+            {"asked", e.asked},
+            {"text", e.text()}};
+}
+
+}  // namespace
+
+json controller_report(const RtRegion& region) {
+    json j;
+    const auto health = newest(region.health);
+    if (!health) return j;
+    const HealthTopic& h = *health;
+    j["state"] = run_state_text(static_cast<RunState>(h.state));
+    j["reason"] = run_reason_text(static_cast<RunReason>(h.reason));
+    j["force_rate_hz"] = h.force_rate_mean_hz;
+    j["servo"] = {{"rate_window_hz", h.force_rate_hz},
+                  {"period_us", h.period_ns > 0 ? json(us(static_cast<double>(h.period_ns))) : json(nullptr)},
+                  {"free_running", h.period_ns == 0},
+                  {"cycles", h.cycle},
+                  {"overruns", h.overruns},
+                  {"skipped", h.skipped},
+                  {"allocations", h.allocations},
+                  {"locks", h.locks},
+                  {"page_faults", h.page_faults},
+                  {"cycle_cost_us",
+                   {{"p50", us(static_cast<double>(h.cycle_cost_p50_ns))},
+                    {"max", us(static_cast<double>(h.cycle_cost_max_ns))}}},
+                  {"schedule_flags", h.schedule_flags},
+                  {"schedule", schedule_text(h.schedule_flags)},
+                  {"bad_input", h.bad_input},
+                  {"events", h.events}};
+    if (const auto lateness = newest(region.lateness)) j["servo"]["lateness_us"] = lateness_us(*lateness);
+    j["gui"] = {{"attached", h.gui_attached != 0},
+                {"fps", h.gui_fps},
+                {"vertices", h.gui_vertices},
+                {"heartbeat_age_ms", h.gui_heartbeat_age_ns >= 0
+                                         ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
+                                         : json(nullptr)}};
+    j["governor"] = governor(region);
+    j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},
+                  {"checksum", hex(region.scene_checksum)}};
+    return j;
+}
+
+json run_report(const RtRegion* region, const Places* places, const RunFacts& facts) {
+    json j = region != nullptr ? controller_report(*region) : json::object();
+    if (region != nullptr && places != nullptr) j["fit"] = fit_report(*region, *places, facts);
+    if (j.contains("gui")) {
+        // The controller's last word is from when the window was closing.
+        j["gui"]["fps_last"] = j["gui"]["fps"];
+        if (facts.fps_median) j["gui"]["fps"] = *facts.fps_median;
+        j["gui"]["ran"] = facts.fps_median.has_value();
+    }
+    if (!j.contains("scene")) j["scene"] = {{"path", facts.scene.string()}, {"checksum", nullptr}};
+    j["session"] = facts.session;
+    j["seconds"] = facts.length_s;
+    j["versions"] = {{"tact", TACT_VERSION}, {"compiler", __VERSION__}};
+    json ended = {{"ok", facts.intended}, {"why", facts.why_ended}};
+    for (const auto& [name, ending] : facts.endings) ended[name] = ending_json(ending);
+    j["ended"] = ended;
+    return j;
+}
+
+std::string report_text(const json& report) {
+    return report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string report_summary(const json& r) {
+    std::array<char, 512> line{};
+    std::string text;
+    const auto add = [&](const char* format, auto... values) {
+        std::snprintf(line.data(), line.size(), format, values...);
+        text += line.data();
+    };
+    const auto number = [](const json& j) { return j.is_number() ? j.get<double>() : 0.0; };
+    if (r.contains("servo") && r["servo"].contains("lateness_us")) {
+        const json& l = r["servo"]["lateness_us"];
+        add("force rate %.1f Hz; lateness us p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f; overruns %.0f\n",
+            number(r["force_rate_hz"]), number(l["p50"]), number(l["p99"]), number(l["p999"]),
+            number(l["max"]), number(r["servo"]["overruns"]));
+        add("servo thread: %.0f allocations, %.0f locks, %.0f page faults; %s\n",
+            number(r["servo"]["allocations"]), number(r["servo"]["locks"]), number(r["servo"]["page_faults"]),
+            r["servo"]["schedule"].get<std::string>().c_str());
+    }
+    if (r.contains("fit") && r["fit"].is_object()) {
+        const json& f = r["fit"];
+        if (f.contains("at_start"))
+            add("structure: from %.2f A, %.1f deg off the place of its file to %.2f A, %.1f deg\n",
+                number(f["at_start"]["offset_a"]), number(f["at_start"]["angle_deg"]), number(f["offset_a"]),
+                number(f["angle_deg"]));
+        if (f["cc_zero"].is_number())
+            add("fit: correlation about zero %.4f, about the mean %.4f (at the place of the file: %.4f, "
+                "%.4f; %s)\n",
+                number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
+                number(f["at_file_place"]["cc_mean"]), kFitRegion);
+        else
+            text +=
+                "fit: not computed, because the resolution of the map is not known (tact dock "
+                "--resolution-a)\n";
+    }
+    return text;
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,40 @@
+// The JSON of a run, composed from what the controller published and what tact itself saw.
+//
+// Keys are stable; a number that is not known is null. Units are in the names. The same words as in the
+// topics.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/place.hpp"
+#include "ipc/topics/regions.hpp"
+
+namespace tact::launch {
+
+struct RunFacts {
+    std::filesystem::path scene;
+    std::string session;
+    double length_s = 0.0;                         // the controller was seen
+    std::string why_ended;                         // "the time is over", "the window was closed", ...
+    bool intended = false;                         // all went as asked
+    std::map<std::string, Ending> endings;         // by program
+    std::optional<std::vector<Pose>> poses_start;  // when the controller was first seen
+    std::optional<double> fps_median;              // over the looks at a window that was drawing
+};
+
+// places: null where the scene is not known. Computes the fit, which may take a second.
+nlohmann::json run_report(const RtRegion* region, const Places* places, const RunFacts& facts);
+
+// A controller's state alone, for `tact status`.
+nlohmann::json controller_report(const RtRegion& region);
+
+std::string report_text(const nlohmann::json& report);  // as a file: indented, ends with a newline
+// The lines that a person reads at the end of a run.
+std::string report_summary(const nlohmann::json& report);
+
+}  // namespace tact::launch

@@ -1,0 +1,81 @@
+#include "deploy/tact/scene_cache.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/signals.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr std::size_t kScenesKept = 16;  // a scene of a large map is some hundred megabytes
+
+std::filesystem::path path_for(const BakeRequest& request, const std::filesystem::path& prep) {
+    ContentHash hash;
+    hash.add(TACT_VERSION);
+    hash.add_file(prep);  // another tact-prep may bake otherwise
+    for (const auto& file : request.inputs) {
+        hash.add_file(file);
+        hash.add(file.filename().string());  // becomes the structure's name
+    }
+    if (request.inputs.empty())
+        for (const auto& w : request.words) hash.add(w);
+    for (const auto& o : request.options) hash.add(o);
+    std::string stem = request.inputs.empty() ? "demo" : request.inputs.front().stem().string();
+    stem = stem.substr(0, 60);
+    return cache_folder() / (stem + "-" + hash.hex() + ".tact");
+}
+
+// Keeps the newest scenes; what cannot be removed stays.
+void prune(const std::filesystem::path& folder, const std::filesystem::path& keep) {
+    std::error_code ignored;
+    std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> scenes;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".tact" && entry.path() != keep)
+            scenes.emplace_back(entry.last_write_time(ignored), entry.path());
+    std::sort(scenes.rbegin(), scenes.rend());
+    for (std::size_t i = kScenesKept - 1; i < scenes.size(); ++i)
+        std::filesystem::remove(scenes[i].second, ignored);
+}
+
+}  // namespace
+
+std::filesystem::path baked_scene(const BakeRequest& request) {
+    const auto prep = find_program("tact-prep");
+    const auto scene = path_for(request, prep);
+    std::error_code ignored;
+    if (std::filesystem::exists(scene, ignored)) {
+        std::filesystem::last_write_time(scene, std::filesystem::file_time_type::clock::now(), ignored);
+        return scene;
+    }
+    ChildSettings settings;
+    settings.arguments = request.words;
+    settings.arguments.insert(settings.arguments.end(), {"-o", scene.string()});
+    settings.arguments.insert(settings.arguments.end(), request.options.begin(), request.options.end());
+    Signals signals;
+    Child child("tact-prep", prep, settings);
+    bool asked = false;
+    while (!child.poll()) {
+        if (signals.wait(50) != 0) {
+            asked = true;
+            child.stop();
+        }
+    }
+    const Ending& ending = *child.poll();
+    if (asked) return {};
+    if (!ending.clean())
+        throw StartupError("baking the scene", "tact-prep " + ending.text(),
+                           "see what it said above; tact-prep --help");
+    if (!std::filesystem::exists(scene, ignored))
+        throw StartupError("baking the scene", "tact-prep wrote no file " + scene.string(),
+                           "check the space in the cache folder");
+    prune(scene.parent_path(), scene);
+    return scene;
+}
+
+}  // namespace tact::launch

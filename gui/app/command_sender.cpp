@@ -1,0 +1,45 @@
+#include "gui/app/command_sender.hpp"
+
+#include <cstring>
+
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+
+bool CommandSender::send(CommandKind kind, double value, const std::string& text, std::int64_t now_ns) {
+    CommandTopic command{};
+    if (text.size() >= sizeof command.text) return false;
+    command.sequence = ++sequence_;
+    command.taken_at_ns = now_ns;
+    command.value = value;
+    command.kind = static_cast<std::uint16_t>(kind);
+    std::memcpy(command.text, text.data(), text.size());
+    ring_.push(command);
+    kind_ = kind;
+    sent_at_ns_ = now_ns;
+    stage_ = Stage::sent;
+    text_ = std::string(command_kind_text(kind)) + ": sent";
+    return true;
+}
+
+void CommandSender::update(const HealthTopic& health, std::int64_t now_ns) {
+    if (stage_ != Stage::sent && stage_ != Stage::unanswered) return;
+    if (health.command_sequence == sequence_) {
+        const auto result = static_cast<CommandResult>(health.command_result & 0xFFFFU);
+        stage_ = result == CommandResult::done ? Stage::done : Stage::refused;
+        text_ = std::string(command_kind_text(kind_)) + ": " + command_result_text(result);
+    } else if (now_ns - sent_at_ns_ > kPatience_ns) {
+        stage_ = Stage::unanswered;
+        text_ = std::string(command_kind_text(kind_)) + ": the controller has not answered";
+    }
+}
+
+void CommandSender::forget() {
+    if (stage_ == Stage::sent || stage_ == Stage::unanswered) {
+        stage_ = Stage::unanswered;
+        text_ = std::string(command_kind_text(kind_)) + ": the controller went before it answered";
+    }
+    if (stage_ != Stage::unanswered) stage_ = Stage::none;
+}
+
+}  // namespace tact

@@ -1,0 +1,42 @@
+// Commands to the controller, numbered, and what became of them.
+//
+// Thread   frame thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/shm/ring.hpp"
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/health.hpp"
+
+namespace tact {
+
+class CommandSender {
+public:
+    static constexpr std::int64_t kPatience_ns = 2'000'000'000;
+    enum class Stage : std::uint8_t { none, sent, done, refused, unanswered };
+
+    explicit CommandSender(Ring<CommandTopic, 64>& ring) : ring_(ring) {}
+
+    // A text longer than the topic holds is refused: false, and nothing is sent.
+    bool send(CommandKind kind, double value, const std::string& text, std::int64_t now_ns);
+    // What the controller said last.
+    void update(const HealthTopic& health, std::int64_t now_ns);
+    // A new controller knows nothing of what the old one was sent.
+    void forget();
+
+    [[nodiscard]] Stage stage() const { return stage_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+    [[nodiscard]] std::uint64_t sequence() const { return sequence_; }
+
+private:
+    Ring<CommandTopic, 64>& ring_;
+    std::uint64_t sequence_ = 0;
+    std::int64_t sent_at_ns_ = 0;
+    CommandKind kind_ = CommandKind::none;
+    Stage stage_ = Stage::none;
+    std::string text_;
+};
+
+}  // namespace tact

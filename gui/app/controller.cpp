@@ -1,0 +1,68 @@
+#include "gui/app/controller.hpp"
+
+#include <cstring>
+#include <utility>
+
+#include "gui/app/region_checks.hpp"
+
+namespace tact {
+
+Controller::News Controller::poll() {
+    LinkClient::News news = link_.poll();
+    News told;
+    if (news.left) {
+        told.left = !region_.empty();
+        region_ = MappedRegion<RtRegion>();
+        refusal_.clear();
+    }
+    if (news.arrived) {
+        refusal_.clear();
+        region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
+        seen_tool_ = seen_bodies_ = seen_health_ = seen_levels_ = 0;
+        have_tool = have_bodies = have_health = have_levels = false;
+        cursor_ = RingCursor{};
+        told.arrived = !region_.empty();
+        if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
+    }
+    return told;
+}
+
+template <class T>
+bool Controller::take(const Latest<T>& latest, std::uint64_t& seen, T& value, bool& have) {
+    const std::uint64_t count = latest.count();
+    if (count == seen) return false;
+    T candidate;
+    if (!latest.read(candidate)) return false;
+    seen = count;
+    if (!sensible(candidate)) {
+        ++refused_;
+        return false;
+    }
+    value = candidate;
+    have = true;
+    return true;
+}
+
+Controller::Fresh Controller::read() {
+    if (region_.empty()) return {};
+    Fresh fresh;
+    fresh.tool = take(region_->tool[0], seen_tool_, tool, have_tool);
+    fresh.bodies = take(region_->bodies, seen_bodies_, bodies, have_bodies);
+    fresh.health = take(region_->health, seen_health_, health, have_health);
+    fresh.levels = take(region_->levels, seen_levels_, levels, have_levels);
+    return fresh;
+}
+
+bool Controller::next_event(EventTopic& event) {
+    return !region_.empty() && region_->events.next(cursor_, event);
+}
+
+std::string Controller::scene_path() const {
+    if (region_.empty()) return {};
+    char path[sizeof region_->scene_path];
+    std::memcpy(path, region_->scene_path, sizeof path);  // written once, before the ready mark
+    path[sizeof path - 1] = '\0';
+    return path;
+}
+
+}  // namespace tact

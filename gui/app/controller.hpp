@@ -1,0 +1,62 @@
+// The controller as this process sees it: attached or awaited, and its newest records that make sense.
+//
+// Survives  the controller's end and restart: the last records stay, attached() says that they are old.
+// Hostile   every record is checked (region_checks.hpp); refused() counts what was not used.
+// Thread    frame thread; nothing blocks.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/shm/link.hpp"
+#include "ipc/topics/regions.hpp"
+
+namespace tact {
+
+class Controller {
+public:
+    Controller(const std::string& session, int own_region_fd) : link_(session, own_region_fd) {}
+
+    struct News {
+        bool arrived = false, left = false;
+    };
+    News poll();
+    // Reads every topic; true in the flags for what is new.
+    struct Fresh {
+        bool tool = false, bodies = false, health = false, levels = false;
+    };
+    Fresh read();
+    [[nodiscard]] bool next_event(EventTopic& event);
+
+    [[nodiscard]] bool attached() const { return !region_.empty(); }
+    [[nodiscard]] const std::string& status_text() const {
+        return refusal_.empty() ? link_.status_text() : refusal_;
+    }
+    [[nodiscard]] std::uint64_t refused() const { return refused_; }
+    [[nodiscard]] std::uint64_t events_missed() const { return cursor_.missed; }
+
+    // The scene that the controller runs; empty while it is not known.
+    [[nodiscard]] std::string scene_path() const;
+    [[nodiscard]] std::uint64_t scene_checksum() const {
+        return region_.empty() ? 0 : region_->scene_checksum;
+    }
+
+    bool have_tool = false, have_bodies = false, have_health = false, have_levels = false;
+    ToolTopic tool{};
+    BodiesTopic bodies{};
+    HealthTopic health{};
+    LevelsTopic levels{};
+
+private:
+    template <class T>
+    bool take(const Latest<T>& latest, std::uint64_t& seen, T& value, bool& have);
+
+    LinkClient link_;
+    MappedRegion<RtRegion> region_;
+    std::string refusal_;
+    RingCursor cursor_;
+    std::uint64_t seen_tool_ = 0, seen_bodies_ = 0, seen_health_ = 0, seen_levels_ = 0;
+    std::uint64_t refused_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,95 @@
+#include "gui/app/fit_worker.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "ipc/base/units.hpp"
+
+namespace tact {
+
+bool moved(std::span<const Pose> a, std::span<const Pose> b) {
+    if (a.size() != b.size()) return true;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if ((a[i].p_m - b[i].p_m).norm() > 0.01 * kAngstromM ||
+            a[i].q.angularDistance(b[i].q) > 0.01 * kDegreeRad)
+            return true;
+    return false;
+}
+
+FitWorker::FitWorker(std::shared_ptr<const SceneContent> content, Duration pause)
+    : content_(std::move(content)), pause_(pause), thread_([this] { work(); }) {}
+
+FitWorker::~FitWorker() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void FitWorker::wish(std::span<const Pose> T_model_body) {
+    {
+        const std::lock_guard lock(mutex_);
+        wished_.assign(T_model_body.begin(), T_model_body.end());
+    }
+    changed_.notify_all();
+}
+
+bool FitWorker::take(FitOutcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    if (outcome_.number == outcome.number) return false;
+    outcome = outcome_;
+    return true;
+}
+
+void FitWorker::work() {
+    // Nice values belong to threads on Linux. That it may fail (it never does upwards) changes nothing.
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
+    std::vector<Pose> places;
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || (!wished_.empty() && moved(wished_, places)); });
+        if (stop_) return;
+        places = wished_;
+        const std::uint64_t number = outcome_.number + 1;
+        lock.unlock();
+        FitOutcome outcome = compute(places);
+        outcome.number = number;
+        lock.lock();
+        outcome_ = std::move(outcome);
+        const Duration rest =
+            std::max(pause_, std::chrono::nanoseconds(static_cast<std::int64_t>(1e10 * outcome_.compute_s)));
+        if (changed_.wait_for(lock, rest, [&] { return stop_; })) return;
+    }
+}
+
+FitOutcome FitWorker::compute(const std::vector<Pose>& places) const {
+    FitOutcome outcome;
+    const Instant begun = Monotonic::now();
+    outcome.resolution_m = content_->meta.resolution_m;
+    if (!(outcome.resolution_m > 0.0)) {
+        outcome.resolution_m = 3.0 * content_->grid.spacing_m.maxCoeff();
+        outcome.resolution_assumed = true;
+    }
+    std::vector<PlacedStructure> placed;
+    for (std::size_t i = 0; i < std::min(places.size(), content_->bodies.size()); ++i)
+        placed.push_back({&content_->bodies[i], places[i]});
+    try {
+        outcome.metrics = fit_metrics(content_->grid, placed,
+                                      {.resolution_m = outcome.resolution_m,
+                                       .contour = content_->meta.contour,
+                                       .background = content_->meta.map_background,
+                                       .sigma = content_->meta.map_sigma});
+        outcome.good = true;
+    } catch (const std::exception& e) {
+        outcome.error = e.what();
+    }
+    outcome.compute_s = to_s(Monotonic::now() - begun);
+    return outcome;
+}
+
+}  // namespace tact

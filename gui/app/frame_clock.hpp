@@ -1,0 +1,37 @@
+// Measures a frame in parts and paces frames. Wall-clock time between calls; the graphics driver is never
+// asked to finish, so that measuring costs nothing.
+#pragma once
+
+#include <array>
+#include <deque>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/topics/load.hpp"
+
+namespace tact {
+
+class FrameClock {
+public:
+    void begin();                   // of a frame
+    void end_part(FramePart part);  // since the last call of either
+    // Sleeps until 1/fps_max after the beginning of this frame. 0: not at all.
+    void pace(double fps_max) const;
+
+    [[nodiscard]] double frame_s() const { return frame_s_; }  // start to start, of the last frame
+    [[nodiscard]] double work_s() const;                       // sum of the parts, this frame
+    [[nodiscard]] double part_s(FramePart part) const { return part_s_[static_cast<std::size_t>(part)]; }
+    [[nodiscard]] double fps() const { return fps_; }  // over the last second
+    [[nodiscard]] std::uint64_t frame() const { return frame_; }
+    [[nodiscard]] Instant started_at() const { return started_; }
+
+    [[nodiscard]] static double process_cpu_s();
+
+private:
+    Instant started_{}, mark_{};
+    double frame_s_ = 0.0, fps_ = 0.0;
+    std::array<double, static_cast<std::size_t>(FramePart::count)> part_s_{};
+    std::uint64_t frame_ = 0;
+    std::deque<Instant> recent_;
+};
+
+}  // namespace tact

@@ -1,0 +1,21 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "gui/app/app.hpp"
+
+int main(int argc, char** argv) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("tact-gui"));
+    spdlog::set_pattern("%n: %v");
+    tact::GuiOptions options;
+    int exit_code = 0;
+    if (!tact::parse_gui_options(argc, argv, options, exit_code)) return exit_code;
+    try {
+        return tact::run_gui(options);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact-gui: %s\n", e.what());
+        return 1;
+    }
+}

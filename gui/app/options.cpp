@@ -1,0 +1,46 @@
+#include "gui/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+namespace tact {
+
+bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code) {
+    CLI::App app(
+        "tact-gui: shows what the hand is touching. Starts without the controller and waits for it.");
+    std::string size;
+    app.add_option("scene", options.scene, "baked scene; by default the one that the controller runs");
+    app.add_option("--session", options.session, "name of the session that the controller runs in")
+        ->capture_default_str();
+    app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
+        ->check(CLI::Range(0.0, 1e7));
+    app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end");
+    app.add_option("--size", size, "size of the window in pixels, as 1280x720")
+        ->check(CLI::Validator(
+            [&options](std::string& text) -> std::string {
+                int width = 0, height = 0;
+                char rest = '\0';
+                if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 ||
+                    height < 240 || width > 16384 || height > 16384)
+                    return "--size: '" + text + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384";
+                options.width_px = width;
+                options.height_px = height;
+                return {};
+            },
+            "WxH"));
+    app.add_flag("--hidden", options.hidden, "draw without showing a window");
+    app.add_flag("--plain", options.plain, "cheapest drawing: no gradient, solid surface");
+    app.add_option(
+           "--fps-max", options.fps_max,
+           "at most this many pictures a second; 0: as many as can be; default: the display's rate, or 60")
+        ->check(CLI::Range(0.0, 1e5));
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        exit_code = app.exit(e);
+        return false;
+    }
+    return true;
+}
+
+}  // namespace tact

@@ -1,0 +1,22 @@
+// The command line of tact-gui.
+#pragma once
+
+#include <string>
+
+namespace tact {
+
+struct GuiOptions {
+    std::string scene;  // empty: the controller's
+    std::string session = "default";
+    std::string screenshot;  // empty: none
+    double seconds = 0.0;    // 0: until closed
+    int width_px = 1280, height_px = 720;
+    bool hidden = false;
+    bool plain = false;
+    double fps_max = -1.0;  // 0: no limit; below: 60 where the display does not pace
+};
+
+// Prints help and errors itself. Returns false where the program is to end with `exit_code`.
+bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code);
+
+}  // namespace tact

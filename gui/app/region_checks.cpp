@@ -1,0 +1,69 @@
+#include "gui/app/region_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace tact {
+namespace {
+
+template <std::size_t N>
+bool finite(const double (&values)[N]) noexcept {
+    return std::all_of(values, values + N, [](double v) { return std::isfinite(v); });
+}
+template <std::size_t N>
+bool unit_quaternion(const double (&q)[N]) noexcept {
+    static_assert(N == 4);
+    if (!finite(q)) return false;
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return square > 0.98 && square < 1.02;
+}
+template <std::size_t N>
+bool near(const double (&p_m)[N]) noexcept {
+    return finite(p_m) && std::all_of(p_m, p_m + N, [](double v) { return std::fabs(v) < 1e3; });
+}
+template <std::size_t N>
+bool ended(const char (&text)[N]) noexcept {
+    return std::memchr(text, 0, N) != nullptr;
+}
+bool rate(double hz) noexcept { return std::isfinite(hz) && hz >= 0.0 && hz < 1e9; }
+bool duration(std::int64_t ns) noexcept { return ns >= -1 && ns < 1'000'000'000'000'000; }
+
+}  // namespace
+
+bool sensible(const BodiesTopic& b) noexcept {
+    if (b.count > kBodiesMax || (b.count > 0 && b.active >= b.count)) return false;
+    return std::all_of(b.body, b.body + b.count, [](const BodyPlace& place) {
+        return near(place.pos_model_m) && unit_quaternion(place.quat_model_body_xyzw);
+    });
+}
+
+bool sensible(const ToolTopic& t) noexcept {
+    return near(t.pos_world_m) && unit_quaternion(t.quat_world_tool_xyzw) && near(t.force_world_n) &&
+           near(t.torque_world_n_m) && near(t.force_model_n) && near(t.velocity_world_m_s);
+}
+
+bool sensible(const HealthTopic& h) noexcept {
+    return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
+           std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&
+           duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
+           duration(h.cycle_cost_max_ns) && h.state <= static_cast<std::uint8_t>(RunState::fault);
+}
+
+bool sensible(const LevelsTopic& l) noexcept {
+    if (l.count > kPathsMax || !rate(l.goal_hz) || !rate(l.rate_hz) || !ended(l.law)) return false;
+    return std::all_of(l.path, l.path + l.count, [](const PathLevel& p) {
+        return ended(p.path) && std::isfinite(p.level) && p.level >= 0.0F && p.level <= 1.0F &&
+               std::isfinite(p.floor) && std::isfinite(p.cost_s) && std::isfinite(p.error);
+    });
+}
+
+const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept {
+    const PathLevel* const end = levels.path + std::min<std::size_t>(levels.count, kPathsMax);
+    const PathLevel* const found = std::find_if(levels.path, end, [path](const PathLevel& p) {
+        return std::strncmp(p.path, path, kPathNameMax) == 0;
+    });
+    return found == end ? nullptr : found;
+}
+
+}  // namespace tact

@@ -1,0 +1,21 @@
+// What the controller's region holds is not trusted: a record is used when it makes sense, else counted.
+//
+// Pure functions; a record that is refused leaves the caller's old one in use.
+#pragma once
+
+#include "ipc/topics/bodies.hpp"
+#include "ipc/topics/health.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/tool.hpp"
+
+namespace tact {
+
+[[nodiscard]] bool sensible(const BodiesTopic& bodies) noexcept;
+[[nodiscard]] bool sensible(const ToolTopic& tool) noexcept;
+[[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
+[[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
+
+// The level of a path, or null.
+[[nodiscard]] const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept;
+
+}  // namespace tact

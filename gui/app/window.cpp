@@ -1,0 +1,180 @@
+#include "gui/app/window.hpp"
+
+#include <epoxy/gl.h>
+//
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+std::string glfw_words() {
+    const char* words = nullptr;
+    glfwGetError(&words);
+    return words != nullptr ? words : "no reason given";
+}
+
+std::vector<Key>& keys_of(GLFWwindow* window) {
+    return *static_cast<std::vector<Key>*>(glfwGetWindowUserPointer(window));
+}
+
+void on_key(GLFWwindow* window, int key, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    for (const auto& [which, what] : {std::pair{GLFW_KEY_HOME, Key::home},
+                                      {GLFW_KEY_S, Key::style},
+                                      {GLFW_KEY_P, Key::picture},
+                                      {GLFW_KEY_ESCAPE, Key::escape}})
+        if (key == which) keys_of(window).push_back(what);
+}
+
+// A character, not a key: where '?' lies depends on the keyboard.
+void on_char(GLFWwindow* window, unsigned int character) {
+    if (character == '?') keys_of(window).push_back(Key::help);
+}
+
+}  // namespace
+
+Window::Window(int width_px, int height_px, bool hidden) : hidden_(hidden) {
+    try {
+        open(width_px, height_px, hidden);
+        start_imgui();
+    } catch (...) {
+        glfwTerminate();
+        throw;
+    }
+}
+
+void Window::open(int width_px, int height_px, bool hidden) {
+    if (glfwInit() != GLFW_TRUE) {
+        const char* const display = std::getenv("DISPLAY");
+        const char* const wayland = std::getenv("WAYLAND_DISPLAY");
+        const bool none = display == nullptr && wayland == nullptr;
+        throw StartupError(
+            "opening a window", none ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_words(),
+            "run it in a desktop session, or under an X server of its own: xvfb-run -a tact-gui ...");
+    }
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_VISIBLE, hidden ? GLFW_FALSE : GLFW_TRUE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 24);
+    glfwWindowHint(GLFW_STENCIL_BITS, 0);
+    window_ = glfwCreateWindow(width_px, height_px, "Tact", nullptr, nullptr);
+    if (window_ == nullptr)
+        throw StartupError(
+            "making an OpenGL 3.3 core context", glfw_words(),
+            "install a graphics driver with OpenGL 3.3, or draw on the processor: LIBGL_ALWAYS_SOFTWARE=1 "
+            "with the package libgl1-mesa-dri");
+    glfwMakeContextCurrent(window_);
+    if (epoxy_gl_version() < 33)
+        throw StartupError("making an OpenGL 3.3 core context",
+                           "the driver gives version " + std::to_string(epoxy_gl_version() / 10) + "." +
+                               std::to_string(epoxy_gl_version() % 10),
+                           "install a graphics driver with OpenGL 3.3, or set LIBGL_ALWAYS_SOFTWARE=1");
+    const auto* const name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    renderer_ = name != nullptr ? name : "unknown";
+    for (const char* const word : {"llvmpipe", "softpipe", "SWR", "Software"})
+        if (renderer_.find(word) != std::string::npos) software_ = true;
+    // Drawing on the processor, show() is where the drawing itself happens: it has to be counted as work, so
+    // the display must not be waited for there.
+    paced_ = !software_ && !hidden;
+    glfwSwapInterval(paced_ ? 1 : 0);
+    if (hidden) target_ = std::make_unique<OffscreenTarget>(width_px, height_px);
+    glfwSetWindowUserPointer(window_, &keys_);
+    glfwSetKeyCallback(window_, on_key);
+    glfwSetCharCallback(window_, on_char);
+    glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
+}
+
+void Window::start_imgui() {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    imgui_ = true;
+    ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed
+    ImGui::GetIO().LogFilename = nullptr;
+    if (!ImGui_ImplGlfw_InitForOpenGL(window_, true) || !ImGui_ImplOpenGL3_Init("#version 330 core"))
+        throw StartupError("starting ImGui", "its OpenGL backend refuses the context",
+                           "update the graphics driver");
+}
+
+Window::~Window() {
+    if (imgui_) {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    target_.reset();
+    if (window_ != nullptr) glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+Window::Size Window::size() const {
+    Size s;
+    if (target_)
+        return {target_->width_px(), target_->height_px(), target_->width_px(), target_->height_px()};
+    glfwGetWindowSize(window_, &s.width, &s.height);
+    glfwGetFramebufferSize(window_, &s.width_px, &s.height_px);
+    return s;
+}
+
+bool Window::close_wanted() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::begin_frame(Theme& theme) {
+    glfwPollEvents();
+    const Size s = size();
+    const float scale = theme_scale(s.width, s.height);
+    if (theme.text == nullptr) {
+        build_theme(theme, scale);  // the backend uploads it with its first frame
+    } else if (scale != theme.scale) {
+        build_theme(theme, scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    if (target_) {
+        ImGui::GetIO().DisplaySize = {static_cast<float>(s.width), static_cast<float>(s.height)};
+        ImGui::GetIO().DisplayFramebufferScale = {1.0F, 1.0F};
+    }
+    ImGui::NewFrame();
+    if (target_)
+        target_->bind();
+    else
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void Window::draw_panels() {
+    ImGui::Render();
+    const Size s = size();
+    glViewport(0, 0, s.width_px, s.height_px);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::show() {
+    if (target_)
+        glFinish();  // there is nothing to swap, and frames must not pile up
+    else
+        glfwSwapBuffers(window_);
+}
+
+std::vector<Key> Window::take_keys() { return std::exchange(keys_, {}); }
+
+Image Window::picture() {
+    const Size s = size();
+    if (target_)
+        target_->bind();
+    else
+        glReadBuffer(GL_BACK);
+    return read_pixels(s.width_px, s.height_px);
+}
+
+}  // namespace tact

@@ -1,0 +1,57 @@
+// The window and its OpenGL 3.3 core context, with ImGui on it.
+//
+// Thread   frame thread.  Fails by StartupError that tells no display from no OpenGL 3.3.
+// Hidden   a window that is not shown holds nothing defined, so pictures go to an image of the same size.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gui/panels/theme.hpp"
+#include "gui/render/target.hpp"
+
+struct GLFWwindow;
+
+namespace tact {
+
+enum class Key { home, style, picture, help, escape };
+
+class Window {
+public:
+    Window(int width_px, int height_px, bool hidden);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    struct Size {
+        int width = 1, height = 1;        // as ImGui counts
+        int width_px = 1, height_px = 1;  // of the frame buffer
+    };
+    [[nodiscard]] Size size() const;
+    [[nodiscard]] bool close_wanted() const;
+    void set_title(const std::string& title);
+    // Handles input, adapts the fonts to the size, begins an ImGui frame and binds the frame buffer.
+    void begin_frame(Theme& theme);
+    void draw_panels();  // what ImGui was told in this frame
+    void show();         // swaps, or finishes the image where hidden
+    [[nodiscard]] std::vector<Key> take_keys();
+    [[nodiscard]] Image picture();  // of the frame just drawn, before show()
+
+    [[nodiscard]] const std::string& renderer() const { return renderer_; }
+    [[nodiscard]] bool software() const { return software_; }
+    // The display sets the pace of show(): waiting there is not work.
+    [[nodiscard]] bool paced_by_display() const { return paced_; }
+
+private:
+    void open(int width_px, int height_px, bool hidden);
+    void start_imgui();
+
+    GLFWwindow* window_ = nullptr;
+    bool hidden_ = false, software_ = false, paced_ = false, imgui_ = false;
+    std::string renderer_;
+    std::unique_ptr<OffscreenTarget> target_;
+    std::vector<Key> keys_;
+};
+
+}  // namespace tact

@@ -1,0 +1,52 @@
+#include "gui/panels/dashboard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/panels/panels.hpp"
+
+namespace tact {
+
+Layout layout_for(const Theme& theme, float width_px, float height_px) {
+    const float gap = std::round(theme.px(6.0F));
+    const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
+    const float below = std::round(std::min(theme.px(196.0F), 0.45F * height_px));
+    const auto at_least_one = [](float v) { return std::max(v, 1.0F); };
+    Layout l;
+    l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
+
+    // The controller's card gets what the other two, whose content is of known height, leave.
+    const float usable = height_px - 4.0F * gap;
+    const float fit = std::round(std::min(theme.px(172.0F), 0.25F * usable));
+    const float scene = std::round(std::min(theme.px(216.0F), 0.33F * usable));
+    const float inner = at_least_one(left - 2.0F * gap);
+    float y = gap;
+    const auto card = [&](float height) {
+        const PixelRect rect{gap, y, inner, at_least_one(height)};
+        y += height + gap;
+        return rect;
+    };
+    l.health = card(usable - fit - scene);
+    l.fit = card(fit);
+    l.scene = card(scene);
+
+    const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
+    const float top = l.view.height, height = at_least_one(below - gap);
+    l.plots = {left, top, at_least_one(l.view.width - events - 2.0F * gap), height};
+    l.events = {left + l.plots.width + gap, top, events, height};
+    return l;
+}
+
+void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px) {
+    const Layout layout = layout_for(theme, width_px, height_px);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
+    draw_health(theme, state, layout.health);
+    draw_fit(theme, state, layout.fit);
+    draw_scene(theme, state, layout.scene);
+    draw_plots(theme, state, layout.plots);
+    draw_events(theme, state, layout.events);
+    ImGui::PopStyleVar();
+    draw_overlay(theme, state, layout.view);
+}
+
+}  // namespace tact

@@ -1,0 +1,137 @@
+// The dashboard: what the panels show (plain data that the application fills) and what a person asked for.
+//
+// Layout   a column of panels on the left, a strip of plots below, the 3D view in the rest; nothing overlaps.
+// Thread   frame thread, inside an ImGui frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "gui/panels/plot_series.hpp"
+#include "gui/panels/theme.hpp"
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/health.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/load.hpp"
+
+namespace tact {
+
+// What a person clicked; the application turns it into a command of the controller.
+struct Wish {
+    CommandKind kind = CommandKind::none;
+    double value = 0.0;
+    std::string text;
+};
+
+struct SceneToggles {
+    bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
+    int style = 0;  // glass, solid, wire
+};
+
+struct SceneFacts {
+    bool loaded = false;
+    std::string status;  // "loading ...", or why there is none
+    std::string title, file;
+    double contour = 0.0, contour_sigma = 0.0, map_sigma = 0.0, resolution_m = 0.0;
+    std::uint32_t vertices_max = 0;
+    double mesh_error_m = 0.0;
+    std::size_t bodies = 0, atoms = 0;
+    std::array<std::uint32_t, 3> voxels{};
+    std::string warning;  // the controller runs another scene, ...
+};
+
+struct FitFacts {
+    bool known = false;
+    std::string status;  // "computing", or why there is none
+    double cc_zero = 0.0, cc_mean = 0.0, mean_density_sigma = 0.0, fraction_inside = 0.0;
+    std::uint64_t region_voxels = 0;
+    double resolution_m = 0.0;
+    bool resolution_assumed = false;
+    const char* region = "";
+    bool pose_known = false;
+    double from_file_m = 0.0, from_file_rad = 0.0;
+};
+
+struct EventLine {
+    std::int64_t taken_at_ns = 0;
+    std::uint16_t code = 0;
+    std::uint64_t count = 1;  // how often in a row
+    std::string text;         // of the newest of them
+    Grade grade = Grade::unknown;
+};
+
+struct History {
+    PlotSeries rate_hz, lateness_p50_s, lateness_p99_s, lateness_max_s, cycle_cost_s;
+    PlotSeries frame_s, busy_s;
+    std::array<PlotSeries, kPathsMax> level;
+    double now_s = 0.0;
+};
+
+struct DashboardState {
+    bool attached = false;
+    std::string link_text;
+    std::string session;
+    bool have_health = false, have_levels = false;
+    HealthTopic health{};
+    LevelsTopic levels{};
+    LoadTopic load{};
+    std::uint64_t refused_records = 0;
+    std::string command_text;  // what became of the last command
+    Grade command_grade = Grade::unknown;
+    SceneFacts scene;
+    FitFacts fit;
+    History history;
+    std::deque<EventLine> events;  // newest first
+    std::uint64_t events_missed = 0;
+    std::int64_t now_ns = 0;
+    // The 3D view's overlay.
+    double a_per_px = 0.0;
+    float eye_axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // scene x, y, z in the eye's axes
+    double force_n = 0.0;
+    double arrow_a_per_n = 0.0;
+    std::string renderer;
+    // What a person chose.
+    SceneToggles toggles;
+    int span_choice = 0;  // of the plots
+    bool show_keys = false;
+    std::vector<Wish> wishes;  // emptied by the application
+};
+
+struct PixelRect {
+    float x = 0, y = 0, width = 1, height = 1;  // y from above
+};
+// Where everything lies in a window of this size. The cards' ground is for the application to paint (one
+// clear per card): ImGui fills areas through its font texture, which costs several milliseconds where the
+// processor draws.
+struct Layout {
+    PixelRect view, health, fit, scene, plots, events;
+
+    [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, fit, scene, plots, events}; }
+};
+[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px);
+
+// Draws everything but the 3D view and the cards' ground.
+void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px);
+
+inline constexpr std::array<double, 5> kSpans_s{60.0, 600.0, 3600.0, 6.0 * 3600.0, 24.0 * 3600.0};
+
+struct KeyHelp {
+    const char* keys;
+    const char* what;
+};
+// The one table that defines and shows them; the application's key handler follows it.
+inline constexpr KeyHelp kKeyHelp[] = {
+    {"left drag", "rotate"},
+    {"right drag", "pan"},
+    {"wheel", "zoom"},
+    {"Home", "home view"},
+    {"S", "surface: glass, solid, wire"},
+    {"P", "save a picture"},
+    {"?", "this table"},
+    {"Esc", "close this table"},
+};
+
+}  // namespace tact

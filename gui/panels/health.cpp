@@ -1,0 +1,116 @@
+// Health: how the controller is doing, in numbers, words and colour, and the buttons that a person needs
+// first.
+#include <algorithm>
+
+#include "gui/panels/panels.hpp"
+#include "gui/panels/widgets.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+namespace {
+
+void buttons(const Theme& theme, DashboardState& state) {
+    const auto run_state = static_cast<RunState>(state.health.state);
+    const bool known = state.attached && state.have_health;
+    const float width = (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
+    const auto button = [&](const char* name, bool enabled, CommandKind kind, ImU32 c) {
+        ImGui::BeginDisabled(!enabled);
+        if (enabled) {
+            ImGui::PushStyleColor(ImGuiCol_Button, (c & 0x00FFFFFFU) | (0x48U << 24U));
+            ImGui::PushStyleColor(ImGuiCol_ButtonHovered, (c & 0x00FFFFFFU) | (0x80U << 24U));
+        }
+        if (ImGui::Button(name, {width, 0.0F})) state.wishes.push_back({kind, 0.0, {}});
+        if (enabled) ImGui::PopStyleColor(2);
+        ImGui::EndDisabled();
+    };
+    button("Arm", known && run_state == RunState::ready, CommandKind::arm, colour::kGood);
+    ImGui::SameLine();
+    button("Disarm", known && (run_state == RunState::armed || run_state == RunState::active),
+           CommandKind::disarm, colour::kWatch);
+    ImGui::SameLine();
+    button("Reset", known && run_state == RunState::fault, CommandKind::reset_fault, colour::kBad);
+    (void)theme;
+}
+
+void law_and_goal(const Theme& theme, DashboardState& state) {
+    if (!state.have_levels) return;
+    std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
+    ImGui::BeginDisabled(!state.attached);
+    text_coloured(colour::kDim, "Law");
+    ImGui::SameLine(theme.px(100.0F));
+    ImGui::SetNextItemWidth(theme.px(84.0F));
+    if (ImGui::BeginCombo("##law", law.c_str())) {
+        for (const char* name : {"sensitus", "fixed"})
+            if (ImGui::Selectable(name, law == name))
+                state.wishes.push_back({CommandKind::set_law, 0.0, name});
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(theme.px(62.0F));
+    static double edited = 0.0;
+    static bool editing = false;
+    if (!editing) edited = state.levels.goal_hz;
+    ImGui::InputDouble("##goal", &edited, 0.0, 0.0, "%.0f");
+    editing = ImGui::IsItemActive();
+    if (ImGui::IsItemDeactivatedAfterEdit()) state.wishes.push_back({CommandKind::set_goal_hz, edited, {}});
+    ImGui::SameLine(0.0F, theme.px(4.0F));
+    text_coloured(colour::kDim, "Hz");
+    ImGui::EndDisabled();
+}
+
+}  // namespace
+
+void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
+    begin_card(theme, "Controller", card);
+    const HealthTopic& h = state.health;
+    const bool known = state.have_health;
+    if (!state.attached) {
+        ImGui::SameLine();
+        badge(theme, known ? "gone" : "waiting", colour::kWatch);
+        ImGui::PushTextWrapPos(0.0F);
+        text_coloured(colour::kWatch, state.link_text);
+        ImGui::PopTextWrapPos();
+    } else if (!known) {
+        ImGui::SameLine();
+        badge(theme, "attached", colour::kWatch);
+        text_coloured(colour::kWatch, "attached; its health is not published yet");
+    }
+    if (known && state.attached) {
+        const auto run_state = static_cast<RunState>(h.state);
+        const Verdict v = state_verdict(run_state, static_cast<RunReason>(h.reason));
+        const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
+        ImGui::SameLine();
+        badge(theme, run_state_text(run_state), grade_colour(v.grade));
+        if (silent_s > 1.0) {
+            ImGui::SameLine();
+            badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
+        }
+        text_small(theme, grade_colour(v.grade), v.words);
+        row(theme, "Force rate", rate_text(h.force_rate_hz), rate_verdict(h.force_rate_hz, h.goal_hz));
+        const Verdict late = lateness_verdict(h.lateness_p99_ns, h.period_ns);
+        row(theme, "Lateness p50", duration_text(1e-9 * static_cast<double>(h.lateness_p50_ns)),
+            h.period_ns > 0 ? format("of %s", duration_text(1e-9 * static_cast<double>(h.period_ns)).c_str())
+                            : std::string("free running"));
+        row(theme, "p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)), late);
+        row(theme, "max", duration_text(1e-9 * static_cast<double>(h.lateness_max_ns)), "in the last second");
+        row(theme, "Overruns", grouped(h.overruns), overrun_verdict(h.overruns, h.cycle));
+        const Verdict memory = memory_verdict(h);
+        row(theme, "Memory", memory.grade == Grade::good ? "clean" : "unclean", memory);
+        row(theme, "Device", device_state_text(h.device_state),
+            Verdict{device_grade(h.device_state), grade_text(device_grade(h.device_state))});
+        law_and_goal(theme, state);
+    }
+    buttons(theme, state);
+    if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
+    if (known && state.attached) {
+        text_small(theme, colour::kDim, schedule_text(h.schedule_flags));
+        if (h.bad_input + state.refused_records > 0)
+            text_small(theme, colour::kWatch,
+                       format("records refused: %llu by the controller, %llu here",
+                              static_cast<unsigned long long>(h.bad_input),
+                              static_cast<unsigned long long>(state.refused_records)));
+    }
+    end_card();
+}
+
+}  // namespace tact

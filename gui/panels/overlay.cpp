@@ -1,0 +1,135 @@
+// Over the 3D view: scale bar, axes, the force's legend, frames per second, what is being waited for, the
+// keys.
+#include <algorithm>
+#include <cmath>
+
+#include "gui/panels/panels.hpp"
+#include "gui/panels/widgets.hpp"
+
+namespace tact {
+namespace {
+
+struct Pen {
+    const Theme& theme;
+    ImDrawList* draw;
+
+    [[nodiscard]] float width(ImFont* font, const std::string& text) const {
+        return font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, text.c_str()).x;
+    }
+    void text(ImFont* font, ImVec2 at, ImU32 c, const std::string& text) const {
+        draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, IM_COL32(0, 0, 0, 160), text.c_str());
+        draw->AddText(font, font->FontSize, at, c, text.c_str());
+    }
+};
+
+double round_down(double most) {
+    const double power = std::pow(10.0, std::floor(std::log10(most)));
+    return most >= 5.0 * power ? 5.0 * power : most >= 2.0 * power ? 2.0 * power : power;
+}
+
+void scale_bar(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    if (!(state.a_per_px > 0.0) || !state.scene.loaded) return;
+    const double a = round_down(static_cast<double>(pen.theme.px(150.0F)) * state.a_per_px);
+    const auto length = static_cast<float>(a / state.a_per_px);
+    const float x1 = v.x + v.width - pen.theme.px(18.0F), x0 = x1 - length;
+    const float y = v.y + v.height - pen.theme.px(20.0F), t = pen.theme.px(4.0F);
+    pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, colour::kText);
+    pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, colour::kText);
+    pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, colour::kText);
+    const std::string text = format("%g Å", a);
+    pen.text(pen.theme.small, {0.5F * (x0 + x1 - pen.width(pen.theme.small, text)), y - pen.theme.px(18.0F)},
+             colour::kText, text);
+}
+
+void axes(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    const float r = pen.theme.px(26.0F);
+    const ImVec2 o{v.x + pen.theme.px(44.0F), v.y + v.height - pen.theme.px(46.0F)};
+    static constexpr ImU32 kColours[3] = {IM_COL32(240, 112, 96, 255), IM_COL32(96, 200, 120, 255),
+                                          IM_COL32(96, 160, 250, 255)};
+    static constexpr const char* kNames[3] = {"x", "y", "z"};
+    // Those that point away first, so that the near ones lie over them.
+    int order[3] = {0, 1, 2};
+    std::sort(order, order + 3, [&](int a, int b) { return state.eye_axes[a][2] < state.eye_axes[b][2]; });
+    for (const int i : order) {
+        const float* const e = state.eye_axes[i];
+        const ImVec2 tip{o.x + r * e[0], o.y - r * e[1]};
+        pen.draw->AddLine(o, tip, kColours[i], pen.theme.px(2.0F));
+        const float font = pen.theme.small->FontSize;
+        pen.text(pen.theme.small,
+                 {o.x + 1.32F * r * e[0] - 0.25F * font, o.y - 1.32F * r * e[1] - 0.5F * font}, kColours[i],
+                 kNames[i]);
+    }
+}
+
+void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    const float x = v.x + pen.theme.px(16.0F);
+    float y = v.y + pen.theme.px(12.0F);
+    if (state.scene.loaded) {
+        pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
+        y += pen.theme.px(22.0F);
+        if (state.toggles.force && state.attached) {
+            pen.draw->AddRectFilled({x, y + pen.theme.px(6.0F)},
+                                    {x + pen.theme.px(18.0F), y + pen.theme.px(9.0F)}, colour::kForce);
+            pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText,
+                     format("model force %.2f N   (arrow: %g Å per N)", state.force_n, state.arrow_a_per_n));
+        }
+    }
+    const std::string fps =
+        format("%.0f fps   %s vertices", state.load.fps, grouped(state.load.vertices_drawn).c_str());
+    pen.text(
+        pen.theme.small,
+        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, fps), v.y + pen.theme.px(12.0F)},
+        colour::kDim, fps);
+    const std::string help = "? keys";
+    pen.text(
+        pen.theme.small,
+        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, help), v.y + pen.theme.px(30.0F)},
+        colour::kDim, help);
+}
+
+void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    const std::string text =
+        state.scene.loaded ? (state.attached ? "" : state.link_text) : state.scene.status;
+    if (text.empty()) return;
+    ImFont* const font = pen.theme.text;
+    const float most = 0.8F * v.width;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most, text.c_str());
+    const float px = pen.theme.px(14.0F), py = pen.theme.px(8.0F);
+    const float cx = v.x + 0.5F * v.width;
+    const float y = state.scene.loaded ? v.y + v.height - size.y - 2.0F * py - pen.theme.px(14.0F)
+                                       : v.y + 0.45F * v.height;
+    pen.draw->AddRectFilled({cx - 0.5F * size.x - px, y}, {cx + 0.5F * size.x + px, y + size.y + 2.0F * py},
+                            IM_COL32(18, 22, 29, 225), pen.theme.px(6.0F));
+    pen.draw->AddText(font, font->FontSize, {cx - 0.5F * size.x, y + py}, colour::kWatch, text.c_str(),
+                      nullptr, most);
+}
+
+void keys(const Pen& pen, const PixelRect& v) {
+    const float line = pen.theme.px(20.0F), w = pen.theme.px(330.0F), pad = pen.theme.px(14.0F);
+    const float h = line * static_cast<float>(std::size(kKeyHelp)) + 2.0F * pad;
+    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.5F * (v.height - h)};
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(18, 22, 29, 245), pen.theme.px(8.0F));
+    pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(8.0F));
+    float y = at.y + pad;
+    for (const KeyHelp& k : kKeyHelp) {
+        pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {at.x + pad, y}, colour::kAccent, k.keys);
+        pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {at.x + pen.theme.px(120.0F), y},
+                          colour::kText, k.what);
+        y += line;
+    }
+}
+
+}  // namespace
+
+void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view) {
+    const Pen pen{theme, ImGui::GetBackgroundDrawList()};
+    pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
+    legend(pen, state, view);
+    axes(pen, state, view);
+    scale_bar(pen, state, view);
+    message(pen, state, view);
+    if (state.show_keys) keys(pen, view);
+    pen.draw->PopClipRect();
+}
+
+}  // namespace tact

@@ -1,0 +1,16 @@
+// The panels one by one; dashboard.cpp places them.
+#pragma once
+
+#include "gui/panels/dashboard.hpp"
+
+namespace tact {
+
+void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card);
+void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card);
+void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card);
+void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card);
+void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
+// Over the 3D view: legend, scale bar, axes, what is being waited for.
+void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view);
+
+}  // namespace tact

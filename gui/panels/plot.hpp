@@ -1,0 +1,44 @@
+// A plot over time, drawn with ImGui's draw lists: axes with units, a band from least to greatest per bin.
+#pragma once
+
+#include <imgui.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gui/panels/plot_series.hpp"
+#include "gui/panels/theme.hpp"
+
+namespace tact {
+
+struct PlotLine {
+    const PlotSeries* series;
+    ImU32 colour;
+    const char* name;
+};
+
+struct PlotSpec {
+    const char* title;
+    const char* unit;
+    std::span<const PlotLine> lines;
+    double now_s = 0.0;
+    double span_s = 60.0;
+    double scale = 1.0;  // stored value -> shown value
+    bool logarithmic = false;
+    double least_top = 0.0;  // the vertical axis reaches at least this far (shown unit)
+    double fixed_top = 0.0;  // > 0: exactly this far
+    double goal = 0.0;       // > 0: a dashed line (shown unit)
+};
+
+void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
+
+// Borders for an axis that shows [low, high], and its marks; tested apart from drawing.
+struct Axis {
+    double low = 0.0, high = 1.0;
+    std::vector<double> mark;
+};
+[[nodiscard]] Axis linear_axis(double high, int marks_max);
+[[nodiscard]] Axis log_axis(double low, double high);
+
+}  // namespace tact

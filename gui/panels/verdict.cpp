@@ -1,0 +1,107 @@
+#include "gui/panels/verdict.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+namespace {
+
+std::string count_words(std::uint64_t n, const char* one, const char* many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace
+
+const char* grade_text(Grade grade) noexcept {
+    switch (grade) {
+        case Grade::good:
+            return "good";
+        case Grade::watch:
+            return "watch";
+        case Grade::bad:
+            return "bad";
+        case Grade::unknown:
+            break;
+    }
+    return "unknown";
+}
+
+Verdict rate_verdict(double rate_hz, double goal_hz) {
+    if (!(goal_hz > 0.0) || !std::isfinite(rate_hz)) return {Grade::unknown, "no goal set"};
+    const double missing = 1.0 - rate_hz / goal_hz;
+    char text[48];
+    if (missing <= 0.05) return {Grade::good, "holds its goal"};
+    std::snprintf(text, sizeof text, "%.0f %% below its goal", 100.0 * missing);
+    return {missing <= 0.15 ? Grade::watch : Grade::bad, text};
+}
+
+Verdict lateness_verdict(std::int64_t p99_ns, std::int64_t period_ns) {
+    const double period = period_ns > 0 ? static_cast<double>(period_ns) : 1e6;
+    const double part = static_cast<double>(p99_ns) / period;
+    if (part < 0.1) return {Grade::good, "on time"};
+    if (part < 0.5) return {Grade::watch, "late at times"};
+    return {Grade::bad, "late often"};
+}
+
+Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles) {
+    if (overruns == 0) return {Grade::good, "none"};
+    const double part = static_cast<double>(overruns) / static_cast<double>(cycles > 0 ? cycles : 1);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2g %% of the cycles", 100.0 * part);
+    return {part < 1e-3 ? Grade::watch : Grade::bad, text};
+}
+
+Verdict state_verdict(RunState state, RunReason reason) {
+    std::string words;
+    Grade grade = Grade::watch;
+    switch (state) {
+        case RunState::off:
+            words = "the device is not open";
+            break;
+        case RunState::ready:
+            words = "waits to be armed, no force";
+            break;
+        case RunState::armed:
+            words = "waits for a hand, no force";
+            break;
+        case RunState::active:
+            grade = Grade::good;
+            words = "force is on";
+            break;
+        case RunState::fault:
+            grade = Grade::bad;
+            words = "no force until reset";
+            break;
+        default:
+            return {Grade::unknown, "a state this program does not know"};
+    }
+    const std::string why = run_reason_text(reason);
+    if (!why.empty()) words += ": " + why;
+    return {grade, words};
+}
+
+Verdict memory_verdict(const HealthTopic& health) {
+    if (health.allocations + health.locks + health.page_faults == 0)
+        return {Grade::good, "no allocation, lock, fault"};
+    std::string words;
+    const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
+    if (health.allocations > 0) add(count_words(health.allocations, "allocation", "allocations"));
+    if (health.locks > 0) add(count_words(health.locks, "lock", "locks"));
+    if (health.page_faults > 0) add(count_words(health.page_faults, "page fault", "page faults"));
+    return {health.allocations + health.locks > 0 ? Grade::bad : Grade::watch, words};
+}
+
+// The numbers are those of DeviceState in the device interface, which this process does not see.
+const char* device_state_text(std::uint8_t device_state) noexcept {
+    static constexpr const char* kTexts[] = {"closed", "ready", "powered", "its watchdog tripped", "fault"};
+    return device_state < 5 ? kTexts[device_state] : "unknown";
+}
+
+Grade device_grade(std::uint8_t device_state) noexcept {
+    static constexpr Grade kGrades[] = {Grade::watch, Grade::good, Grade::good, Grade::bad, Grade::bad};
+    return device_state < 5 ? kGrades[device_state] : Grade::unknown;
+}
+
+}  // namespace tact

@@ -1,0 +1,34 @@
+// Good, worth a look, or bad, and why in words: what the panels show in colour is always said as well.
+//
+// Pure functions of what the controller published, so that tests can state every border.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/topics/health.hpp"
+
+namespace tact {
+
+enum class Grade : std::uint8_t { unknown, good, watch, bad };
+
+struct Verdict {
+    Grade grade = Grade::unknown;
+    std::string words;
+};
+
+[[nodiscard]] const char* grade_text(Grade grade) noexcept;  // "good", "watch", "bad", "unknown"
+
+// 5 % below the goal is worth a look, 15 % is bad.
+[[nodiscard]] Verdict rate_verdict(double rate_hz, double goal_hz);
+// Against the period: a tenth late at the 99th percentile is worth a look, half is bad. Free running: 1 ms
+// counts.
+[[nodiscard]] Verdict lateness_verdict(std::int64_t p99_ns, std::int64_t period_ns);
+[[nodiscard]] Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles);
+[[nodiscard]] Verdict state_verdict(RunState state, RunReason reason);
+// Allocations, locks and page faults inside servo cycles: there should be none.
+[[nodiscard]] Verdict memory_verdict(const HealthTopic& health);
+[[nodiscard]] const char* device_state_text(std::uint8_t device_state) noexcept;
+[[nodiscard]] Grade device_grade(std::uint8_t device_state) noexcept;
+
+}  // namespace tact

@@ -1,0 +1,32 @@
+// Small pieces that the panels share.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "gui/panels/dashboard.hpp"
+
+namespace tact {
+
+// A fixed, bordered area with a title; end with end_card().
+void begin_card(const Theme& theme, const char* title, const PixelRect& card, bool scrolls = false);
+void end_card();
+
+// A filled pill with a word.
+void badge(const Theme& theme, const std::string& word, ImU32 fill);
+// One row: what on the left, the value right of it, words after it in the colour of the grade.
+void row(const Theme& theme, const char* what, const std::string& value, const Verdict& verdict);
+void row(const Theme& theme, const char* what, const std::string& value,
+         const std::string& unit_or_note = "");
+void text_coloured(ImU32 c, const std::string& text);
+void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap = true);
+
+[[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+// "1 234 567"
+[[nodiscard]] std::string grouped(std::uint64_t n);
+// In the unit that reads best: "820 ns", "12.3 us", "4.56 ms".
+[[nodiscard]] std::string duration_text(double seconds);
+[[nodiscard]] std::string rate_text(double hz);  // "998 Hz", "1.25 kHz"
+
+}  // namespace tact

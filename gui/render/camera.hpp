@@ -1,0 +1,47 @@
+// Where a person looks from: an orbit about a target, moved by the mouse as in other map viewers.
+//
+// Unit     ångström, float: the scene frame is (model - centre of the scene) * 1e10, so that numbers are
+//          small enough for graphics. Axes are those of the model: x right, y up, z to the user.
+// Thread   any; plain arithmetic.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tact {
+
+class Camera {
+public:
+    static constexpr float kFieldOfViewRad = 0.6F;  // vertical
+
+    // What the home view shows: a ball of this radius about the origin. Goes there at once.
+    void frame(float radius_a);
+    void home();
+
+    // Pixels of the mouse in a view of this height; y down, as windows count.
+    void rotate(float dx_px, float dy_px, float view_height_px);
+    void pan(float dx_px, float dy_px, float view_height_px);
+    void zoom(float steps);  // positive: nearer, ten per cent a step
+
+    [[nodiscard]] Eigen::Matrix4f view() const;  // scene -> eye, the eye looks along -z
+    [[nodiscard]] Eigen::Matrix4f projection(float aspect) const;
+    [[nodiscard]] Eigen::Quaternionf orientation() const { return q_eye_scene_; }
+    [[nodiscard]] Eigen::Vector3f target_a() const { return target_a_; }
+    [[nodiscard]] float distance_a() const { return distance_a_; }
+    [[nodiscard]] float near_a() const;
+    [[nodiscard]] float far_a() const;
+    [[nodiscard]] float radius_a() const { return radius_a_; }
+    // Length of one pixel at the target.
+    [[nodiscard]] float a_per_px(float view_height_px) const;
+
+private:
+    float radius_a_ = 50.0F;
+    float distance_a_ = 200.0F;
+    Eigen::Vector3f target_a_ = Eigen::Vector3f::Zero();
+    Eigen::Quaternionf q_eye_scene_ = Eigen::Quaternionf::Identity();
+};
+
+// 1, 2 or 5 times a power of ten, the largest not above `most`; 0 for what is not a positive number.
+[[nodiscard]] double round_length(double most);
+
+}  // namespace tact

@@ -1,0 +1,74 @@
+#include "gui/render/scene_content.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact {
+namespace {
+
+struct Box {
+    Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+    void add(const Vec3& p) {
+        if (!p.allFinite()) return;
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    [[nodiscard]] bool empty() const { return low.x() > high.x(); }
+};
+
+void find_extent(SceneContent& content) {
+    Box box;
+    if (content.mesh) {
+        for (const MeshVertex& v : content.mesh->data().vertex)
+            box.add(Vec3(v.position_m[0], v.position_m[1], v.position_m[2]));
+    }
+    for (const Structure& s : content.bodies)
+        for (std::size_t i = 0; i < s.size(); ++i)
+            box.add(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
+    if (box.empty()) {
+        box.add(content.box_min_model_m);
+        box.add(content.box_max_model_m);
+    }
+    content.centre_model_m = 0.5 * (box.low + box.high);
+    double most = 1e-10;  // one ångström at least
+    const auto reach = [&](const Vec3& p) { most = std::max(most, (p - content.centre_model_m).norm()); };
+    if (content.mesh) {
+        for (const MeshVertex& v : content.mesh->data().vertex)
+            reach(Vec3(v.position_m[0], v.position_m[1], v.position_m[2]));
+    }
+    for (const Structure& s : content.bodies)
+        for (std::size_t i = 0; i < s.size(); ++i)
+            reach(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
+    content.radius_m = most;
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path) {
+    const SceneFile file = SceneFile::open(path);
+    auto content = std::make_shared<SceneContent>();
+    content->path = path;
+    content->checksum = file.checksum();
+    content->meta = read_meta(file);
+    content->note = read_note(file);
+    if (file.count({'M', 'E', 'S', 'H'}) > 0)
+        content->mesh = std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
+    if (file.count({'G', 'R', 'I', 'D'}) > 0) {
+        content->grid = read_grid(file);
+        content->box_min_model_m = content->grid.origin_m;
+        for (int axis = 0; axis < 3; ++axis)
+            content->box_max_model_m[axis] =
+                content->grid.origin_m[axis] +
+                content->grid.spacing_m[axis] * (content->grid.size[static_cast<std::size_t>(axis)] - 1.0);
+    }
+    const std::uint32_t bodies = std::min(file.count({'B', 'O', 'D', 'Y'}), content->meta.body_count);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        content->bodies.push_back(read_structure(file, i));
+        content->codebooks.push_back(i < file.count({'C', 'O', 'D', 'E'}) ? read_codebook(file, i)
+                                                                          : Codebook{});
+    }
+    find_extent(*content);
+    return content;
+}
+
+}  // namespace tact

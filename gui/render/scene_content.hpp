@@ -1,0 +1,35 @@
+// Everything of a baked scene that is drawn or measured, read at once.
+//
+// Thread   load_scene() on the loader thread (it may take a second for large meshes); immutable afterwards.
+// Fails by StartupError naming the file, as the readers of ipc/assets do.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ipc/assets/density_map.hpp"
+#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/assets/structure.hpp"
+
+namespace tact {
+
+struct SceneContent {
+    std::filesystem::path path;
+    std::uint64_t checksum = 0;
+    SceneMeta meta{};
+    std::string note;
+    std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
+    DensityGrid grid;                       // empty: none
+    std::vector<Structure> bodies;
+    std::vector<Codebook> codebooks;     // one per body
+    Vec3 centre_model_m = Vec3::Zero();  // of what is drawn: origin of the scene frame
+    double radius_m = 0.0;               // of a ball about it that holds everything at home
+    Vec3 box_min_model_m = Vec3::Zero(), box_max_model_m = Vec3::Zero();  // of the map
+};
+
+std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path);
+
+}  // namespace tact

@@ -1,0 +1,230 @@
+#include "gui/render/scene_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/render/arrow.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+constexpr float kAPerM = 1e10F;
+// Balls of a fine codebook must not hide the backbone: smaller where there are more of them.
+float ball_radius_a(GLsizei points) {
+    return std::clamp(1.3F * std::cbrt(50.0F / static_cast<float>(std::max(points, 1))), 0.5F, 1.4F);
+}
+
+// More vectors than this are a cloud that hides the backbone, and cost a picture in software its rate.
+constexpr std::uint32_t kCodebookShownMax = 400;
+constexpr float kBallRgba[4] = {0.93F, 0.94F, 0.97F, 1.0F};
+constexpr float kGraphRgba[4] = {0.80F, 0.84F, 0.90F, 0.38F};
+constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
+constexpr Rgb8 kForceColour{255, 92, 92};
+
+Eigen::Matrix4f scene_from_model(const Vec3& centre_m) {
+    Eigen::Matrix4f m = Eigen::Matrix4f::Zero();
+    m.topLeftCorner<3, 3>() = kAPerM * Eigen::Matrix3f::Identity();
+    m.topRightCorner<3, 1>() = (-centre_m / kAngstromM).cast<float>();
+    m(3, 3) = 1.0F;
+    return m;
+}
+
+// From the body frame in ångström.
+Eigen::Matrix4f scene_from_body(const Pose& T_model_body, const Vec3& centre_m) {
+    Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
+    m.topLeftCorner<3, 3>() = T_model_body.q.toRotationMatrix().cast<float>();
+    m.topRightCorner<3, 1>() = ((T_model_body.p_m - centre_m) / kAngstromM).cast<float>();
+    return m;
+}
+
+}  // namespace
+
+struct SceneView::Pass {
+    const ViewOptions& options;
+    const ViewFrame& frame;
+    Eigen::Matrix4f eye_from_scene, projection;
+    Haze haze;
+    std::size_t bodies;
+};
+
+std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt) {
+    std::size_t best = 0;
+    for (std::size_t l = 0; l < codebook.levels.size(); ++l)
+        if (codebook.levels[l].size() <= std::min(points_felt, kCodebookShownMax)) best = l;
+    return best;
+}
+
+SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& programs)
+    : content_(std::move(content)), programs_(programs) {
+    if (content_->mesh) surface_ = std::make_unique<Surface>(*content_->mesh);
+    for (std::size_t i = 0; i < content_->bodies.size(); ++i) {
+        Body body;
+        fill(body.tubes, build_tubes(content_->bodies[i], kTubeVertices / content_->bodies.size()),
+             GL_STATIC_DRAW);
+        for (const Codebook::Level& level : content_->codebooks[i].levels)
+            body.levels.push_back(make_points(level));
+        bodies_.push_back(std::move(body));
+    }
+    Codebook::Level corners;
+    for (std::uint32_t k = 0; k < 8; ++k) {
+        const Vec3 p((k & 1U) != 0 ? content_->box_max_model_m.x() : content_->box_min_model_m.x(),
+                     (k & 2U) != 0 ? content_->box_max_model_m.y() : content_->box_min_model_m.y(),
+                     (k & 4U) != 0 ? content_->box_max_model_m.z() : content_->box_min_model_m.z());
+        const Eigen::Vector3f f = (p - content_->centre_model_m).cast<float>();
+        corners.x_m.push_back(f.x());
+        corners.y_m.push_back(f.y());
+        corners.z_m.push_back(f.z());
+        for (const std::uint32_t bit : {1U, 2U, 4U})
+            if ((k & bit) == 0) corners.edges.push_back({k, k | bit});
+    }
+    box_ = make_points(corners);
+}
+
+void SceneView::fill(Tubes& tubes, const TubeMesh& mesh, GLenum usage) {
+    glBindVertexArray(tubes.array.get());
+    glBindBuffer(GL_ARRAY_BUFFER, tubes.vertices.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertex.size() * sizeof(TubeVertex)),
+                 mesh.vertex.data(), usage);
+    attribute(0, 3, GL_FLOAT, GL_FALSE, sizeof(TubeVertex), 0);
+    attribute(1, 3, GL_FLOAT, GL_FALSE, sizeof(TubeVertex), 12);
+    attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(TubeVertex), 24);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tubes.indices.get());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.index.size() * sizeof(std::uint32_t)),
+                 mesh.index.data(), usage);
+    tubes.count = static_cast<GLsizei>(mesh.index.size());
+    glBindVertexArray(0);
+}
+
+SceneView::Points SceneView::make_points(const Codebook::Level& level) {
+    Points points;
+    std::vector<float> xyz;
+    xyz.reserve(3 * level.size());
+    for (std::size_t i = 0; i < level.size(); ++i)
+        xyz.insert(xyz.end(), {level.x_m[i] * kAPerM, level.y_m[i] * kAPerM, level.z_m[i] * kAPerM});
+    glBindVertexArray(points.array.get());
+    glBindBuffer(GL_ARRAY_BUFFER, points.vertices.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(xyz.size() * sizeof(float)), xyz.data(),
+                 GL_STATIC_DRAW);
+    attribute(0, 3, GL_FLOAT, GL_FALSE, 12, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, points.edges.get());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(level.edges.size() * sizeof(level.edges[0])), level.edges.data(),
+                 GL_STATIC_DRAW);
+    points.points = static_cast<GLsizei>(level.size());
+    points.edge_indices = static_cast<GLsizei>(2 * level.edges.size());
+    glBindVertexArray(0);
+    return points;
+}
+
+void SceneView::set_vertices(std::uint32_t wanted) noexcept {
+    if (surface_) surface_->set_vertices(wanted);
+}
+
+std::size_t SceneView::upload() { return surface_ ? surface_->upload() : 0; }
+
+float SceneView::radius_a() const { return static_cast<float>(content_->radius_m / kAngstromM); }
+
+float SceneView::arrow_a_per_n() const {
+    return std::max(1.0F, static_cast<float>(round_length(0.9 * static_cast<double>(radius_a()))));
+}
+
+void SceneView::draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame) {
+    const float aspect =
+        static_cast<float>(frame.width_px) / static_cast<float>(std::max(frame.height_px, 1));
+    const Pass pass{options,
+                    frame,
+                    camera.view(),
+                    camera.projection(aspect),
+                    {camera.distance_a() - 0.6F * radius_a(), camera.distance_a() + 1.6F * radius_a()},
+                    std::min(bodies_.size(), frame.T_model_body.size())};
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glEnable(GL_CULL_FACE);  // tubes are closed
+    if (options.backbone) draw_bodies(pass);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    if (options.codebook || options.graph) draw_codebook(pass);
+    if (options.box) draw_box(pass);
+    if (options.surface && surface_) draw_surface(pass);
+    glDisable(GL_BLEND);
+    if (options.force) draw_force(pass);
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(0);
+    glUseProgram(0);
+}
+
+void SceneView::draw_bodies(const Pass& pass) {
+    for (std::size_t i = 0; i < pass.bodies; ++i) {
+        programs_.use_lit(
+            pass.eye_from_scene * scene_from_body(pass.frame.T_model_body[i], content_->centre_model_m),
+            pass.projection, pass.haze, false);
+        glBindVertexArray(bodies_[i].tubes.array.get());
+        glDrawElements(GL_TRIANGLES, bodies_[i].tubes.count, GL_UNSIGNED_INT, nullptr);
+    }
+}
+
+void SceneView::draw_codebook(const Pass& pass) {
+    for (std::size_t i = 0; i < pass.bodies; ++i) {
+        if (bodies_[i].levels.empty()) continue;
+        Points& points = bodies_[i].levels[codebook_level(content_->codebooks[i], pass.frame.points_felt)];
+        const Eigen::Matrix4f eye =
+            pass.eye_from_scene * scene_from_body(pass.frame.T_model_body[i], content_->centre_model_m);
+        glBindVertexArray(points.array.get());
+        if (pass.options.graph) {
+            programs_.use_flat(eye, pass.projection, pass.haze, kGraphRgba);
+            glDrawElements(GL_LINES, points.edge_indices, GL_UNSIGNED_INT, nullptr);
+        }
+        if (pass.options.codebook) {
+            glEnable(GL_PROGRAM_POINT_SIZE);
+            programs_.use_balls(eye, pass.projection, pass.haze, kBallRgba, ball_radius_a(points.points),
+                                static_cast<float>(pass.frame.height_px));
+            glDrawArrays(GL_POINTS, 0, points.points);
+            glDisable(GL_PROGRAM_POINT_SIZE);
+        }
+    }
+}
+
+void SceneView::draw_force(const Pass& pass) {
+    if (pass.frame.active >= pass.bodies) return;
+    const Pose& body = pass.frame.T_model_body[pass.frame.active];
+    const Eigen::Vector3f from = ((body.p_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    Eigen::Vector3f along = pass.frame.force_world_n.cast<float>() * arrow_a_per_n();
+    const float most = 3.0F * radius_a();
+    if (along.norm() > most) along *= most / along.norm();
+    const TubeMesh mesh = build_arrow(from, along, 0.02F * radius_a(), kForceColour);
+    if (mesh.index.empty()) return;
+    fill(arrow_, mesh, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, false);
+    glBindVertexArray(arrow_.array.get());
+    // Always seen, also inside the structure: everything else is drawn, so its depth may go.
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDrawElements(GL_TRIANGLES, arrow_.count, GL_UNSIGNED_INT, nullptr);
+}
+
+void SceneView::draw_box(const Pass& pass) {
+    programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, kBoxRgba);
+    glBindVertexArray(box_.array.get());
+    glDrawElements(GL_LINES, box_.edge_indices, GL_UNSIGNED_INT, nullptr);
+}
+
+void SceneView::draw_surface(const Pass& pass) {
+    const bool glass = pass.options.style == SurfaceStyle::glass;
+    programs_.use_lit(pass.eye_from_scene * scene_from_model(content_->centre_model_m), pass.projection,
+                      pass.haze, glass);
+    // Glass is not sorted: all of it has one colour, so the order hardly shows, and one pass costs half of
+    // two.
+    if (glass)
+        glDepthMask(GL_FALSE);
+    else
+        glDisable(GL_BLEND);
+    if (pass.options.style == SurfaceStyle::wire) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    surface_->draw();
+    if (pass.options.style == SurfaceStyle::wire) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDepthMask(GL_TRUE);
+}
+
+}  // namespace tact

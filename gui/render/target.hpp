@@ -1,0 +1,34 @@
+// An image to draw into that belongs to no window, and reading back what was drawn.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gui/render/gl.hpp"
+
+namespace tact {
+
+// Colour and depth of a fixed size, for windows that are not shown: what a hidden window holds is undefined.
+class OffscreenTarget {
+public:
+    OffscreenTarget(int width_px, int height_px);
+    ~OffscreenTarget();
+    OffscreenTarget(const OffscreenTarget&) = delete;
+    OffscreenTarget& operator=(const OffscreenTarget&) = delete;
+    void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_); }
+    [[nodiscard]] int width_px() const { return width_px_; }
+    [[nodiscard]] int height_px() const { return height_px_; }
+
+private:
+    int width_px_, height_px_;
+    GLuint frame_ = 0, colour_ = 0, depth_ = 0;
+};
+
+struct Image {
+    std::uint32_t width_px = 0, height_px = 0;
+    std::vector<std::uint8_t> rgb;  // rows from the top
+};
+// Of the bound frame buffer.
+Image read_pixels(int width_px, int height_px);
+
+}  // namespace tact

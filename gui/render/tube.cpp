@@ -1,0 +1,143 @@
+#include "gui/render/tube.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+using Eigen::Vector3f;
+
+struct Strand {
+    std::vector<Vector3f> point_a;
+    Rgb8 colour{};
+};
+
+std::vector<Strand> strands_of(const Structure& s) {
+    std::vector<Strand> strands;
+    bool open = false;
+    std::uint16_t chain = 0;
+    Vector3f last = Vector3f::Zero();
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (s.trace[i] == 0) continue;
+        const Vector3f p = Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]) / static_cast<float>(kAngstromM);
+        const bool near = (p - last).norm() < static_cast<float>(kTraceGapM / kAngstromM);
+        if (!open || s.chain[i] != chain || !near) strands.push_back({{}, chain_colour(s.chain[i])});
+        strands.back().point_a.push_back(p);
+        open = true;
+        chain = s.chain[i];
+        last = p;
+    }
+    // A lone atom makes no tube.
+    std::erase_if(strands, [](const Strand& strand) { return strand.point_a.size() < 2; });
+    return strands;
+}
+
+Vector3f catmull_rom(const std::vector<Vector3f>& p, std::size_t i, float t) {
+    const Vector3f& b = p[i];
+    const Vector3f& c = p[i + 1];
+    const Vector3f a = i > 0 ? p[i - 1] : Vector3f(2.0F * b - c);
+    const Vector3f d = i + 2 < p.size() ? p[i + 2] : Vector3f(2.0F * c - b);
+    return 0.5F * ((2.0F * b) + (c - a) * t + (2.0F * a - 5.0F * b + 4.0F * c - d) * (t * t) +
+                   (3.0F * b - a - 3.0F * c + d) * (t * t * t));
+}
+
+void add_ring(TubeMesh& mesh, const Vector3f& centre, const Vector3f& u, const Vector3f& v, float radius_a,
+              int sides, const Rgb8& colour) {
+    for (int k = 0; k < sides; ++k) {
+        const float angle =
+            2.0F * std::numbers::pi_v<float> * static_cast<float>(k) / static_cast<float>(sides);
+        const Vector3f n = std::cos(angle) * u + std::sin(angle) * v;
+        const Vector3f p = centre + radius_a * n;
+        mesh.vertex.push_back(
+            {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {colour[0], colour[1], colour[2], 255}});
+    }
+}
+
+void join_rings(TubeMesh& mesh, std::uint32_t a, std::uint32_t b, int sides) {
+    for (int k = 0; k < sides; ++k) {
+        const auto i = static_cast<std::uint32_t>(k);
+        const auto j = static_cast<std::uint32_t>((k + 1) % sides);
+        mesh.index.insert(mesh.index.end(), {a + i, a + j, b + i, a + j, b + j, b + i});
+    }
+}
+
+void close_end(TubeMesh& mesh, const Vector3f& tip, const Vector3f& normal, std::uint32_t ring, int sides,
+               bool last, const Rgb8& colour) {
+    const auto centre = static_cast<std::uint32_t>(mesh.vertex.size());
+    mesh.vertex.push_back({{tip.x(), tip.y(), tip.z()},
+                           {normal.x(), normal.y(), normal.z()},
+                           {colour[0], colour[1], colour[2], 255}});
+    for (int k = 0; k < sides; ++k) {
+        const auto i = ring + static_cast<std::uint32_t>(k);
+        const auto j = ring + static_cast<std::uint32_t>((k + 1) % sides);
+        if (last)
+            mesh.index.insert(mesh.index.end(), {i, j, centre});
+        else
+            mesh.index.insert(mesh.index.end(), {j, i, centre});
+    }
+}
+
+void add_strand(TubeMesh& mesh, const Strand& strand, int steps, int sides, float radius_a) {
+    std::vector<Vector3f> curve;
+    for (std::size_t i = 0; i + 1 < strand.point_a.size(); ++i)
+        for (int s = 0; s < steps; ++s)
+            curve.push_back(
+                catmull_rom(strand.point_a, i, static_cast<float>(s) / static_cast<float>(steps)));
+    curve.push_back(strand.point_a.back());
+
+    // Parallel transport keeps the rings from twisting.
+    Vector3f u = Vector3f::Zero();
+    std::uint32_t previous = 0;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        Vector3f along = curve[std::min(i + 1, curve.size() - 1)] - curve[i > 0 ? i - 1 : 0];
+        along = along.norm() > 1e-6F ? along.normalized() : Vector3f::UnitZ();
+        u -= along * along.dot(u);
+        if (u.norm() < 1e-3F) u = along.unitOrthogonal();
+        u.normalize();
+        const auto ring = static_cast<std::uint32_t>(mesh.vertex.size());
+        add_ring(mesh, curve[i], u, along.cross(u), radius_a, sides, strand.colour);
+        if (i > 0) join_rings(mesh, previous, ring, sides);
+        if (i == 0)
+            close_end(mesh, curve[i] - 0.6F * radius_a * along, -along, ring, sides, false, strand.colour);
+        if (i + 1 == curve.size())
+            close_end(mesh, curve[i] + 0.6F * radius_a * along, along, ring, sides, true, strand.colour);
+        previous = ring;
+    }
+}
+
+}  // namespace
+
+Rgb8 chain_colour(std::size_t chain) {
+    static constexpr std::array<Rgb8, 7> kColours{{{230, 159, 0},
+                                                   {86, 180, 233},
+                                                   {0, 158, 115},
+                                                   {240, 228, 66},
+                                                   {0, 114, 178},
+                                                   {213, 94, 0},
+                                                   {204, 121, 167}}};
+    return kColours[chain % kColours.size()];
+}
+
+TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
+    const std::vector<Strand> strands = strands_of(structure);
+    std::size_t points = 0;
+    for (const Strand& s : strands) points += s.point_a.size();
+    int steps = 1, sides = 4;
+    for (const auto& [try_steps, try_sides] : {std::pair{4, 8}, {3, 6}, {2, 6}, {2, 5}, {1, 5}, {1, 4}}) {
+        steps = try_steps;
+        sides = try_sides;
+        if (points * static_cast<std::size_t>(steps * sides) <= vertices_max) break;
+    }
+    TubeMesh mesh;
+    mesh.strands = strands.size();
+    for (const Strand& strand : strands) add_strand(mesh, strand, steps, sides, 0.75F);
+    return mesh;
+}
+
+}  // namespace tact

@@ -1,0 +1,54 @@
+// A force-feedback device, as the servo loop sees it.
+//
+// read() and write() only touch memory; a pump thread moves the bytes where a bus is involved. Frame: the
+// device's own (x right, y up, z to the user, origin at the middle of the workspace), SI units.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+enum class IoStatus : std::uint8_t { ok, stale, lost, fault };
+enum class DeviceState : std::uint8_t { closed, ready, powered, watchdog_tripped, fault };
+
+struct DeviceInfo {
+    std::string name, serial;
+    Vec3 workspace_half_m = Vec3::Zero();  // box about the origin
+    double force_n_max = 0.0;              // what the device can show for a moment
+    double force_n_continuous = 0.0;
+    double torque_n_m_max = 0.0;     // 0: no torque output
+    double stiffness_n_m_max = 0.0;  // what its maker promises to be stable
+    double position_step_m = 0.0;    // encoder resolution at the tip
+};
+
+struct DeviceSample {
+    Instant taken_at{};
+    std::uint64_t sequence = 0;  // rises with every new sample
+    Pose T_dev_tool;
+    Twist twist_dev;            // as the driver estimates it
+    std::uint32_t buttons = 0;  // bit 0: clutch
+    bool hand_present = false;
+    DeviceState state = DeviceState::closed;
+};
+
+struct DeviceCommand {
+    Wrench wrench_dev;
+    bool enable = false;          // amplifier on; off means no force whatever the wrench
+    std::uint64_t heartbeat = 0;  // rises with every cycle; the device's own watchdog looks at it
+};
+
+class HapticDevice {
+public:
+    virtual ~HapticDevice() = default;
+    virtual DeviceInfo open() = 0;  // start-up: finds, checks and homes the device; throws StartupError
+    virtual IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT = 0;
+    virtual IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT = 0;
+    virtual void relax() noexcept = 0;  // motors to zero; safe at any time, in any state, twice
+};
+
+}  // namespace tact

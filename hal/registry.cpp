@@ -1,0 +1,38 @@
+#include "hal/registry.hpp"
+
+#include <array>
+
+#include "hal/sim/process_device.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+namespace {
+
+std::unique_ptr<HapticDevice> make_sim(const DeviceSettings& s) { return std::make_unique<SimDevice>(s.sim); }
+
+std::unique_ptr<HapticDevice> make_sim_process(const DeviceSettings& s) {
+    return std::make_unique<ProcessDevice>(s.sim, s.process_log);
+}
+
+constexpr std::array kDevices{
+    DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
+    DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
+                &make_sim_process},
+};
+
+}  // namespace
+
+std::span<const DeviceEntry> device_drivers() { return kDevices; }
+
+const DeviceEntry& device_driver(const std::string& name) {
+    std::string known;
+    for (const DeviceEntry& d : kDevices) {
+        if (name == d.name) return d;
+        known += (known.empty() ? "" : ", ") + std::string(d.name);
+    }
+    throw StartupError("device driver \"" + name + "\"", "there is no driver of this name",
+                       "set device.driver to one of: " + known);
+}
+
+}  // namespace tact

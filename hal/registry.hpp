@@ -1,0 +1,30 @@
+// The one table of haptic device drivers. A new driver is a folder in hal/ and a row in registry.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "hal/api/haptic_device.hpp"
+#include "hal/sim/sim_device.hpp"
+
+namespace tact {
+
+struct DeviceSettings {
+    std::string driver = "sim";
+    SimSettings sim;
+    std::string process_log;  // of "sim-process": file for its changes of state; empty: none
+};
+
+struct DeviceEntry {
+    const char* name;
+    const char* what;
+    bool emulated;  // nobody's hand is on it
+    std::unique_ptr<HapticDevice> (*make)(const DeviceSettings&);
+};
+
+[[nodiscard]] std::span<const DeviceEntry> device_drivers();
+// Throws StartupError that names the drivers there are.
+[[nodiscard]] const DeviceEntry& device_driver(const std::string& name);
+
+}  // namespace tact

@@ -1,0 +1,44 @@
+// The emulated Phantom and hand in a process of their own, as a real device is: it outlives the controller.
+//
+// Why       sudden death of tact-rt can be tried: the child's watchdog drops the amplifier, its log shows it
+// Child     forked in open(); steps at 1 kHz on the machine's clock, takes the newest command and gives the
+//           newest sample through shared memory; ends by itself when its parent is gone
+// Log       one line a change of state: monotonic ns, state, force in N, silence of the controller in ms
+// Thread    open() and destruction on the main thread before there are others; read and write on the servo's
+// Fails by  lost when the child gave no sample for 100 ms
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "hal/api/haptic_device.hpp"
+#include "hal/sim/sim_device.hpp"
+
+namespace tact {
+
+class ProcessDevice final : public HapticDevice {
+public:
+    ProcessDevice(const SimSettings& settings, std::string log_path);
+    ~ProcessDevice() override;
+    ProcessDevice(const ProcessDevice&) = delete;
+    ProcessDevice& operator=(const ProcessDevice&) = delete;
+
+    DeviceInfo open() override;
+    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT override;
+    IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT override;
+    void relax() noexcept override;
+
+private:
+    struct Shared;
+    [[noreturn]] void live(const SimSettings& settings) noexcept;
+
+    SimSettings settings_;
+    std::string log_path_;
+    Shared* shared_ = nullptr;
+    pid_t child_ = -1;
+    std::uint64_t sequence_ = 0;
+    std::uint64_t heartbeat_ = 0;
+};
+
+}  // namespace tact

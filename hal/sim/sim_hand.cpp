@@ -1,0 +1,100 @@
+// m dv/dt = F - b v over a step h with constant F has the solution
+//     v(h) = F/b + (v - F/b) e,  x(h) = x + F/b h + (v - F/b) (m/b) (1 - e),  e = exp(-b h / m)
+// and the same holds for the rotation about the centre. No explicit scheme, no limit on h.
+#include "hal/sim/sim_hand.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+namespace {
+
+// Velocity and way of one damped step.
+struct Glide {
+    Vec3 velocity, way;
+};
+
+Glide glide(const Vec3& velocity, const Vec3& force, double inertia, double damping, double h_s) noexcept {
+    const double rest = std::exp(-damping * h_s / inertia);
+    const Vec3 terminal = force / damping;
+    const Vec3 excess = velocity - terminal;
+    return {terminal + rest * excess, terminal * h_s + excess * (inertia / damping * (1.0 - rest))};
+}
+
+// Pull of the wandering hand on the tool: soft, so that rendered forces still show.
+constexpr double kPullStiffness = 60.0;      // N/m
+constexpr double kPullTurnStiffness = 0.05;  // N m/rad
+constexpr double kSubstepS = 1e-3;           // the pull changes with the position; 1 ms keeps K h < b
+constexpr double kPauseMaxS = 0.05;          // after a longer pause the hand has not moved for the rest
+
+}  // namespace
+
+SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
+    : settings_(settings), reach_m_(reach_m), wanders_(settings.script == "wander") {
+    if (settings.script != "passive" && settings.script != "wander") {
+        throw StartupError("emulated hand", "there is no script \"" + settings.script + "\"",
+                           "use \"passive\" or \"wander\" (device.hand)");
+    }
+    std::mt19937_64 random(settings.seed);
+    const auto uniform = [&random](double low, double high) {
+        return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+    };
+    for (auto& axis : waves_) {
+        double sum = 0.0;
+        for (Wave& w : axis) {
+            w = {2.0 * std::numbers::pi * uniform(0.05, 0.5), uniform(0.0, 2.0 * std::numbers::pi),
+                 uniform(0.3, 1.0)};
+            sum += w.weight;
+        }
+        for (Wave& w : axis) w.weight /= sum;
+    }
+}
+
+double SimHand::wave(std::size_t axis) const noexcept {
+    double sum = 0.0;
+    for (const Wave& w : waves_[axis]) {
+        // The difference starts at zero, so that the hand does not leap at the start.
+        sum += w.weight * (std::sin(w.frequency_rad_s * time_s_ + w.phase_rad) - std::sin(w.phase_rad));
+    }
+    return 0.5 * sum;
+}
+
+Wrench SimHand::pull() const noexcept {
+    const Vec3 there = settings_.wander_m * Vec3(wave(0), wave(1), wave(2));
+    const Vec3 turn = settings_.wander_rad * Vec3(wave(3), wave(4), wave(5));
+    return {kPullStiffness * (there - pose_.p_m), kPullTurnStiffness * (turn - rotation_vector_rad(pose_.q))};
+}
+
+void SimHand::step(Duration dt, const Wrench& wrench_dev) noexcept {
+    const double h_all = std::min(to_s(dt), kPauseMaxS);
+    if (h_all <= 0.0) return;
+    const int substeps = wanders_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
+    const double h = h_all / substeps;
+    for (int i = 0; i < substeps; ++i) {
+        Wrench w = wrench_dev;
+        if (wanders_) {
+            const Wrench hand = pull();
+            w.force_n += hand.force_n;
+            w.torque_n_m += hand.torque_n_m;
+        }
+        const Glide move = glide(twist_.linear_m_s, w.force_n, settings_.mass_kg, settings_.damping_n_s_m, h);
+        const Glide turn =
+            glide(twist_.angular_rad_s, w.torque_n_m, settings_.inertia_kg_m2, settings_.damping_n_m_s, h);
+        pose_.p_m += move.way;
+        pose_.q = (quat_from_rotation_vector(turn.way) * pose_.q).normalized();
+        twist_ = {move.velocity, turn.velocity};
+        // The mechanical stops of the arm: it stays there and has no speed left along that axis.
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(pose_.p_m[axis]) <= reach_m_[axis]) continue;
+            pose_.p_m[axis] = std::copysign(reach_m_[axis], pose_.p_m[axis]);
+            twist_.linear_m_s[axis] = 0.0;
+        }
+        time_s_ += h;
+    }
+}
+
+}  // namespace tact

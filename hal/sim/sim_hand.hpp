@@ -1,0 +1,60 @@
+// An emulated hand on an emulated arm: one rigid body of six degrees of freedom with viscous damping.
+//
+// Frame     device
+// Step      exact for a force that is constant over it, so stable at any step and any servo rate
+// Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+// A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (maker's figure
+// for a Premium 1.5) and about as much of fingers. Damping: the grip's 3 to 10 N s/m, as measured for pen
+// grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
+// such that 0.05 N m turns it by 150 degrees a second.
+struct SimHandSettings {
+    std::string script = "passive";  // "passive", "wander"
+    std::uint64_t seed = 1;
+    double mass_kg = 0.25;
+    double damping_n_s_m = 5.0;
+    double inertia_kg_m2 = 1e-4;
+    double damping_n_m_s = 0.02;
+    double wander_m = 0.03;  // amplitude
+    double wander_rad = 0.3;
+};
+
+class SimHand {
+public:
+    SimHand(const SimHandSettings& settings, const Vec3& reach_m);
+
+    void step(Duration dt, const Wrench& wrench_dev) noexcept TACT_RT;
+    [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
+    [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
+
+private:
+    struct Wave {
+        double frequency_rad_s, phase_rad, weight;
+    };
+    static constexpr std::size_t kWaves = 3;  // a sum of three sines with incommensurate rates never repeats
+    using Waves = std::array<std::array<Wave, kWaves>, 6>;
+
+    [[nodiscard]] double wave(std::size_t axis) const noexcept;
+    [[nodiscard]] Wrench pull() const noexcept;
+
+    SimHandSettings settings_;
+    Vec3 reach_m_;
+    bool wanders_;
+    Waves waves_{};
+    double time_s_ = 0.0;
+    Pose pose_;
+    Twist twist_;
+};
+
+}  // namespace tact

@@ -1,0 +1,41 @@
+// Fidelity knobs: what a rendering path offers to the governor, and what it reports back.
+//
+// A fidelity is a number in [0, 1]. Cost rises with it and error falls with it. A path never picks its own
+// level; the governor does, and every change is published.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/pose.hpp"
+
+namespace tact {
+
+struct KnobSpec {
+    const char* path = "";    // "docking.force", "gui.mesh"
+    float floor = 0.0F;       // lowest level that is still right; always fits the budget
+    float start = 1.0F;       // level before the first measurement
+    float slew_per_s = 1e9F;  // fastest change that is not felt or seen
+    bool haptic = false;      // haptic levels are given up last
+};
+
+// Why a level is what it is.
+enum class LevelReason : std::uint8_t { start, hold, rate_low, rate_high, at_floor, at_top, by_command };
+
+// What one step cost and how wrong it may be. The unit of the error belongs to the path (N for forces).
+struct PathLoad {
+    Duration cost{0};
+    Duration cost_predicted{0};
+    double error = 0.0;
+    std::uint32_t items = 0;  // vertices drawn, points felt, particles moved
+};
+
+// What a step may use. The level fixes the work before the step starts, so that runs repeat exactly; the
+// deadline is the net beneath it.
+struct Budget {
+    float fidelity = 1.0F;
+    Instant deadline = Instant::max();
+};
+
+}  // namespace tact

@@ -1,0 +1,33 @@
+// Marks of the servo path.
+//
+// TACT_RT marks a function as fit for the servo thread: it never allocates, blocks or throws. Where the
+// compiler knows the attribute (clang >= 20) it checks this; elsewhere tests/rt_safe does.
+// RtSection is the mark at run time: while one lives, the calling thread is inside a servo cycle, and the
+// allocation and lock counters of rt/loop/rt_guard.cpp count, or in tests abort.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__has_cpp_attribute)
+#if __has_cpp_attribute(clang::nonblocking)
+#define TACT_RT [[clang::nonblocking]]
+#endif
+#endif
+#ifndef TACT_RT
+#define TACT_RT
+#endif
+
+namespace tact {
+
+// constinit keeps the access a plain load: no guard, no allocation at first use.
+inline constinit thread_local int rt_section_depth = 0;
+
+class RtSection {
+public:
+    RtSection() noexcept { ++rt_section_depth; }
+    ~RtSection() { --rt_section_depth; }
+    RtSection(const RtSection&) = delete;
+    RtSection& operator=(const RtSection&) = delete;
+};
+
+}  // namespace tact

@@ -1,0 +1,100 @@
+#include "ipc/shm/hello.hpp"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kFilesSeen = 8;  // files of a greedy packet that are received, counted and closed
+
+// The start of both messages is the same: magic, then version.
+template <class Message>
+HelloCheck parse(std::span<const std::byte> bytes, std::uint64_t magic, Message& message) noexcept {
+    if (bytes.size() != sizeof message) return HelloCheck::garbage;
+    std::memcpy(&message, bytes.data(), sizeof message);
+    if (message.magic != magic) return HelloCheck::garbage;
+    if (message.version != kLinkVersion) return HelloCheck::other_version;
+    for (const std::uint64_t word : message.reserved) {
+        if (word != 0) return HelloCheck::garbage;
+    }
+    return HelloCheck::good;
+}
+
+}  // namespace
+
+HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept {
+    const HelloCheck check = parse(bytes, kHelloMagic, hello);
+    if (check == HelloCheck::good && hello.role > static_cast<std::uint32_t>(LinkRole::gui))
+        return HelloCheck::garbage;
+    return check;
+}
+
+HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer) noexcept {
+    const HelloCheck check = parse(bytes, kAnswerMagic, answer);
+    if (check == HelloCheck::good &&
+        (answer.answer > static_cast<std::uint32_t>(LinkAnswer::other_version) || answer.reserved0 != 0))
+        return HelloCheck::garbage;
+    return check;
+}
+
+Receipt receive_packet(int socket, Packet& packet) noexcept {
+    packet.size = 0;
+    packet.file = FileDescriptor();
+    packet.files_too_many = false;
+    alignas(cmsghdr) char control[CMSG_SPACE(kFilesSeen * sizeof(int))];
+    iovec data{packet.bytes, sizeof packet.bytes};
+    msghdr message{};
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const ssize_t got = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+    if (got < 0) return errno == EAGAIN || errno == EINTR ? Receipt::nothing_yet : Receipt::closed;
+    packet.size = static_cast<std::size_t>(got);
+    std::size_t files = 0;
+    for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+        if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_RIGHTS) continue;
+        const std::size_t count = (c->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+        for (std::size_t i = 0; i < count; ++i) {
+            int fd = -1;
+            std::memcpy(&fd, CMSG_DATA(c) + i * sizeof fd, sizeof fd);
+            FileDescriptor file(fd);  // closes all but the first
+            if (++files == 1) packet.file = std::move(file);
+        }
+    }
+    packet.files_too_many = files > 1 || (message.msg_flags & MSG_CTRUNC) != 0;
+    // A sequenced packet of no bytes and no files is how the end looks.
+    return got == 0 && files == 0 ? Receipt::closed : Receipt::message;
+}
+
+bool send_packet(int socket, std::span<const std::byte> bytes, int file) noexcept {
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+    iovec data{const_cast<std::byte*>(bytes.data()), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    if (file >= 0) {
+        message.msg_control = control;
+        message.msg_controllen = sizeof control;
+        cmsghdr* const c = CMSG_FIRSTHDR(&message);
+        c->cmsg_level = SOL_SOCKET;
+        c->cmsg_type = SCM_RIGHTS;
+        c->cmsg_len = CMSG_LEN(sizeof(int));
+        std::memcpy(CMSG_DATA(c), &file, sizeof file);
+    }
+    return sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
+}
+
+Peer peer_of(int socket) noexcept {
+    ucred who{};
+    socklen_t size = sizeof who;
+    if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {};
+    return {static_cast<std::uint32_t>(who.pid), who.uid == geteuid() || who.uid == 0};
+}
+
+}  // namespace tact

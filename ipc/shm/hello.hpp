@@ -1,0 +1,69 @@
+// The two messages of a link: the client's hello and the controller's answer. Fixed size, plain data.
+//
+// Hostile  parse_hello() and parse_answer() take any bytes; what they accept is in range in every field.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "ipc/shm/region.hpp"
+
+namespace tact {
+
+enum class LinkRole : std::uint32_t { observer, gui };
+enum class LinkAnswer : std::uint32_t {
+    attached,  // as asked; the region's file comes with it
+    watching,  // asked as gui, but another one is attached: the region's file comes with it, yours may be
+               // taken later
+    full,      // too many watch already
+    other_user,
+    other_version,
+};
+
+inline constexpr std::uint64_t kHelloMagic = 0x314F4C4C45485441ULL;
+inline constexpr std::uint64_t kAnswerMagic = 0x3152535741485441ULL;
+inline constexpr std::uint32_t kLinkVersion = 1;
+
+struct HelloMessage {
+    std::uint64_t magic;
+    std::uint32_t version;
+    std::uint32_t role;         // LinkRole
+    std::uint64_t reserved[6];  // zero
+};
+struct AnswerMessage {
+    std::uint64_t magic;
+    std::uint32_t version;
+    std::uint32_t answer;       // LinkAnswer
+    std::uint32_t gui_pid;      // of the visual process that is attached; 0: none
+    std::uint32_t reserved0;    // zero
+    std::uint64_t reserved[5];  // zero
+};
+static_assert(std::is_trivially_copyable_v<HelloMessage> && sizeof(HelloMessage) == 64);
+static_assert(std::is_trivially_copyable_v<AnswerMessage> && sizeof(AnswerMessage) == 64);
+
+enum class HelloCheck : std::uint8_t { good, garbage, other_version };
+[[nodiscard]] HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept;
+[[nodiscard]] HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer) noexcept;
+
+// One packet with at most one file. Neither ever waits.
+enum class Receipt : std::uint8_t { message, nothing_yet, closed };
+struct Packet {
+    std::byte bytes[65];  // one more than a message, to notice longer ones
+    std::size_t size = 0;
+    FileDescriptor file;  // none: not valid()
+    bool files_too_many = false;
+};
+[[nodiscard]] Receipt receive_packet(int socket, Packet& packet) noexcept;
+[[nodiscard]] bool send_packet(int socket, std::span<const std::byte> bytes,
+                               int file) noexcept;  // file -1: none
+
+struct Peer {
+    std::uint32_t pid = 0;
+    bool trusted = false;  // this user, or root
+};
+[[nodiscard]] Peer peer_of(int socket) noexcept;
+
+}  // namespace tact

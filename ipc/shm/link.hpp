@@ -1,0 +1,71 @@
+// How regions find each other: a Unix socket per session over which the region's file is handed out.
+//
+// Session    a name (default "default"); the socket is <runtime dir>/tact-<session>.sock, where the runtime
+//            dir is $TACT_RUNTIME_DIR, else $XDG_RUNTIME_DIR, else /tmp/tact-<uid> (created 0700, ownership
+//            checked).
+// Server     in tact-rt, polled by the house thread. It holds a lock file, so a second controller of the same
+//            session is refused with the process id of the first. It sends its region to everyone who
+//            connects and receives at most one visual process's region; others watch, and the longest waiting
+//            visual process takes over when the first goes. The region has to be marked ready before.
+// Client     in tact-gui and tact. poll() never blocks: it connects, re-connects after the controller went,
+//            and says in words what it is waiting for.
+// Hostile    messages are of fixed size and checked; a client that sends anything else, sends nothing for two
+//            seconds, or belongs to another user (root excepted) is dropped and counted.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "ipc/shm/region.hpp"
+
+namespace tact {
+
+[[nodiscard]] std::string session_socket_path(const std::string& session);
+
+class LinkServer {
+public:
+    LinkServer(const std::string& session,
+               int region_fd);  // throws StartupError: another controller runs, ...
+    ~LinkServer();
+    LinkServer(const LinkServer&) = delete;
+    LinkServer& operator=(const LinkServer&) = delete;
+
+    struct News {
+        bool gui_arrived = false;  // gui_fd holds its region's file
+        bool gui_left = false;
+        FileDescriptor gui_fd;
+        std::uint32_t gui_pid = 0;
+    };
+    News poll(int timeout_ms);  // serves what is pending; at most one arrival and one departure a call
+    [[nodiscard]] std::uint64_t refused() const;  // malformed messages and clients too many
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+class LinkClient {
+public:
+    // own_region_fd: the GUI's region, or -1 for an observer. Throws StartupError for a bad session name.
+    LinkClient(std::string session, int own_region_fd);
+    ~LinkClient();
+    LinkClient(const LinkClient&) = delete;
+    LinkClient& operator=(const LinkClient&) = delete;
+
+    struct News {
+        bool arrived = false;  // rt_fd holds the controller's region's file
+        bool left = false;
+        FileDescriptor rt_fd;
+        std::uint32_t rt_pid = 0;
+    };
+    News poll();  // never blocks; retries a missing controller at most ten times a second
+    [[nodiscard]] bool attached() const;
+    [[nodiscard]] const std::string& status_text() const;  // "waiting for the controller of session ..."
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace tact

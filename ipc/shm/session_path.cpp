@@ -1,0 +1,76 @@
+#include "ipc/shm/session_path.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+
+#include "ipc/base/error.hpp"
+#include "ipc/shm/link.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kSessionNameMax = 48;
+
+bool is_session_name(const std::string& name) {
+    return !name.empty() && name.size() <= kSessionNameMax && name.front() != '.' &&
+           std::all_of(name.begin(), name.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '-' || c == '_' || c == '.';
+           });
+}
+
+std::string runtime_folder() {
+    for (const char* const variable : {"TACT_RUNTIME_DIR", "XDG_RUNTIME_DIR"}) {
+        const char* const value = std::getenv(variable);  // start-up, before there are other threads
+        if (value != nullptr && *value != '\0') return value;
+    }
+    return "/tmp/tact-" + std::to_string(geteuid());
+}
+
+}  // namespace
+
+SessionPaths session_paths(const std::string& session) {
+    const std::string attempt = "find session \"" + session + "\"";
+    if (!is_session_name(session))
+        throw StartupError(
+            attempt, "that is no session name",
+            "use 1 to " + std::to_string(kSessionNameMax) + " of a-z A-Z 0-9 - _ . (no leading dot)");
+    SessionPaths p;
+    p.folder = runtime_folder();
+    p.socket = p.folder + "/tact-" + session + ".sock";
+    p.lock = p.folder + "/tact-" + session + ".lock";
+    if (p.socket.size() >= sizeof(sockaddr_un::sun_path))
+        throw StartupError(attempt, "the path " + p.socket + " is too long for a socket",
+                           "set TACT_RUNTIME_DIR to a folder with a shorter name");
+    return p;
+}
+
+std::string session_socket_path(const std::string& session) { return session_paths(session).socket; }
+
+void make_runtime_folder(const std::string& folder) {
+    const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
+    if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+        throw StartupError("make folder " + folder, std::system_category().message(errno), mend);
+    const std::string why = distrust_runtime_folder(folder);
+    if (!why.empty()) throw StartupError("use folder " + folder, why, mend);
+}
+
+std::string distrust_runtime_folder(const std::string& folder) {
+    struct stat status {};
+    if (lstat(folder.c_str(), &status) != 0) return std::system_category().message(errno);
+    if (!S_ISDIR(status.st_mode)) return "it is not a folder (links are not followed)";
+    if (status.st_uid != geteuid() && status.st_uid != 0)
+        return "it belongs to user " + std::to_string(status.st_uid) + ", not to user " +
+               std::to_string(geteuid());
+    if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return "others may write to it";
+    return {};
+}
+
+}  // namespace tact

@@ -1,0 +1,62 @@
+// What happened: a code, a cycle and two numbers. Texts for people are in ipc/topics/text.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "ipc/shm/topic.hpp"
+
+namespace tact {
+
+enum class EventCode : std::uint16_t {
+    none,
+    loop_started,
+    state_changed,   // a: old RunState, b: new RunState
+    fault_latched,   // a: RunReason, b: measured value
+    overrun,         // a: overrun in microseconds, b: overruns so far
+    force_limited,   // a: wanted N, b: limit N
+    torque_limited,  // a: wanted N m, b: limit N m
+    slew_limited,    // a: wanted N per cycle, b: limit
+    gui_attached,    // a: generation
+    gui_detached,
+    gui_silent,     // a: heartbeat age in ms
+    command_done,   // a: CommandKind, b: CommandResult
+    level_changed,  // a: path index, b: new level
+    input_refused,  // a: count so far
+    model_swapped,
+    hand_present,
+    hand_left,
+    stopping,             // a: signal number; -1: the run's time was over
+    device_watchdog,      // a: ms since the cycle before; the device dropped its amplifier
+    torque_slew_limited,  // a: wanted N m per cycle, b: limit
+};
+
+struct EventTopic {
+    static constexpr TopicInfo kInfo{.name = "event", .version = 1, .writer = Writer::rt};
+    std::int64_t taken_at_ns;
+    std::uint64_t cycle;
+    std::uint16_t code;         // EventCode
+    std::uint16_t reserved[3];  // zero
+    double a;
+    double b;
+};
+static_assert(std::is_trivially_copyable_v<EventTopic> && sizeof(EventTopic) == 40);
+
+// One servo cycle, for traces, the flight recorder and plots.
+struct TraceTopic {
+    static constexpr TopicInfo kInfo{.name = "trace", .version = 1, .writer = Writer::rt};
+    std::int64_t taken_at_ns;
+    std::uint64_t cycle;
+    std::int32_t lateness_ns;
+    std::int32_t cost_ns;   // whole cycle
+    std::int32_t model_ns;  // the force model's step
+    float level;            // of the haptic path
+    float pos_world_m[3];
+    float force_world_n[3];
+    float torque_world_n_m[3];
+    std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15
+};
+static_assert(std::is_trivially_copyable_v<TraceTopic> && sizeof(TraceTopic) == 72);
+
+}  // namespace tact

@@ -1,0 +1,47 @@
+// The governor's word: one level per path. The visual process obeys it within a frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "ipc/base/knob.hpp"
+#include "ipc/shm/topic.hpp"
+
+namespace tact {
+
+inline constexpr std::size_t kPathsMax = 8;
+inline constexpr std::size_t kPathNameMax = 24;
+inline constexpr std::size_t kLawNameMax = 16;
+
+struct PathLevel {
+    char path[kPathNameMax];  // "docking.force", "gui.mesh"; ends with 0
+    float level;              // [floor, 1]
+    float floor;
+    std::uint32_t items;       // what the level means: vertices, points
+    std::uint32_t items_max;   // at level 1
+    double cost_s;             // measured, last window
+    double error;              // unit of the path
+    std::uint8_t reason;       // LevelReason of the last change
+    std::uint8_t haptic;       // 0 or 1
+    std::uint8_t reserved[6];  // zero
+};
+static_assert(sizeof(PathLevel) == 64);
+
+struct alignas(64) LevelsTopic {
+    static constexpr TopicInfo kInfo{.name = "levels", .version = 1, .writer = Writer::rt};
+    std::int64_t taken_at_ns;
+    std::uint64_t sequence;  // rises with every change
+    double goal_hz;
+    double rate_hz;         // what the law last saw
+    char law[kLawNameMax];  // "sensitus", "fixed"; ends with 0
+    std::uint32_t count;
+    std::uint32_t reserved[3];  // zero
+    PathLevel path[kPathsMax];
+};
+static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);
+
+inline constexpr char kMeshPath[] = "gui.mesh";
+inline constexpr char kDockingPath[] = "docking.force";
+
+}  // namespace tact

@@ -1,0 +1,31 @@
+// What the visual process reports, every frame: its load, and by that its heartbeat.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "ipc/shm/topic.hpp"
+
+namespace tact {
+
+enum class FramePart : std::uint8_t { adapt, upload, scene, panels, swap, count };
+
+struct alignas(64) LoadTopic {
+    static constexpr TopicInfo kInfo{.name = "load", .version = 1, .writer = Writer::gui};
+    std::int64_t taken_at_ns;
+    std::uint64_t frame;
+    std::uint64_t levels_sequence;  // of the LevelsTopic that this frame obeyed
+    double frame_s;                 // start to start
+    double busy_s;                  // without waiting for the display
+    double part_s[static_cast<std::size_t>(FramePart::count)];
+    double cpu_s;  // processor time of the process, since start
+    double fps;    // over the last second
+    std::uint32_t vertices_drawn;
+    std::uint32_t triangles_drawn;
+    std::uint32_t vertices_max;  // of the full mesh
+    std::uint32_t reserved[3];   // zero
+};
+static_assert(std::is_trivially_copyable_v<LoadTopic> && sizeof(LoadTopic) == 128);
+
+}  // namespace tact

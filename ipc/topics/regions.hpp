@@ -1,0 +1,45 @@
+// The two regions: which topics lie in them, and in which order.
+//
+// tact.rt   written by tact-rt, read by tact-gui, tact and the recorder
+// tact.gui  written by tact-gui, read by tact-rt
+#pragma once
+
+#include "ipc/shm/latest.hpp"
+#include "ipc/shm/ring.hpp"
+#include "ipc/shm/topic_list.hpp"
+#include "ipc/topics/bodies.hpp"
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/event.hpp"
+#include "ipc/topics/health.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/load.hpp"
+#include "ipc/topics/tool.hpp"
+
+namespace tact {
+
+inline constexpr std::size_t kHandsMax = 2;
+
+struct RtRegion {
+    static constexpr char kName[] = "tact.rt";
+    Latest<ToolTopic> tool[kHandsMax];
+    Latest<BodiesTopic> bodies;
+    Latest<HealthTopic> health;
+    Latest<LatenessTopic> lateness;
+    Latest<LevelsTopic> levels;
+    Ring<EventTopic, 1024> events;
+    Ring<TraceTopic, 16384> trace;
+    char scene_path[512];  // of the loaded scene, ends with 0; written before ready
+    std::uint64_t scene_checksum;
+    std::uint64_t reserved[7];  // zero
+    using Topics =
+        TopicList<ToolTopic, BodiesTopic, HealthTopic, LatenessTopic, LevelsTopic, EventTopic, TraceTopic>;
+};
+
+struct GuiRegion {
+    static constexpr char kName[] = "tact.gui";
+    Latest<LoadTopic> load;
+    Ring<CommandTopic, 64> commands;
+    using Topics = TopicList<LoadTopic, CommandTopic>;
+};
+
+}  // namespace tact

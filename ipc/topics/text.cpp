@@ -1,0 +1,251 @@
+#include "ipc/topics/text.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace tact {
+namespace {
+
+constexpr const char* kUnknown = "unknown";
+
+// A number out of a record, as a small unsigned value; what does not fit becomes one that no enum has.
+template <class E>
+E code_of(double value) {
+    return static_cast<E>(value >= 0.0 && value <= 254.0 ? static_cast<unsigned char>(value) : 255U);
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+}  // namespace
+
+const char* run_state_text(RunState state) noexcept {
+    switch (state) {
+        case RunState::off:
+            return "off";
+        case RunState::ready:
+            return "ready";
+        case RunState::armed:
+            return "armed";
+        case RunState::active:
+            return "active";
+        case RunState::fault:
+            return "fault";
+    }
+    return kUnknown;
+}
+
+const char* run_reason_text(RunReason reason) noexcept {
+    switch (reason) {
+        case RunReason::none:
+            return "";
+        case RunReason::by_command:
+            return "by command";
+        case RunReason::hand_present:
+            return "a hand holds the device";
+        case RunReason::hand_left:
+            return "the hand left the device";
+        case RunReason::signal:
+            return "stopped by a signal";
+        case RunReason::force_not_finite:
+            return "the force was not a finite number";
+        case RunReason::sample_stale:
+            return "the device's position is too old";
+        case RunReason::device_lost:
+            return "the device is lost";
+        case RunReason::device_fault:
+            return "the device reports a fault";
+        case RunReason::overruns:
+            return "several cycles in a row took too long";
+        case RunReason::too_late:
+            return "a cycle began far too late";
+        case RunReason::gui_silent:
+            return "the visual process went silent";
+        case RunReason::model_failed:
+            return "the force model failed";
+    }
+    return kUnknown;
+}
+
+const char* event_code_text(EventCode code) noexcept {
+    switch (code) {
+        case EventCode::none:
+            return "";
+        case EventCode::loop_started:
+            return "servo loop started";
+        case EventCode::state_changed:
+            return "state changed";
+        case EventCode::fault_latched:
+            return "fault";
+        case EventCode::overrun:
+            return "overrun";
+        case EventCode::force_limited:
+            return "force limited";
+        case EventCode::torque_limited:
+            return "torque limited";
+        case EventCode::slew_limited:
+            return "force slope limited";
+        case EventCode::torque_slew_limited:
+            return "torque slope limited";
+        case EventCode::gui_attached:
+            return "visual process attached";
+        case EventCode::gui_detached:
+            return "visual process gone";
+        case EventCode::gui_silent:
+            return "visual process silent";
+        case EventCode::command_done:
+            return "command handled";
+        case EventCode::level_changed:
+            return "level changed";
+        case EventCode::input_refused:
+            return "input refused";
+        case EventCode::model_swapped:
+            return "force model swapped";
+        case EventCode::hand_present:
+            return "a hand holds the device";
+        case EventCode::hand_left:
+            return "the hand left the device";
+        case EventCode::stopping:
+            return "stopping";
+        case EventCode::device_watchdog:
+            return "the device's watchdog dropped its amplifier";
+    }
+    return kUnknown;
+}
+
+const char* level_reason_text(LevelReason reason) noexcept {
+    switch (reason) {
+        case LevelReason::start:
+            return "start";
+        case LevelReason::hold:
+            return "held";
+        case LevelReason::rate_low:
+            return "force rate below goal";
+        case LevelReason::rate_high:
+            return "force rate above goal";
+        case LevelReason::at_floor:
+            return "at its floor";
+        case LevelReason::at_top:
+            return "at its top";
+        case LevelReason::by_command:
+            return "by command";
+    }
+    return kUnknown;
+}
+
+const char* command_kind_text(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::none:
+            return "";
+        case CommandKind::arm:
+            return "arm";
+        case CommandKind::disarm:
+            return "disarm";
+        case CommandKind::reset_fault:
+            return "reset fault";
+        case CommandKind::set_law:
+            return "set law";
+        case CommandKind::set_goal_hz:
+            return "set goal";
+        case CommandKind::set_level:
+            return "set level";
+        case CommandKind::set_fidelity_auto:
+            return "set fidelity to automatic";
+    }
+    return kUnknown;
+}
+
+const char* command_result_text(CommandResult result) noexcept {
+    switch (result) {
+        case CommandResult::none:
+            return "";
+        case CommandResult::done:
+            return "done";
+        case CommandResult::refused_state:
+            return "refused: not in this state";
+        case CommandResult::refused_value:
+            return "refused: value out of range or name not known";
+        case CommandResult::unknown:
+            return "refused: command not known";
+    }
+    return kUnknown;
+}
+
+const char* frame_part_text(FramePart part) noexcept {
+    switch (part) {
+        case FramePart::adapt:
+            return "adapt";
+        case FramePart::upload:
+            return "upload";
+        case FramePart::scene:
+            return "scene";
+        case FramePart::panels:
+            return "panels";
+        case FramePart::swap:
+            return "swap";
+        case FramePart::count:
+            break;
+    }
+    return kUnknown;
+}
+
+std::string event_text(const EventTopic& event) {
+    const auto code = static_cast<EventCode>(event.code);
+    const std::string what = event_code_text(code);
+    const std::string a = number(event.a);
+    const std::string b = number(event.b);
+    switch (code) {
+        case EventCode::state_changed:
+            return what + ": " + run_state_text(code_of<RunState>(event.a)) + " to " +
+                   run_state_text(code_of<RunState>(event.b));
+        case EventCode::fault_latched:
+            return what + ": " + run_reason_text(code_of<RunReason>(event.a)) + " (" + b + ")";
+        case EventCode::overrun:
+            return what + ": " + a + " us late, " + b + " so far";
+        case EventCode::force_limited:
+            return what + ": " + a + " N wanted, " + b + " N allowed";
+        case EventCode::torque_limited:
+            return what + ": " + a + " N m wanted, " + b + " N m allowed";
+        case EventCode::slew_limited:
+            return what + ": " + a + " N a cycle wanted, " + b + " N allowed";
+        case EventCode::torque_slew_limited:
+            return what + ": " + a + " N m a cycle wanted, " + b + " N m allowed";
+        case EventCode::gui_silent:
+            return what + ": for " + a + " ms";
+        case EventCode::command_done:
+            return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
+                   command_result_text(code_of<CommandResult>(event.b));
+        case EventCode::level_changed:
+            return what + ": path " + a + " to " + b;
+        case EventCode::input_refused:
+            return what + ": " + a + " so far";
+        case EventCode::stopping:
+            return event.a < 0.0 ? what + ": the time is over" : what + ": signal " + a;
+        case EventCode::device_watchdog:
+            return what + ": " + a + " ms without a cycle";
+        default:
+            return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);
+    }
+}
+
+std::string schedule_text(std::uint32_t schedule_flags) {
+    struct Row {
+        ScheduleFlag flag;
+        const char* text;
+    };
+    constexpr Row kRows[] = {{kScheduleFifo, "FIFO"},
+                             {kSchedulePinned, "pinned"},
+                             {kScheduleIsolated, "isolated core"},
+                             {kScheduleLocked, "memory locked"},
+                             {kScheduleDmaLatency, "no deep sleep states"}};
+    std::string text = (schedule_flags & kScheduleFifo) != 0 ? "" : "ordinary scheduling";
+    for (const Row& row : kRows) {
+        if ((schedule_flags & row.flag) != 0) text += (text.empty() ? "" : ", ") + std::string(row.text);
+    }
+    return text;
+}
+
+}  // namespace tact

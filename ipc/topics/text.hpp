@@ -1,0 +1,29 @@
+// The topics' codes in words for people: panels, tables, logs.
+//
+// Hostile  any value may come in, also one that no enumerator has: it reads as "unknown".
+#pragma once
+
+#include <string>
+
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/event.hpp"
+#include "ipc/topics/health.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/load.hpp"
+
+namespace tact {
+
+[[nodiscard]] const char* run_state_text(RunState state) noexcept;         // "active"
+[[nodiscard]] const char* run_reason_text(RunReason reason) noexcept;      // "the hand left the device"
+[[nodiscard]] const char* event_code_text(EventCode code) noexcept;        // "overrun"
+[[nodiscard]] const char* level_reason_text(LevelReason reason) noexcept;  // "force rate below goal"
+[[nodiscard]] const char* command_kind_text(CommandKind kind) noexcept;    // "arm"
+[[nodiscard]] const char* command_result_text(CommandResult result) noexcept;
+[[nodiscard]] const char* frame_part_text(FramePart part) noexcept;  // "upload"
+
+// One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
+[[nodiscard]] std::string event_text(const EventTopic& event);
+// "FIFO, pinned, memory locked", or "ordinary scheduling".
+[[nodiscard]] std::string schedule_text(std::uint32_t schedule_flags);
+
+}  // namespace tact

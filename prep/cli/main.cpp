@@ -1,0 +1,219 @@
+// tact-prep: files in, one baked scene out.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
+#include "prep/bake/bake_docking.hpp"
+#include "prep/cli/console.hpp"
+#include "prep/cli/scene_report.hpp"
+#include "prep/map/import_map.hpp"
+#include "prep/structure/import_structure.hpp"
+#include "prep/synthetic/ring.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string map, scene;
+    std::vector<std::string> models;
+    std::optional<double> contour, resolution_a, felt_resolution_a;
+    std::uint32_t vertices_max = 1'000'000;
+    bool json = false;
+};
+
+// Lines of the note hold no control characters, whatever a file is called.
+std::string plain(std::string text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    }
+    return text;
+}
+
+std::string now_utc() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+
+// Found before minutes of work, not after them.
+void check_target(const Options& o) {
+    const std::string attempt = "write scene " + o.scene;
+    const fs::path target(o.scene);
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    std::error_code ignored;
+    if (fs::is_directory(target, ignored))
+        throw StartupError(attempt, "it is a folder", "give the name of a file: -o FOLDER/scene.tact");
+    if (!fs::is_directory(folder, ignored))
+        throw StartupError(attempt, "the folder " + folder.string() + " does not exist",
+                           "make it, or give another with -o");
+    if (::access(folder.c_str(), W_OK) != 0)
+        throw StartupError(attempt, "the folder " + folder.string() + " may not be written to",
+                           "give another with -o");
+    std::vector<std::string> inputs = o.models;
+    inputs.push_back(o.map);
+    for (const std::string& input : inputs) {
+        if (!input.empty() && fs::equivalent(input, target, ignored))
+            throw StartupError(attempt, "it is one of the input files", "give another name with -o");
+    }
+}
+
+std::string listed(const DensityGrid& grid) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%u x %u x %u voxels of %.4g x %.4g x %.4g Å", grid.size[0],
+                  grid.size[1], grid.size[2], grid.spacing_m.x() / kAngstromM,
+                  grid.spacing_m.y() / kAngstromM, grid.spacing_m.z() / kAngstromM);
+    return text;
+}
+
+DockingInput from_files(const Options& o, const Progress& progress) {
+    DockingInput input;
+    report(progress, 0.0, "reading the map");
+    ImportedMap map = import_map(o.map);
+    input.note.push_back("map: " + plain(o.map));
+    input.note.push_back("map format: " + map.format + ", " + listed(map.grid));
+    input.note.push_back("map origin: " + map.origin_rule);
+    for (const std::string& line : map.notes) input.note.push_back("map note: " + line);
+    input.grid = std::move(map.grid);
+    input.title = plain(fs::path(o.map).filename().string());
+    const char* join = " and ";
+    for (const std::string& path : o.models) {
+        report(progress, 0.0, "reading structures");
+        ImportedStructure model = import_structure(path);
+        input.note.push_back("structure: " + plain(path));
+        input.note.push_back("structure content: " + plain(model.summary));
+        input.title += join + model.structure.name;
+        join = ", ";
+        input.structures.push_back(std::move(model.structure));
+    }
+    return input;
+}
+
+DockingInput from_ring(const Progress& progress) {
+    report(progress, 0.0, "making the ring");
+    SyntheticRing ring = make_ring();
+    DockingInput input;
+    input.title = "synthetic ring of six, one subunit free";
+    input.note = {"map: made by tact-prep demo dock: six subunits, 12 Å, noise of 1 % of the highest density",
+                  "map format: synthetic, " + listed(ring.grid),
+                  "map origin: chosen, the axis of the ring is z through (0, 0, 0)",
+                  "structure: subunit A of the same ring, where the map has it"};
+    input.grid = std::move(ring.grid);
+    input.structures.push_back(std::move(ring.subunits.front()));
+    input.resolution_m = ring.resolution_m;
+    return input;
+}
+
+void bake(const Options& o, bool demo) {
+    check_target(o);
+    const auto started = std::chrono::steady_clock::now();
+    Console console;
+    const Progress progress = console.progress();
+    DockingInput input = demo ? from_ring(progress) : from_files(o, progress);
+    input.note.insert(input.note.begin(), {"made by: tact-prep " TACT_VERSION, "made at: " + now_utc()});
+    if (o.contour) input.contour = o.contour;
+    if (o.resolution_a) input.resolution_m = *o.resolution_a * kAngstromM;
+    if (o.felt_resolution_a) input.felt_resolution_m = *o.felt_resolution_a * kAngstromM;
+    input.vertices_max = o.vertices_max;
+    SceneWriter out;
+    const BakedDocking baked = bake_docking(input, out, progress);
+    report(progress, 0.99, "writing the scene");
+    out.write(o.scene);
+    console.clear();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    if (o.json) {
+        nlohmann::ordered_json json = scene_json(SceneFile::open(o.scene));
+        for (std::size_t i = 0; i < baked.bodies.size(); ++i) {
+            json["bodies"][i]["density_home_sigma"] = baked.bodies[i].density_home_sigma;
+            json["bodies"][i]["inside_home"] = baked.bodies[i].inside_home;
+        }
+        json["seconds"] = seconds;
+        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    } else {
+        std::printf("%s%s: %.1f MB in %.1f s\n", baked.note.c_str(), o.scene.c_str(),
+                    static_cast<double>(fs::file_size(o.scene)) * 1e-6, seconds);
+    }
+}
+
+void info(const Options& o) {
+    const SceneFile file = SceneFile::open(o.scene);
+    const std::string text =
+        o.json ? scene_json(file).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
+               : scene_text(file);
+    std::fputs(text.c_str(), stdout);
+}
+
+int run(int argc, char** argv) {
+    Options o;
+    CLI::App app(
+        "Bakes maps and structures into a scene that tact-rt and tact-gui map at once.\n"
+        "Exit code 0: done; 1: an error, said on stderr; 130: cancelled by Ctrl-C, nothing written.",
+        "tact-prep");
+    app.set_version_flag("--version", "tact-prep " TACT_VERSION);
+    app.require_subcommand(1);
+    const auto output = [&](CLI::App* sub) {
+        sub->add_option("-o,--output", o.scene, "the scene to write")->required();
+        sub->add_option("--contour", o.contour,
+                        "level of the surface, in the map's unit; chosen from the histogram if absent");
+        sub->add_option("--resolution-a", o.resolution_a,
+                        "resolution of the map in ångström; four voxels if absent");
+        sub->add_option(
+            "--felt-resolution-a", o.felt_resolution_a,
+            "let the hand feel the map smoothed to this resolution in ångström, which draws a structure "
+            "from farther away; as it is if absent");
+        sub->add_option("--vertices-max", o.vertices_max, "most vertices of the surface; 0: all")
+            ->capture_default_str();
+        sub->add_flag("--json", o.json, "print what was baked as JSON");
+    };
+    CLI::App* const dock =
+        app.add_subcommand("dock", "a docking scene from a map and one or more structures");
+    dock->add_option("map", o.map, "MRC/CCP4 or Situs, also .gz")->required();
+    dock->add_option("models", o.models, "PDB or mmCIF, also .gz; one body each")->required();
+    output(dock);
+    CLI::App* const demo = app.add_subcommand("demo", "a scene made in code, without files");
+    demo->require_subcommand(1);
+    CLI::App* const demo_dock =
+        demo->add_subcommand("dock", "a ring of six subunits and its 12 Å map; one subunit is free");
+    output(demo_dock);
+    CLI::App* const show = app.add_subcommand("info", "what a scene holds; checks all of it");
+    show->add_option("scene", o.scene, "a baked scene")->required();
+    show->add_flag("--json", o.json, "as JSON");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 1;
+    }
+    if (show->parsed()) {
+        info(o);
+    } else {
+        bake(o, demo->parsed());
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace tact
+
+int main(int argc, char** argv) {
+    try {
+        return tact::run(argc, argv);
+    } catch (const tact::Cancelled&) {
+        std::fputs("tact-prep: cancelled, nothing was written\n", stderr);
+        return 130;
+    } catch (const std::bad_alloc&) {
+        std::fputs("tact-prep: memory ran out\n  mend: free memory, or crop or bin the map\n", stderr);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tact-prep: %s\n", error.what());
+    }
+    return 1;
+}

@@ -1,0 +1,20 @@
+// A whole input file in memory, unpacked when it is gzip'd.
+//
+// Bounds    never more than `bytes_max` after unpacking; a file that unpacks to more is refused while it
+//           unpacks, before memory runs out. Whether it is packed is seen from its first two bytes.
+// Fails by  StartupError naming the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tact {
+
+std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64_t bytes_max);
+
+// Lower-case ending of the name without a trailing ".gz": "a.MRC.gz" -> ".mrc".
+std::string format_ending(const std::filesystem::path& path);
+
+}  // namespace tact

@@ -1,0 +1,36 @@
+// The atoms of the first model of a file, as they stand there, every number checked.
+//
+// Both formats are read by gemmi, but only after their atom lines passed the checks here: gemmi takes a
+// coordinate that it cannot read for zero, and an atom at the origin would go unseen.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ipc/assets/structure.hpp"
+#include "ipc/base/pose.hpp"
+
+namespace tact {
+
+struct AtomRow {
+    std::string chain, residue_name, atom_name;
+    std::int32_t residue = 0;
+    char insertion = ' ';
+    char alternate = '\0';  // 0: none
+    float occupancy = 1.0F;
+    std::uint8_t element = 0;  // atomic number, 0: unknown
+    double mass_u = 0.0;
+    bool water = false, hydrogen = false, nucleic = false;
+    Vec3 position_a = Vec3::Zero();  // ångström, as in the file
+};
+
+std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name);
+std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name);
+
+// All of these rows, at least one, as a structure in the frame of its centre of mass. Only the last part of
+// `name`, a path, becomes the structure's name.
+Structure structure_of(const std::vector<AtomRow>& rows, const std::string& name);
+
+}  // namespace tact

@@ -1,0 +1,31 @@
+// Weighted points of a body, stored in the order in which they are best summed.
+//
+// Frame    body, metres. Weights sum to 1.
+// Order    along a Morton curve, so that neighbours in memory share cache lines of the map. The sum does not
+//          depend on the order beyond single-precision rounding.
+// Fails by StartupError: points that are not finite, farther than a millimetre out, or without weight.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ipc/assets/density_map.hpp"
+
+namespace tact {
+
+struct PointSet {
+    std::vector<float> x_m, y_m, z_m, weight;
+
+    [[nodiscard]] std::size_t size() const { return x_m.size(); }
+    [[nodiscard]] PointsView view() const { return {x_m, y_m, z_m, weight}; }
+    [[nodiscard]] PointsView view(std::size_t begin, std::size_t count) const {
+        const PointsView all = view();
+        return {all.x.subspan(begin, count), all.y.subspan(begin, count), all.z.subspan(begin, count),
+                all.weight.subspan(begin, count)};
+    }
+};
+
+// name is of the structure, for the message.
+PointSet make_point_set(const PointsView& points, const std::string& name);
+
+}  // namespace tact

@@ -1,0 +1,232 @@
+#include "rt/loop/config.hpp"
+
+#include <toml++/toml.h>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <variant>
+#include <vector>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+// One row a key: where it goes and what it may be. The only list of keys there is.
+struct Key {
+    std::string name;
+    std::variant<double*, std::int64_t*, bool*, std::string*> target;
+    double low = -kInf, high = kInf;
+    std::vector<std::string> words;  // of a text that is one of a few
+};
+
+std::vector<Key> keys_of(RtConfig& c) {
+    return {
+        {"servo.period_us", &c.servo.period_us, 50, 100000, {}},
+        {"servo.free_running", &c.servo.free_running, 0, 0, {}},
+        {"servo.spin_us", &c.servo.spin_us, 0, 100000, {}},
+        {"servo.core", &c.servo.core, -2, 4095, {}},
+        {"servo.priority", &c.servo.priority, 0, 94, {}},
+        {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
+        {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
+        {"device.driver", &c.device.driver, 0, 0, {}},
+        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander"}},
+        {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
+        {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e6, {}},
+        {"device.process_log", &c.device.process_log, 0, 0, {}},
+        {"shape.force_scale", &c.shape.force_scale, 0, 1e6, {}},
+        {"shape.damping_n_s_m", &c.shape.damping_n_s_m, 0, 100, {}},
+        {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
+        {"safety.torque_n_m_max", &c.safety.torque_n_m_max, 0, 10, {}},
+        {"safety.force_slew_n_s", &c.safety.force_slew_n_s, 1, 1e6, {}},
+        {"safety.torque_slew_n_m_s", &c.safety.torque_slew_n_m_s, 0.01, 1e5, {}},
+        {"safety.ramp_in_ms", &c.safety.ramp_in_ms, 10, 10000, {}},
+        {"safety.ramp_out_ms", &c.safety.ramp_out_ms, 1, 80, {}},
+        {"safety.wall_margin_mm", &c.safety.wall_margin_mm, 0, 1000, {}},
+        {"safety.wall_stiffness_n_m", &c.safety.wall_stiffness_n_m, 0, 5000, {}},
+        {"safety.heat_tau_s", &c.safety.heat_tau_s, 0, 3600, {}},
+        {"safety.passivity", &c.safety.passivity, 0, 0, {}},
+        {"safety.passivity_energy_j", &c.safety.passivity_energy_j, 0, 100, {}},
+        {"safety.sample_age_us_max", &c.safety.sample_age_us_max, 100, 1e6, {}},
+        {"safety.late_us_max", &c.safety.late_us_max, 100, 1e6, {}},
+        {"safety.overruns_max", &c.safety.overruns_max, 1, 1000, {}},
+        {"safety.timing_latches", &c.safety.timing_latches, 0, 0, {"real", "always", "never"}},
+        {"safety.gui_silent_ms", &c.safety.gui_silent_ms, 50, 60000, {}},
+        {"safety.on_gui_silent", &c.safety.on_gui_silent, 0, 0, {"continue", "ramp"}},
+        {"governor.law", &c.governor.law, 0, 0, {"sensitus", "fixed"}},
+        {"governor.goal_hz", &c.governor.goal_hz, 0, 1e7, {}},
+        {"governor.gain", &c.governor.gain, 1e-3, 1, {}},
+        {"governor.tolerance", &c.governor.tolerance, 0, 0.5, {}},
+        {"governor.interval_ms", &c.governor.interval_ms, 10, 10000, {}},
+    };
+}
+
+std::string number_text(double v) {
+    std::ostringstream out;
+    out << v;
+    return out.str();
+}
+
+// Empty: fine. Else what is wrong with the value that the key has now.
+std::string complaint(const Key& key) {
+    const auto range = [&](double v, const std::string& text) {
+        if (std::isfinite(v) && v >= key.low && v <= key.high) return std::string();
+        return text + " is outside " + number_text(key.low) + " to " + number_text(key.high);
+    };
+    if (const auto* d = std::get_if<double*>(&key.target)) return range(**d, number_text(**d));
+    if (const auto* i = std::get_if<std::int64_t*>(&key.target)) {
+        return range(static_cast<double>(**i), std::to_string(**i));
+    }
+    if (const auto* s = std::get_if<std::string*>(&key.target)) {
+        if (key.words.empty()) return {};
+        std::string known;
+        for (const std::string& w : key.words) {
+            if (w == **s) return {};
+            known += (known.empty() ? "\"" : ", \"") + w + "\"";
+        }
+        return "\"" + **s + "\" is none of " + known;
+    }
+    return {};
+}
+
+std::string at(const std::string& path, const toml::source_region& where) {
+    return path + ":" + std::to_string(where.begin.line);
+}
+
+// The known key that shares most of its beginning and end with a wrong one.
+std::string nearest(const std::vector<Key>& keys, const std::string& name) {
+    std::string best;
+    std::size_t best_score = 0;
+    for (const Key& k : keys) {
+        const std::size_t shorter = std::min(k.name.size(), name.size());
+        std::size_t front = 0, back = 0;
+        while (front < shorter && k.name[front] == name[front]) ++front;
+        while (back < shorter && k.name[k.name.size() - 1 - back] == name[name.size() - 1 - back]) ++back;
+        if (front + back > best_score) {
+            best_score = front + back;
+            best = k.name;
+        }
+    }
+    return best;
+}
+
+void set(const Key& key, const toml::node& node, const std::string& where) {
+    const auto wrong = [&](const char* wanted) {
+        throw StartupError(where + ": " + key.name, std::string("this is not ") + wanted,
+                           "see deploy/tact.toml for the key and its default");
+    };
+    if (const auto* d = std::get_if<double*>(&key.target)) {
+        if (!node.is_number()) wrong("a number");
+        **d = node.value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+    } else if (const auto* i = std::get_if<std::int64_t*>(&key.target)) {
+        if (!node.is_integer()) wrong("a whole number");
+        **i = node.value<std::int64_t>().value_or(0);
+    } else if (const auto* b = std::get_if<bool*>(&key.target)) {
+        if (!node.is_boolean()) wrong("true or false");
+        **b = node.value<bool>().value_or(false);
+    } else if (const auto* s = std::get_if<std::string*>(&key.target)) {
+        if (!node.is_string()) wrong("a text in quotes");
+        **s = node.value<std::string>().value_or("");
+    }
+    const std::string bad = complaint(key);
+    if (!bad.empty()) {
+        throw StartupError(where + ": " + key.name, bad, "see deploy/tact.toml for the key and its default");
+    }
+}
+
+}  // namespace
+
+void read_config(const std::string& path, RtConfig& config) {
+    toml::table file;
+    try {
+        file = toml::parse_file(path);
+    } catch (const toml::parse_error& e) {
+        const bool missing = e.source().begin.line == 0;
+        throw StartupError("reading the configuration " + (missing ? path : at(path, e.source())),
+                           std::string(e.description()),
+                           missing ? "give the path of a readable file to --config, or leave it out"
+                                   : "mend this line; deploy/tact.toml shows the form");
+    }
+    const std::vector<Key> keys = keys_of(config);
+    for (const auto& [section, node] : file) {
+        const std::string section_name(section.str());
+        const toml::table* table = node.as_table();
+        if (table == nullptr) {
+            throw StartupError(at(path, node.source()) + ": " + section_name,
+                               "this key belongs to no section",
+                               "put it under [servo], [device], [shape], [safety] or [governor]");
+        }
+        for (const auto& [leaf, value] : *table) {
+            const std::string name = section_name + "." + std::string(leaf.str());
+            const Key* key = nullptr;
+            for (const Key& k : keys) {
+                if (k.name == name) key = &k;
+            }
+            if (key == nullptr) {
+                throw StartupError(at(path, value.source()) + ": " + name, "there is no such key",
+                                   "remove it, or did you mean " + nearest(keys, name) + "?");
+            }
+            set(*key, value, at(path, value.source()));
+        }
+    }
+}
+
+void check_config(const RtConfig& config, const std::string& where) {
+    RtConfig copy = config;
+    for (const Key& key : keys_of(copy)) {
+        const std::string bad = complaint(key);
+        if (!bad.empty()) throw StartupError(where + ": " + key.name, bad, "choose a value inside the range");
+    }
+}
+
+Duration duration_us(double us) { return Duration(std::llround(us * 1e3)); }
+
+ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
+    ServoSettings s;
+    s.period = duration_us(c.servo.period_us);
+    s.free_running = c.servo.free_running;
+    s.model_max = duration_us(c.servo.model_us_max);
+    s.force_scale = c.shape.force_scale;
+    s.damping_n_s_m = c.shape.damping_n_s_m;
+    s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
+    s.watchdogs.late_max = duration_us(c.safety.late_us_max);
+    s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);
+    s.watchdogs.timing_latches =
+        c.safety.timing_latches == "always" || (c.safety.timing_latches == "real" && !driver.emulated);
+    s.chain.force_n_max = c.safety.force_n_max;
+    s.chain.torque_n_m_max = c.safety.torque_n_m_max;
+    s.chain.force_slew_n_s = c.safety.force_slew_n_s;
+    s.chain.torque_slew_n_m_s = c.safety.torque_slew_n_m_s;
+    s.chain.ramp_in_s = c.safety.ramp_in_ms * 1e-3;
+    s.chain.ramp_out_s = c.safety.ramp_out_ms * 1e-3;
+    s.chain.wall_margin_m = c.safety.wall_margin_mm * 1e-3;
+    s.chain.wall_stiffness_n_m = c.safety.wall_stiffness_n_m;
+    s.chain.heat_tau_s = c.safety.heat_tau_s;
+    s.chain.passivity = c.safety.passivity;
+    s.chain.translation.energy_start_j = c.safety.passivity_energy_j;
+    s.chain.rotation.energy_start_j = c.safety.passivity_energy_j;
+    s.governor.law = law_named(c.governor.law).value_or(Law::sensitus);
+    const double rate_hz = s.free_running ? 1000.0 : 1e6 / c.servo.period_us;
+    s.governor.goal_hz = c.governor.goal_hz > 0.0 ? c.governor.goal_hz : rate_hz;
+    s.governor.gain = c.governor.gain;
+    s.governor.tolerance = c.governor.tolerance;
+    s.governor_interval = duration_us(c.governor.interval_ms * 1e3);
+    s.gui_silent = duration_us(c.safety.gui_silent_ms * 1e3);
+    s.gui_silent_ramps = c.safety.on_gui_silent == "ramp";
+    return s;
+}
+
+DeviceSettings device_settings_from(const RtConfig& c) {
+    DeviceSettings d;
+    d.driver = c.device.driver;
+    d.sim.hand.script = c.device.hand;
+    d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
+    d.process_log = c.device.process_log;
+    d.sim.watchdog = duration_us(c.device.watchdog_us);
+    return d;
+}
+
+}  // namespace tact

@@ -1,0 +1,76 @@
+// The configuration of tact-rt: one TOML file, read into one struct whose defaults are the documentation.
+//
+// Units    as the keys say; converted to SI once, in settings_from().
+// Fails by StartupError naming file, line, key, what is wrong and the mend: unknown keys, wrong types and
+//          impossible values are errors. deploy/tact.toml shows every key, held to it by a test.
+// Thread   start-up only
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hal/registry.hpp"
+#include "rt/loop/servo.hpp"
+
+namespace tact {
+
+struct RtConfig {
+    struct Servo {
+        double period_us = 1000.0;
+        bool free_running = false;
+        double spin_us =
+            100.0;  // of the sleep before a cycle, spent spinning; hides the wake-up of the kernel
+        std::int64_t core = -1;      // -1: the last isolated core, or with FIFO the last core; -2: not pinned
+        std::int64_t priority = 80;  // FIFO; 0: ordinary scheduling
+        double model_us_max = 600.0;
+        bool lock_memory = true;
+    } servo;
+    struct Device {
+        std::string driver = "sim";
+        std::string hand = "passive";  // of the emulated device
+        std::int64_t hand_seed = 1;
+        double watchdog_us = 10000.0;
+        std::string process_log;  // of sim-process: file for its changes of state
+    } device;
+    struct Shape {
+        double force_scale = 1.0;
+        double damping_n_s_m = 0.0;
+    } shape;
+    struct Safety {
+        double force_n_max = 3.3;
+        double torque_n_m_max = 0.2;
+        double force_slew_n_s = 500.0;
+        double torque_slew_n_m_s = 30.0;
+        double ramp_in_ms = 500.0;
+        double ramp_out_ms = 50.0;
+        double wall_margin_mm = 5.0;
+        double wall_stiffness_n_m = 500.0;
+        double heat_tau_s = 60.0;
+        bool passivity = false;
+        double passivity_energy_j = 0.0;
+        double sample_age_us_max = 3500.0;
+        double late_us_max = 5000.0;
+        std::int64_t overruns_max = 5;
+        std::string timing_latches = "real";  // "real": on real devices only; "always"; "never"
+        double gui_silent_ms = 500.0;
+        std::string on_gui_silent = "continue";  // or "ramp"
+    } safety;
+    struct Govern {
+        std::string law = "sensitus";
+        double goal_hz = 0.0;  // 0: the servo's rate; free running: 1000
+        double gain = 0.5;
+        double tolerance = 0.02;
+        double interval_ms = 200.0;
+    } governor;
+};
+
+// Overwrites what the file names.
+void read_config(const std::string& path, RtConfig& config);
+// Ranges of everything, whatever it came from; `where` heads the message.
+void check_config(const RtConfig& config, const std::string& where);
+
+[[nodiscard]] ServoSettings settings_from(const RtConfig& config, const DeviceEntry& driver);
+[[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
+[[nodiscard]] Duration duration_us(double us);
+
+}  // namespace tact

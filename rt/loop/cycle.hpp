@@ -1,0 +1,51 @@
+// What one servo cycle knows. Lies in the arena; every stage of rt/loop/servo.cpp reads and writes it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/api/haptic_device.hpp"
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/regions.hpp"
+#include "rt/force/force_model.hpp"
+#include "rt/loop/mail.hpp"
+#include "rt/safety/output_chain.hpp"
+#include "rt/safety/state_machine.hpp"
+#include "rt/safety/watchdogs.hpp"
+
+namespace tact {
+
+struct HandCycle {
+    HapticDevice* device = nullptr;
+    ForceModel* model = nullptr;
+    bool torque = false;  // the device can show torque
+    DeviceSample sample;
+    IoStatus read_status = IoStatus::ok;
+    IoStatus write_status = IoStatus::ok;
+    bool sample_usable = false;
+    ToolState tool;
+    StepResult step;
+    Wrench wanted_world;  // after shaping
+    OutputChain chain;
+    ChainOutput out;
+    Wrench shown_world;                // as sent to the device
+    std::array<Instant, 8> said_at{};  // per ChainAct: when an event last said so
+};
+
+struct CycleState {
+    std::uint64_t cycle = 0;
+    Instant planned{}, now{}, before{};
+    Duration lateness{0}, dt{0}, cost{0}, model_cost{0};
+    Duration behind{0};    // how far past the next one's instant the cycle before this one ended
+    bool overran = false;  // the cycle before this one
+    std::uint64_t out_of_time = 0;
+    HouseReport house{};
+    ServoOrder order{};  // of this cycle that concerns the state; kind none: nothing asked
+    RunEvents events;
+    RunStatus run;
+    Trip trip;
+    std::uint32_t hands = 0;
+    HandCycle hand[kHandsMax];
+};
+
+}  // namespace tact

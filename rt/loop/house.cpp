@@ -1,0 +1,200 @@
+#include "rt/loop/house.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "ipc/topics/text.hpp"
+#include "rt/govern/law.hpp"
+#include "rt/loop/thread_setup.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr int kPollMs = 10;           // a command waits for no longer than this
+constexpr int kCommandsPerTurn = 16;  // the ring holds 64: a flood costs bounded work and is seen as missed
+
+std::atomic<ServoMail*> signalled{nullptr};
+static_assert(std::atomic<ServoMail*>::is_always_lock_free);
+
+extern "C" void on_signal(int number) {
+    ServoMail* const mail = signalled.load(std::memory_order_relaxed);
+    if (mail != nullptr) mail->stop_signal.store(number, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+CheckedCommand check_command(const CommandTopic& command, std::span<const std::string> path_names) {
+    CheckedCommand checked;
+    checked.order = {.sequence = command.sequence, .value = command.value, .kind = command.kind, .index = 0};
+    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(CommandKind::set_fidelity_auto)) {
+        checked.result = CommandResult::unknown;
+        return checked;
+    }
+    const bool ends = std::memchr(command.text, 0, sizeof command.text) != nullptr;
+    if (!std::isfinite(command.value) || !ends || command.sequence == 0) {
+        checked.result = CommandResult::refused_value;
+        return checked;
+    }
+    const std::string_view text(command.text);
+    const auto kind = static_cast<CommandKind>(command.kind);
+    if (kind == CommandKind::set_law) {
+        const auto law = law_named(text);
+        if (!law) checked.result = CommandResult::refused_value;
+        checked.order.index = law ? static_cast<std::uint32_t>(*law) : 0;
+    } else if (kind == CommandKind::set_level) {
+        const auto found = std::find(path_names.begin(), path_names.end(), text);
+        const bool good = found != path_names.end() && command.value >= 0.0 && command.value <= 1.0;
+        if (!good) checked.result = CommandResult::refused_value;
+        checked.order.index = good ? static_cast<std::uint32_t>(found - path_names.begin()) : 0;
+    } else if (kind == CommandKind::set_goal_hz) {
+        if (!(command.value >= 1.0 && command.value <= 1e7)) checked.result = CommandResult::refused_value;
+    }
+    return checked;
+}
+
+bool plausible(const LoadTopic& load) {
+    const auto time = [](double s) { return std::isfinite(s) && s >= 0.0 && s < 1e9; };
+    bool good = time(load.frame_s) && time(load.busy_s) && time(load.cpu_s) && std::isfinite(load.fps) &&
+                load.fps >= 0.0 && load.fps < 1e6 && load.vertices_drawn <= load.vertices_max &&
+                load.vertices_max < 1U << 31U;
+    for (const double s : load.part_s) good = good && time(s);
+    return good;
+}
+
+House::House(HouseSettings settings, OwnedRegion<RtRegion>& region, ServoMail& mail, LinkServer& link)
+    : settings_(std::move(settings)), region_(region), mail_(mail), link_(link) {
+    report_.gui_heartbeat_ns = -1;
+}
+
+void House::catch_signals(ServoMail& mail) {
+    signalled.store(&mail);
+    struct sigaction action {};
+    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the house ends at once
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) sigaction(number, &action, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void House::order(CommandKind kind, double value, std::uint32_t index) {
+    mail_.orders.push(
+        {.sequence = 0, .value = value, .kind = static_cast<std::uint32_t>(kind), .index = index});
+}
+
+void House::run() {
+    const Instant begin = Monotonic::now();
+    Instant reported_at = begin;
+    while (!mail_.ended.load(std::memory_order_acquire)) {
+        attend_link();
+        attend_gui();
+        attend_events();
+        mail_.model.collect().reset();
+        const Instant now = Monotonic::now();
+        if (now - reported_at >= std::chrono::milliseconds(100)) {
+            const std::uint64_t faults = page_faults_of(settings_.servo_thread_id);
+            report_.page_faults =
+                faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
+            reported_at = now;
+        }
+        report();
+        const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;
+        int none = 0;
+        if (over) mail_.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
+    }
+    attend_events();
+}
+
+void House::attend_link() {
+    LinkServer::News news = link_.poll(kPollMs);
+    if (news.gui_left) {
+        gui_ = {};
+        report_.gui_attached = 0;
+        spdlog::info("the visual process left");
+    }
+    if (news.gui_arrived) {
+        std::string refusal;
+        gui_ = MappedRegion<GuiRegion>::map(std::move(news.gui_fd), refusal);
+        if (gui_.empty()) {
+            ++bad_input_;
+            spdlog::warn("refused the region of the visual process {}: {}", news.gui_pid, refusal);
+            return;
+        }
+        commands_ = gui_->commands.tail();  // what an earlier controller was told is not for this one
+        loads_seen_ = 0;
+        report_.gui_attached = 1;
+        report_.gui_generation = gui_.generation();
+        report_.gui_heartbeat_ns = to_ns(Monotonic::now());
+        spdlog::info("visual process {} attached", news.gui_pid);
+    }
+}
+
+void House::attend_gui() {
+    if (gui_.empty()) return;
+    const std::uint64_t loads = gui_->load.count();
+    LoadTopic load{};
+    if (loads != loads_seen_ && gui_->load.read(load)) {
+        loads_seen_ = loads;
+        if (plausible(load)) {
+            report_.gui_heartbeat_ns = to_ns(Monotonic::now());
+            report_.gui_fps = load.fps;
+            report_.gui_busy_s = load.busy_s;
+            report_.gui_vertices = load.vertices_drawn;
+            report_.gui_vertices_max = load.vertices_max;
+            if (settings_.arm_with_gui && load.vertices_drawn > 0) {
+                settings_.arm_with_gui = false;
+                order(CommandKind::arm, 0.0, 0);
+            }
+        } else {
+            ++bad_input_;
+        }
+    }
+    CommandTopic command{};
+    const std::uint64_t missed = commands_.missed;
+    for (int i = 0; i < kCommandsPerTurn && gui_->commands.next(commands_, command); ++i) {
+        const CheckedCommand checked = check_command(command, settings_.path_names);
+        if (checked.result == CommandResult::none) {
+            mail_.orders.push(checked.order);
+            continue;
+        }
+        // The servo answers all commands, so that the answers come in order: a refused one goes as kind none.
+        ++bad_input_;
+        mail_.orders.push({.sequence = command.sequence,
+                           .value = 0.0,
+                           .kind = static_cast<std::uint32_t>(CommandKind::none),
+                           .index = static_cast<std::uint32_t>(checked.result)});
+    }
+    bad_input_ += commands_.missed - missed;
+}
+
+void House::attend_events() {
+    EventTopic event{};
+    for (int i = 0; i < 64 && region_->events.next(events_, event); ++i) {
+        const auto code = static_cast<EventCode>(event.code);
+        if (code == EventCode::fault_latched) {
+            spdlog::error("cycle {}: {}", event.cycle, event_text(event));
+        } else if (code == EventCode::level_changed || code == EventCode::slew_limited ||
+                   code == EventCode::torque_slew_limited) {
+            spdlog::debug("cycle {}: {}", event.cycle, event_text(event));
+        } else {
+            spdlog::info("cycle {}: {}", event.cycle, event_text(event));
+        }
+    }
+    FaultSnapshot s{};
+    if (mail_.fault.count() == faults_seen_ || !mail_.fault.read(s)) return;
+    faults_seen_ = mail_.fault.count();
+    spdlog::error(
+        "at the fault: cycle {}, late {:.1f} us, sample {:.1f} us old, at ({:.4f}, {:.4f}, {:.4f}) m, wanted "
+        "({:.3f}, {:.3f}, {:.3f}) N, applied before ({:.3f}, {:.3f}, {:.3f}) N",
+        s.cycle, static_cast<double>(s.lateness_ns) * 1e-3, static_cast<double>(s.sample_age_ns) * 1e-3,
+        s.pos_world_m[0], s.pos_world_m[1], s.pos_world_m[2], s.wanted_n[0], s.wanted_n[1], s.wanted_n[2],
+        s.applied_before_n[0], s.applied_before_n[1], s.applied_before_n[2]);
+}
+
+void House::report() {
+    report_.bad_input = bad_input_ + link_.refused();
+    mail_.house.publish(report_);
+}
+
+}  // namespace tact

@@ -1,0 +1,72 @@
+// The house thread: everything of tact-rt that may wait, allocate or speak.
+//
+// Does      serves the link, maps the GUI's region, checks its commands and loads and passes them on to the
+//           servo, prints events, collects old models, ends the run after its time
+// Runs on   the main thread, ordinary scheduling; never on the servo's core by choice
+// Hostile   what the GUI's region holds is checked field by field; what is wrong is counted and dropped
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ipc/shm/link.hpp"
+#include "ipc/shm/region.hpp"
+#include "ipc/topics/regions.hpp"
+#include "rt/loop/mail.hpp"
+
+namespace tact {
+
+// A command in the servo's terms, or why not. path_names in the order of the governor's paths.
+struct CheckedCommand {
+    ServoOrder order{};
+    CommandResult result = CommandResult::none;  // none: fit to pass on
+};
+[[nodiscard]] CheckedCommand check_command(const CommandTopic& command,
+                                           std::span<const std::string> path_names);
+// False: some field cannot be true.
+[[nodiscard]] bool plausible(const LoadTopic& load);
+
+struct HouseSettings {
+    std::string session = "default";
+    double seconds = 0.0;       // 0: until a signal
+    bool arm_with_gui = false;  // arm once, when the visual process has drawn
+    std::vector<std::string> path_names;
+    int servo_thread_id = 0;
+    std::uint64_t page_faults_at_start = 0;
+};
+
+class House {
+public:
+    House(HouseSettings settings, OwnedRegion<RtRegion>& region, ServoMail& mail, LinkServer& link);
+    // Passes an order from the command line.
+    void order(CommandKind kind, double value, std::uint32_t index);
+    // Until the servo has ended.
+    void run();
+    // The signals that stop a run go to `mail`; installs the handlers.
+    static void catch_signals(ServoMail& mail);
+
+private:
+    void attend_link();
+    void attend_gui();
+    void attend_events();
+    void report();
+
+    HouseSettings settings_;
+    OwnedRegion<RtRegion>& region_;
+    ServoMail& mail_;
+    LinkServer& link_;
+    MappedRegion<GuiRegion> gui_;
+    RingCursor commands_;
+    RingCursor events_;
+    std::uint64_t loads_seen_ = 0;
+    std::uint64_t bad_input_ = 0;
+    std::uint64_t faults_seen_ = 0;
+    HouseReport report_{};
+};
+
+}  // namespace tact

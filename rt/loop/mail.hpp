@@ -1,0 +1,94 @@
+// What the servo thread and the house thread tell each other, inside tact-rt. Neither ever waits.
+//
+// house -> servo   orders (validated commands), what the GUI reported, a new force model, the stop signal
+// servo -> house   the old force model, a snapshot at a fault, that it has ended
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "ipc/shm/latest.hpp"
+#include "ipc/shm/ring.hpp"
+#include "rt/force/force_model.hpp"
+
+namespace tact {
+
+// A command after validation: kinds and indexes are in range, values are finite.
+struct ServoOrder {
+    std::uint64_t sequence;  // of the command; 0: from the command line, not acknowledged
+    double value;
+    std::uint32_t kind;   // CommandKind
+    std::uint32_t index;  // path or law
+};
+
+struct HouseReport {
+    std::int64_t gui_heartbeat_ns;  // when the GUI last reported; -1: never
+    std::uint64_t gui_generation;
+    std::uint64_t bad_input;
+    std::uint64_t page_faults;  // of the servo thread, from /proc, since it asked
+    double gui_fps;
+    double gui_busy_s;
+    std::uint32_t gui_vertices;
+    std::uint32_t gui_vertices_max;
+    std::uint32_t gui_attached;  // 0 or 1
+    std::uint32_t reserved;
+};
+
+// The state of the loop at the first fault.
+struct FaultSnapshot {
+    std::uint64_t cycle;
+    std::int64_t taken_at_ns;
+    std::int64_t lateness_ns;
+    std::int64_t sample_age_ns;
+    double measured;
+    double pos_world_m[3];
+    double velocity_world_m_s[3];
+    double wanted_n[3];  // by the model
+    double applied_before_n[3];
+    std::uint64_t reason;  // RunReason
+};
+
+// One model on its way in, one on its way out.
+class ModelHandover {
+public:
+    ~ModelHandover() { collect(); }
+
+    // House. False: the one before has not been taken yet; the model stays with the caller.
+    bool offer(std::unique_ptr<ForceModel>& model) {
+        ForceModel* expected = nullptr;
+        // Release: the servo sees a whole model; pairs with take().
+        if (!incoming_.compare_exchange_strong(expected, model.get(), std::memory_order_release))
+            return false;
+        static_cast<void>(model.release());
+        return true;
+    }
+    // House. The model that the servo no longer uses, to be destroyed off its thread.
+    std::unique_ptr<ForceModel> collect() {
+        return std::unique_ptr<ForceModel>(outgoing_.exchange(nullptr, std::memory_order_acquire));
+    }
+    // Servo. Null where nothing came, or where the old one still waits to be collected.
+    ForceModel* take() noexcept TACT_RT {
+        if (incoming_.load(std::memory_order_relaxed) == nullptr) return nullptr;
+        if (outgoing_.load(std::memory_order_relaxed) != nullptr) return nullptr;
+        return incoming_.exchange(nullptr, std::memory_order_acquire);
+    }
+    // Servo. Only after take() gave one; pairs with collect().
+    void give_back(ForceModel* old) noexcept TACT_RT { outgoing_.store(old, std::memory_order_release); }
+
+private:
+    std::atomic<ForceModel*> incoming_{nullptr};
+    std::atomic<ForceModel*> outgoing_{nullptr};
+};
+
+struct ServoMail {
+    Ring<ServoOrder, 64> orders{};
+    Latest<HouseReport> house{};
+    Latest<FaultSnapshot> fault{};
+    ModelHandover model;
+    std::atomic<int> stop_signal{0};  // signal number, or -1: the run's time is over
+    std::atomic<bool> ended{false};
+};
+
+}  // namespace tact

@@ -1,0 +1,304 @@
+#include "rt/loop/servo.hpp"
+
+#include <algorithm>
+
+#include "ipc/base/error.hpp"
+#include "ipc/topics/levels.hpp"
+
+namespace tact {
+
+namespace {
+
+// The picture's path. Its floor is what a person still recognizes; its slew is the law's.
+constexpr KnobSpec kMeshKnob{.path = kMeshPath, .floor = 0.01F, .start = 1.0F};
+
+// A stop ramps out in rt/safety's ramp_out_s; the amplifier goes off after this at the latest.
+constexpr Duration kStopMax = std::chrono::milliseconds(100);
+
+ChainSettings for_device(ChainSettings chain, const DeviceInfo& info) {
+    chain.force_n_max = std::min(chain.force_n_max, info.force_n_max);
+    chain.torque_n_m_max = std::min(chain.torque_n_m_max, info.torque_n_m_max);
+    chain.wall_stiffness_n_m = std::min(chain.wall_stiffness_n_m, info.stiffness_n_m_max);
+    chain.force_n_continuous = info.force_n_continuous;
+    chain.workspace_half_m = info.workspace_half_m;
+    if (info.position_step_m > 0.0) chain.translation.position_step = info.position_step_m;
+    return chain;
+}
+
+}  // namespace
+
+Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
+    : clock_(parts.clock),
+      region_(parts.region),
+      mail_(parts.mail),
+      settings_(settings),
+      arena_(sizeof(CycleState) + 4096),
+      c_(arena_.take<CycleState>(1).data()),
+      pacer_(settings.period, parts.clock.now()),
+      watchdogs_(settings.watchdogs),
+      governor_(settings.governor) {
+    if (parts.hands.empty() || parts.hands.size() > kHandsMax)
+        throw std::logic_error("servo: one or two hands");
+    c_->hands = static_cast<std::uint32_t>(parts.hands.size());
+    for (std::size_t i = 0; i < parts.hands.size(); ++i) {
+        HandCycle& h = c_->hand[i];
+        h.device = parts.hands[i].device;
+        h.model = parts.hands[i].model;
+        h.torque = parts.hands[i].info.torque_n_m_max > 0.0;
+        h.chain = OutputChain(for_device(settings.chain, parts.hands[i].info));
+    }
+    c_->house.gui_heartbeat_ns = -1;
+    const bool ok =
+        governor_.add(kMeshKnob) == kMeshIndex && governor_.add(c_->hand[0].model->knob()) == kForceIndex;
+    if (!ok)
+        throw StartupError("the knobs of the scene", "the force model's knob is impossible",
+                           "report this scene");
+    governor_.set_present(kMeshIndex, false);
+    arena_.seal();
+}
+
+void Servo::warm_up() noexcept {
+    // Bounded in time too: a step of 100 000 atoms takes a millisecond.
+    constexpr Duration kMax = std::chrono::milliseconds(200);
+    const Instant begin = clock_.now();
+    dry_ = true;
+    for (std::uint32_t i = 0; i < settings_.dry_cycles && clock_.now() - begin < kMax; ++i) cycle();
+    dry_ = false;
+
+    CycleState& c = *c_;
+    const Instant now = clock_.now();
+    c.cycle = 0;
+    c.before = now;
+    c.overran = false;
+    c.behind = Duration{0};
+    c.out_of_time = 0;
+    for (std::uint32_t i = 0; i < c.hands; ++i) c.hand[i].model->reset(c.hand[i].tool);
+    pacer_.restart(now + settings_.period);
+    watchdogs_.forget();
+    statistics_.start(now);
+    governed_at_ = health_at_ = now;
+    interval_cycles_ = interval_overruns_ = 0;
+    interval_cost_ = interval_model_cost_ = Duration{0};
+    c.run = next_status(c.run, {.open = true}, now);
+    say(EventCode::loop_started, 0.0, 0.0);
+    publish_levels(c);
+    publish_health(c);
+}
+
+void Servo::cycle() noexcept {
+    CycleState& c = *c_;
+    wake(c);
+    const RtSection inside;
+    sense(c);
+    pose(c);
+    model(c);
+    shape(c);
+    safety(c);
+    actuate(c);
+    publish(c);
+    govern(c);
+    close(c);
+}
+
+void Servo::run() noexcept {
+    while (!finished_) cycle();
+}
+
+void Servo::wake(CycleState& c) noexcept {
+    if (settings_.free_running || dry_) {
+        c.now = c.planned = clock_.now();
+        c.lateness = Duration{0};
+    } else {
+        c.planned = pacer_.planned();
+        clock_.wait_until(c.planned);
+        c.now = clock_.now();
+        c.lateness = c.now - c.planned;
+        if (!dry_) statistics_.late(c.lateness);
+    }
+    c.dt = c.cycle == 0 ? Duration{0} : c.now - c.before;
+    c.before = c.now;
+    ++c.cycle;
+}
+
+void Servo::sense(CycleState& c) noexcept {
+    take_mail(c);
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        h.read_status = h.device->read(h.sample, c.now);
+        h.sample_usable = h.read_status != IoStatus::lost && h.sample.T_dev_tool.finite() &&
+                          h.sample.twist_dev.linear_m_s.allFinite() &&
+                          h.sample.twist_dev.angular_rad_s.allFinite();
+    }
+}
+
+void Servo::pose(CycleState& c) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        if (!h.sample_usable) continue;  // the model goes on with the last good one; the watchdog decides
+        h.tool.T_world_tool = settings_.T_world_dev * h.sample.T_dev_tool;
+        h.tool.twist_world = {settings_.T_world_dev.q * h.sample.twist_dev.linear_m_s,
+                              settings_.T_world_dev.q * h.sample.twist_dev.angular_rad_s};
+        h.tool.buttons = h.sample.buttons;
+    }
+}
+
+void Servo::model(CycleState& c) noexcept {
+    take_model(c);
+    const Instant begin = clock_.now();
+    const Budget budget{.fidelity = governor_.level(kForceIndex),
+                        .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max()};
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        h.step = h.model->step(h.tool, budget);
+        if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
+    }
+    c.model_cost = clock_.now() - begin;
+}
+
+void Servo::shape(CycleState& c) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        h.wanted_world.force_n = settings_.force_scale * h.step.wrench_world.force_n -
+                                 settings_.damping_n_s_m * h.tool.twist_world.linear_m_s;
+        h.wanted_world.torque_n_m =
+            h.torque ? Vec3(settings_.force_scale * h.step.wrench_world.torque_n_m) : Vec3::Zero();
+    }
+}
+
+void Servo::safety(CycleState& c) noexcept {
+    WatchdogInput look{.now = c.now,
+                       .sample_taken_at = c.now,
+                       .lateness = std::max(c.lateness, c.behind),
+                       .overran = c.overran};
+    c.events.hand_present = true;
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        const HandCycle& h = c.hand[i];
+        look.sample_taken_at = std::min(look.sample_taken_at, h.sample.taken_at);
+        look.device_lost =
+            look.device_lost || h.read_status == IoStatus::lost || h.write_status == IoStatus::lost;
+        look.device_fault =
+            look.device_fault || h.read_status == IoStatus::fault || !h.sample_usable ||
+            h.sample.state == DeviceState::fault ||
+            (h.sample.state == DeviceState::watchdog_tripped && settings_.watchdogs.timing_latches);
+        look.force_finite = look.force_finite && h.wanted_world.finite();
+        c.events.hand_present = c.events.hand_present && h.sample.hand_present;
+    }
+    c.trip = watchdogs_.look(look);
+    if (watchdogs_.warns()) say(EventCode::overrun, to_us(c.cost), static_cast<double>(pacer_.overruns()));
+
+    const RunStatus before = c.run;
+    c.events.trip = c.trip.reason;
+    const int signal = mail_.stop_signal.load(std::memory_order_relaxed);
+    c.events.stop = signal != 0;
+    if (c.events.stop && !stopping_) say(EventCode::stopping, static_cast<double>(signal), 0.0);
+    stopping_ = c.events.stop;
+    bool still = true;
+    for (std::uint32_t i = 0; i < c.hands; ++i) still = still && c.hand[i].out.gain <= 0.0;
+    c.events.close =
+        c.events.stop && !dry_ && (still || (!amplifier_on(c.run.state) && c.now - c.run.since > kStopMax));
+    if (!dry_) c.run = next_status(c.run, c.events, c.now);
+    answer_state_order(c, before.state);
+
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        // Where timing latches no fault, neither does the device's own watchdog: a cycle without enable gives
+        // it its edge, and the ramp starts anew.
+        const bool dropped = h.sample.state == DeviceState::watchdog_tripped;
+        if (dropped && amplifier_on(c.run.state)) say(EventCode::device_watchdog, to_us(c.dt) * 1e-3, 0.0);
+        const Quat back = settings_.T_world_dev.q.conjugate();
+        h.out = h.chain.apply(
+            {.wanted_dev = {back * h.wanted_world.force_n, back * h.wanted_world.torque_n_m},
+             .T_dev_tool = h.sample.T_dev_tool,
+             .dt = c.dt,
+             .force_on = force_may_flow(c.run.state),
+             .gate_open = c.run.state != RunState::off && c.run.state != RunState::fault && !dropped,
+             .amplifier = amplifier_on(c.run.state)});
+        h.shown_world = {settings_.T_world_dev.q * h.out.wrench_dev.force_n,
+                         settings_.T_world_dev.q * h.out.wrench_dev.torque_n_m};
+        say_acts(c, h);
+    }
+    if (c.run.state == before.state) return;
+    say(EventCode::state_changed, static_cast<double>(before.state), static_cast<double>(c.run.state));
+    if (c.run.state == RunState::fault) note_fault(c);
+    if (c.run.state == RunState::off) finished_ = true;
+    health_due_ = true;
+}
+
+void Servo::actuate(CycleState& c) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        h.write_status = h.device->write(
+            {.wrench_dev = h.out.wrench_dev, .enable = h.out.enable, .heartbeat = c.cycle}, c.now);
+    }
+}
+
+void Servo::publish(CycleState& c) noexcept {
+    publish_tools(c);
+    if (dry_) return;
+    statistics_.rate.count();
+    if (c.now - health_at_ >= std::chrono::milliseconds(100)) {
+        statistics_.rate.turn(c.now);
+        health_at_ = c.now;
+        health_due_ = true;
+        if (statistics_.second_over(c.now)) publish_lateness(c);
+    }
+    if (health_due_) publish_health(c);
+}
+
+void Servo::govern(CycleState& c) noexcept {
+    ++interval_cycles_;
+    interval_model_cost_ += c.model_cost;
+    const Duration interval = c.now - governed_at_;
+    if (dry_ || interval < settings_.governor_interval) return;
+    law_rate_hz_ = rate_for_law(interval);
+    model_cost_s_ = to_s(interval_model_cost_) / static_cast<double>(interval_cycles_);
+    governor_.set_present(kMeshIndex, c.house.gui_attached != 0);
+    float before[Governor::kPathsMax];
+    const auto paths = governor_.paths();
+    for (std::size_t i = 0; i < paths.size(); ++i) before[i] = paths[i].level;
+    bool changed = governor_.step(law_rate_hz_, interval);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (paths[i].level != before[i])
+            say(EventCode::level_changed, static_cast<double>(i), static_cast<double>(paths[i].level));
+    }
+    changed = changed || levels_vertices_max_ != c.house.gui_vertices_max;
+    if (changed) ++levels_sequence_;
+    publish_levels(c);
+    governed_at_ = c.now;
+    interval_cycles_ = interval_overruns_ = 0;
+    interval_cost_ = interval_model_cost_ = Duration{0};
+}
+
+// A loop of fixed rate never shows more than its rate. What the law has to see is whether there is time to
+// spare: the rate that the cycles of this interval would have allowed. It is cut at a tenth above the goal,
+// so that levels come back by a few percent a step and not in one leap.
+double Servo::rate_for_law(Duration interval) const noexcept {
+    const double measured_hz = static_cast<double>(interval_cycles_) / std::max(to_s(interval), 1e-9);
+    if (settings_.free_running || interval_overruns_ > 0 || interval_cost_.count() <= 0) return measured_hz;
+    const double possible_hz = static_cast<double>(interval_cycles_) / to_s(interval_cost_);
+    return std::max(measured_hz, std::min(possible_hz, 1.1 * governor_.settings().goal_hz));
+}
+
+void Servo::close(CycleState& c) noexcept {
+    const Instant end = clock_.now();
+    c.cost = end - c.now;
+    if (dry_) return;
+    statistics_.spent(c.cost);
+    interval_cost_ += c.cost;
+    if (settings_.free_running) {
+        c.behind = c.cost;  // without a plan, a long cycle is the only way to be late
+    } else {
+        c.behind = end - c.planned - settings_.period;
+        c.overran = pacer_.ended(end);
+    }
+    if (c.overran) {
+        ++interval_overruns_;
+        if (end - overrun_said_at_ > std::chrono::milliseconds(100)) {
+            overrun_said_at_ = end;
+            say(EventCode::overrun, to_us(end - c.planned), static_cast<double>(pacer_.overruns()));
+        }
+    }
+    publish_trace(c);
+}
+
+}  // namespace tact

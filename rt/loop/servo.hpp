@@ -1,0 +1,143 @@
+// The servo loop: one cycle of eight stages, at a fixed rate or as often as the processor allows.
+//
+// Runs on   the servo thread; in tests and replays on any thread, in lockstep with a ManualClock
+// Owns      the arena with the CycleState, the governor, the statistics; borrows everything in ServoParts
+// Writes    the region "tact.rt": it is the only writer of every topic in it
+// Fails by  going to zero force and latching a fault (rt/safety); it never stops by itself
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "hal/api/haptic_device.hpp"
+#include "ipc/base/arena.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/pacer.hpp"
+#include "ipc/topics/regions.hpp"
+#include "rt/force/force_model.hpp"
+#include "rt/govern/governor.hpp"
+#include "rt/loop/cycle.hpp"
+#include "rt/loop/mail.hpp"
+#include "rt/loop/statistics.hpp"
+
+namespace tact {
+
+struct ServoSettings {
+    Duration period = std::chrono::milliseconds(1);
+    bool free_running = false;
+    Duration model_max = std::chrono::microseconds(600);  // of the model's step; the net beneath its level
+    bool model_deadline = true;                           // false with a clock that is not the machine's
+    double force_scale = 1.0;
+    double damping_n_s_m = 0.0;  // of the coupling, against the tool's velocity
+    Pose T_world_dev;
+    WatchdogSettings watchdogs;
+    ChainSettings chain;
+    GovernorSettings governor;
+    Duration governor_interval = std::chrono::milliseconds(200);
+    Duration gui_silent = std::chrono::milliseconds(500);
+    bool gui_silent_ramps = false;  // else it is only said
+    std::uint32_t dry_cycles = 1000;
+};
+
+struct HandParts {
+    HapticDevice* device;
+    ForceModel* model;
+    DeviceInfo info;
+};
+
+struct ServoParts {
+    Clock& clock;
+    std::span<const HandParts> hands;  // 1 or 2
+    RtRegion& region;
+    ServoMail& mail;
+};
+
+class Servo {
+public:
+    Servo(const ServoParts& parts, const ServoSettings& settings);
+    Servo(const Servo&) = delete;
+    Servo& operator=(const Servo&) = delete;
+
+    // Cycles with the gate closed that warm caches and pages; then counters from zero, state ready.
+    void warm_up() noexcept;
+    void cycle() noexcept TACT_RT;
+    // Until the stop signal has led to zero force and the amplifier is off.
+    void run() noexcept;
+
+    [[nodiscard]] bool finished() const noexcept { return finished_; }
+    [[nodiscard]] const CycleState& state() const noexcept { return *c_; }
+    [[nodiscard]] const Governor& governor() const noexcept { return governor_; }
+    [[nodiscard]] const ServoStatistics& statistics() const noexcept { return statistics_; }
+    [[nodiscard]] const Pacer& pacer() const noexcept { return pacer_; }
+    void set_schedule_flags(std::uint32_t flags) noexcept { schedule_flags_ = flags; }
+    // For the last health, read by the servo thread itself after its last cycle.
+    void publish_end(std::uint64_t page_faults) noexcept;
+
+    static constexpr std::size_t kMeshIndex = 0;
+    static constexpr std::size_t kForceIndex = 1;
+
+private:
+    // The stages, in order.
+    void wake(CycleState& c) noexcept TACT_RT;
+    void sense(CycleState& c) noexcept TACT_RT;
+    void pose(CycleState& c) noexcept TACT_RT;
+    void model(CycleState& c) noexcept TACT_RT;
+    void shape(CycleState& c) noexcept TACT_RT;
+    void safety(CycleState& c) noexcept TACT_RT;
+    void actuate(CycleState& c) noexcept TACT_RT;
+    void publish(CycleState& c) noexcept TACT_RT;
+    void govern(CycleState& c) noexcept TACT_RT;
+    void close(CycleState& c) noexcept TACT_RT;
+
+    // Parts of stages: mail in and out (servo_mail.cpp), topics out (servo_publish.cpp).
+    void take_model(CycleState& c) noexcept TACT_RT;
+    void take_mail(CycleState& c) noexcept TACT_RT;
+    void obey(CycleState& c, const ServoOrder& order) noexcept TACT_RT;
+    void acknowledge(const ServoOrder& order, CommandResult result) noexcept TACT_RT;
+    void answer_state_order(CycleState& c, RunState before) noexcept TACT_RT;
+    void note_fault(const CycleState& c) noexcept TACT_RT;
+    void say(EventCode code, double a, double b) noexcept TACT_RT;
+    void say_acts(CycleState& c, HandCycle& h) noexcept TACT_RT;
+    void publish_tools(const CycleState& c) noexcept TACT_RT;
+    void publish_health(const CycleState& c) noexcept TACT_RT;
+    void publish_lateness(const CycleState& c) noexcept TACT_RT;
+    void publish_levels(const CycleState& c) noexcept TACT_RT;
+    void publish_trace(const CycleState& c) noexcept TACT_RT;
+    [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
+
+    Clock& clock_;
+    RtRegion& region_;
+    ServoMail& mail_;
+    ServoSettings settings_;
+    Arena arena_;
+    CycleState* c_;
+    Pacer pacer_;
+    Watchdogs watchdogs_;
+    Governor governor_;
+    ServoStatistics statistics_;
+
+    RingCursor orders_;
+    CommandResult last_result_ = CommandResult::none;
+    std::uint64_t last_sequence_ = 0;
+    std::uint64_t events_said_ = 0;
+    std::uint64_t house_seen_ = 0;
+    std::uint64_t gui_generation_ = 0;
+    bool gui_attached_ = false, gui_silent_ = false;
+    bool health_due_ = false;
+    bool stopping_ = false, finished_ = false, dry_ = false;
+    Instant health_at_{}, overrun_said_at_{};
+    std::uint64_t page_faults_ = 0;
+    std::uint32_t schedule_flags_ = 0;
+
+    // Of the governor's running interval.
+    Instant governed_at_{};
+    std::uint64_t interval_cycles_ = 0, interval_overruns_ = 0;
+    Duration interval_cost_{0}, interval_model_cost_{0};
+    double law_rate_hz_ = 0.0;
+    double model_cost_s_ = 0.0;
+    std::uint64_t levels_sequence_ = 0;
+    std::uint32_t levels_vertices_max_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,185 @@
+// The servo's words: every topic of the region "tact.rt" is written here and nowhere else.
+#include <algorithm>
+#include <cstring>
+
+#include "rt/loop/rt_guard.hpp"
+#include "rt/loop/servo.hpp"
+
+namespace tact {
+
+namespace {
+
+void put(double (&to)[3], const Vec3& from) noexcept {
+    for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+void put(float (&to)[3], const Vec3& from) noexcept {
+    for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+}
+void put(double (&to)[4], const Quat& from) noexcept {
+    for (int i = 0; i < 4; ++i) to[i] = from.coeffs()[i];
+}
+std::int32_t cut_ns(Duration d) noexcept {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(d.count(), 0, 2'000'000'000));
+}
+
+}  // namespace
+
+void Servo::say(EventCode code, double a, double b) noexcept {
+    ++events_said_;
+    EventTopic e{};
+    e.taken_at_ns = to_ns(c_->now);
+    e.cycle = c_->cycle;
+    e.code = static_cast<std::uint16_t>(code);
+    e.a = a;
+    e.b = b;
+    region_.events.push(e);
+}
+
+// A limit that acts for a second would fill the ring with itself; each is said at most twice a second.
+void Servo::say_acts(CycleState& c, HandCycle& h) noexcept {
+    if (dry_ || h.out.acts == 0 || !force_may_flow(c.run.state)) return;
+    const ChainSettings& limit = h.chain.settings();
+    const auto due = [&](std::uint32_t act, std::size_t index) {
+        if ((h.out.acts & act) == 0 || c.now - h.said_at[index] < std::chrono::milliseconds(500))
+            return false;
+        h.said_at[index] = c.now;
+        return true;
+    };
+    if (due(kChainForce, 3)) say(EventCode::force_limited, h.out.wanted_n, limit.force_n_max);
+    if (due(kChainTorque, 4)) say(EventCode::torque_limited, h.out.wanted_n_m, limit.torque_n_m_max);
+    if (due(kChainSlew, 6)) say(EventCode::slew_limited, h.out.step_n, limit.force_slew_n_s * to_s(c.dt));
+    if (due(kChainTorqueSlew, 7))
+        say(EventCode::torque_slew_limited, h.out.step_n_m, limit.torque_slew_n_m_s * to_s(c.dt));
+}
+
+void Servo::publish_tools(const CycleState& c) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        const HandCycle& h = c.hand[i];
+        ToolTopic t{};
+        t.taken_at_ns = to_ns(h.sample.taken_at);
+        t.cycle = c.cycle;
+        put(t.pos_world_m, h.tool.T_world_tool.p_m);
+        put(t.quat_world_tool_xyzw, h.tool.T_world_tool.q);
+        put(t.force_world_n, h.shown_world.force_n);
+        put(t.torque_world_n_m, h.shown_world.torque_n_m);
+        put(t.force_model_n, h.step.wrench_world.force_n);
+        put(t.velocity_world_m_s, h.tool.twist_world.linear_m_s);
+        t.buttons = h.tool.buttons;
+        t.device_state = static_cast<std::uint8_t>(h.sample.state);
+        region_.tool[i].publish(t);
+    }
+    const ModelBodies bodies = c.hand[0].model->bodies();
+    BodiesTopic b{};
+    b.taken_at_ns = to_ns(c.now);
+    b.cycle = c.cycle;
+    b.count = std::min(bodies.count, static_cast<std::uint32_t>(kBodiesMax));
+    b.active = bodies.active;
+    for (std::uint32_t i = 0; i < b.count; ++i) {
+        put(b.body[i].pos_model_m, bodies.T_model_body[i].p_m);
+        put(b.body[i].quat_model_body_xyzw, bodies.T_model_body[i].q);
+    }
+    region_.bodies.publish(b);
+}
+
+void Servo::publish_health(const CycleState& c) noexcept {
+    health_due_ = false;
+    const WindowFigures& f = statistics_.figures;
+    HealthTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.cycle = c.cycle;
+    t.period_ns = settings_.free_running ? 0 : settings_.period.count();
+    t.force_rate_hz = statistics_.rate.rate_hz();
+    t.force_rate_mean_hz = statistics_.rate.mean_hz(c.now);
+    t.goal_hz = governor_.settings().goal_hz;
+    t.lateness_p50_ns = f.lateness_p50_ns;
+    t.lateness_p99_ns = f.lateness_p99_ns;
+    t.lateness_max_ns = f.lateness_max_ns;
+    t.cycle_cost_p50_ns = f.cost_p50_ns;
+    t.cycle_cost_max_ns = f.cost_max_ns;
+    t.overruns = pacer_.overruns();
+    t.skipped = pacer_.skipped();
+    t.allocations = rt_guard::counts().allocations;
+    t.locks = rt_guard::counts().locks;
+    t.page_faults = std::max(c.house.page_faults, page_faults_);
+    t.bad_input = c.house.bad_input;
+    t.events = events_said_;
+    t.command_sequence = last_sequence_;
+    t.command_result = static_cast<std::uint32_t>(last_result_);
+    t.schedule_flags = schedule_flags_;
+    t.gui_heartbeat_age_ns = c.house.gui_heartbeat_ns < 0
+                                 ? -1
+                                 : std::max<std::int64_t>(to_ns(c.now) - c.house.gui_heartbeat_ns, 0);
+    t.gui_fps = c.house.gui_fps;
+    t.gui_vertices = c.house.gui_vertices;
+    t.state = static_cast<std::uint8_t>(c.run.state);
+    t.reason = static_cast<std::uint8_t>(c.run.reason);
+    t.gui_attached = c.house.gui_attached != 0 ? 1 : 0;
+    t.device_state = static_cast<std::uint8_t>(c.hand[0].sample.state);
+    region_.health.publish(t);
+}
+
+void Servo::publish_lateness(const CycleState& c) noexcept {
+    LatenessTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.total = statistics_.lateness.total();
+    t.max_ns = statistics_.lateness.max_ns();
+    std::copy(statistics_.lateness.counts().begin(), statistics_.lateness.counts().end(), t.counts);
+    region_.lateness.publish(t);
+}
+
+void Servo::publish_levels(const CycleState& c) noexcept {
+    levels_vertices_max_ = c.house.gui_vertices_max;
+    LevelsTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.sequence = levels_sequence_;
+    t.goal_hz = governor_.settings().goal_hz;
+    t.rate_hz = law_rate_hz_;
+    const std::string_view law = kLawNames[static_cast<std::size_t>(governor_.settings().law)];
+    std::memcpy(t.law, law.data(), std::min(law.size(), kLawNameMax - 1));
+    const auto paths = governor_.paths();
+    t.count = static_cast<std::uint32_t>(std::min(paths.size(), tact::kPathsMax));
+    for (std::size_t i = 0; i < t.count; ++i) {
+        PathLevel& p = t.path[i];
+        const std::string_view name = paths[i].knob.path;
+        std::memcpy(p.path, name.data(), std::min(name.size(), kPathNameMax - 1));
+        p.level = paths[i].level;
+        p.floor = paths[i].knob.floor;
+        p.reason = static_cast<std::uint8_t>(paths[i].reason);
+        p.haptic = paths[i].knob.haptic ? 1 : 0;
+    }
+    const ForceModel& model = *c.hand[0].model;
+    PathLevel& mesh = t.path[kMeshIndex];
+    mesh.items_max = c.house.gui_vertices_max;
+    mesh.items = static_cast<std::uint32_t>(static_cast<double>(mesh.level) * mesh.items_max + 0.5);
+    mesh.cost_s = c.house.gui_busy_s;
+    PathLevel& force = t.path[kForceIndex];
+    force.items = model.items(force.level);
+    force.items_max = model.items(1.0F);
+    force.cost_s = model_cost_s_;
+    force.error = c.hand[0].step.load.error;
+    region_.levels.publish(t);
+}
+
+void Servo::publish_trace(const CycleState& c) noexcept {
+    const HandCycle& h = c.hand[0];
+    TraceTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.cycle = c.cycle;
+    t.lateness_ns = cut_ns(c.lateness);
+    t.cost_ns = cut_ns(c.cost);
+    t.model_ns = cut_ns(c.model_cost);
+    t.level = governor_.level(kForceIndex);
+    put(t.pos_world_m, h.tool.T_world_tool.p_m);
+    put(t.force_world_n, h.shown_world.force_n);
+    put(t.torque_world_n_m, h.shown_world.torque_n_m);
+    t.status = static_cast<std::uint32_t>(c.run.state) | static_cast<std::uint32_t>(h.step.status) << 8;
+    region_.trace.push(t);
+}
+
+void Servo::publish_end(std::uint64_t page_faults) noexcept {
+    page_faults_ = page_faults;
+    publish_lateness(*c_);
+    publish_health(*c_);
+}
+
+}  // namespace tact

@@ -1,0 +1,286 @@
+// tact-rt: closes the force loop on a baked scene.
+//
+// Exit  0  the run ended in order: by a signal, or its time was over
+//       1  it could not start; one message says what, why and the mend
+#include <pthread.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "hal/registry.hpp"
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/servo_clock.hpp"
+#include "ipc/base/units.hpp"
+#include "ipc/shm/link.hpp"
+#include "ipc/topics/text.hpp"
+#include "rt/force/docking/docking_model.hpp"
+#include "rt/loop/config.hpp"
+#include "rt/loop/house.hpp"
+#include "rt/loop/rt_guard.hpp"
+#include "rt/loop/servo.hpp"
+#include "rt/loop/thread_setup.hpp"
+
+namespace {
+
+using namespace tact;
+
+struct Options {
+    std::string scene, session = "default", config;
+    double seconds = 0.0;
+    bool arm = false, arm_with_gui = false, check = false;
+    double start_offset_a = 0.0, start_rotation_deg = 0.0;
+    std::uint64_t seed = 1;
+    std::vector<std::string> levels;
+};
+
+// The command line goes on top of the file, so it is parsed into these and applied after it.
+struct Overrides {
+    std::optional<double> rate_hz, goal_hz, force_scale;
+    std::optional<std::string> law;
+    std::optional<int> core, priority;
+    bool free_run = false;
+};
+
+void describe(CLI::App& app, Options& o, Overrides& v) {
+    app.add_option("scene", o.scene, "baked scene, from tact-prep")->required();
+    app.add_option("--session", o.session, "name under which the other programs find this one");
+    app.add_option("--config", o.config, "TOML file; deploy/tact.toml shows every key");
+    app.add_option("--seconds", o.seconds, "end after so long; 0: run until a signal")
+        ->check(CLI::Range(0.0, 1e7));
+    auto* rate = app.add_option("--rate", v.rate_hz, "servo rate in Hz")->check(CLI::Range(10.0, 20000.0));
+    app.add_flag("--free-run", v.free_run, "as many updates as the processor gives")->excludes(rate);
+    app.add_option("--law", v.law, "of the governor: sensitus or fixed");
+    app.add_option("--goal", v.goal_hz, "of the governor, in Hz")->check(CLI::Range(1.0, 1e7));
+    app.add_flag("--arm", o.arm, "arm at once instead of waiting for a command");
+    app.add_flag(
+        "--arm-with-gui", o.arm_with_gui,
+        "arm once, when the visual process has drawn its first frame, so that a person sees all of it");
+    app.add_option("--level", o.levels,
+                   "PATH=VALUE: a fixed level, e.g. docking.force=1; the law becomes fixed");
+    app.add_option("--core", v.core, "core of the servo thread; -1: chosen, -2: not pinned");
+    app.add_option("--priority", v.priority, "FIFO priority; 0: ordinary scheduling")
+        ->check(CLI::Range(0, 94));
+    app.add_option("--start-offset-a", o.start_offset_a, "body 0 starts so many angstroms from home")
+        ->check(CLI::Range(0.0, 1e4));
+    app.add_option("--start-rotation-deg", o.start_rotation_deg, "and turned by so many degrees")
+        ->check(CLI::Range(0.0, 180.0));
+    app.add_option("--seed", o.seed, "of that direction, and of the emulated hand");
+    app.add_option("--force-scale", v.force_scale, "times the scene's own gain")->check(CLI::Range(0.0, 1e6));
+    app.add_flag("--check", o.check, "read and check everything, then exit");
+}
+
+RtConfig configure(const Options& o, const Overrides& v) {
+    RtConfig c;
+    if (!o.config.empty()) read_config(o.config, c);
+    if (v.rate_hz) {
+        c.servo.period_us = 1e6 / *v.rate_hz;
+        c.servo.free_running = false;
+    }
+    if (v.free_run) c.servo.free_running = true;
+    // A FIFO loop that never sleeps would be throttled, so free running is ordinary unless asked otherwise.
+    if (c.servo.free_running && !v.priority) c.servo.priority = 0;
+    if (v.priority) c.servo.priority = *v.priority;
+    if (v.core) c.servo.core = *v.core;
+    if (v.law) c.governor.law = *v.law;
+    if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
+    if (v.force_scale) c.shape.force_scale = *v.force_scale;
+    if (!o.levels.empty()) c.governor.law = "fixed";
+    c.device.hand_seed = static_cast<std::int64_t>(o.seed);
+    check_config(c, "command line and configuration");
+    return c;
+}
+
+struct LevelWish {
+    std::uint32_t path;
+    double level;
+};
+
+LevelWish parse_level(const std::string& text, const std::vector<std::string>& paths, const Servo& servo) {
+    const auto equals = text.find('=');
+    char* end = nullptr;
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const double level = std::strtod(value.c_str(), &end);
+    std::string known;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        known += (i == 0 ? "" : ", ") + paths[i];
+        if (text.substr(0, equals) != paths[i] || value.empty() || *end != 0) continue;
+        const double floor = static_cast<double>(servo.governor().paths()[i].knob.floor);
+        if (level >= floor && level <= 1.0) return {static_cast<std::uint32_t>(i), level};
+        throw StartupError("--level " + text, "the level is outside " + std::to_string(floor) + " to 1",
+                           "choose a level inside it");
+    }
+    throw StartupError("--level " + text, "this is not PATH=VALUE with a path of this scene",
+                       "paths: " + known);
+}
+
+// The servo thread: its stack is small, locked and touched before the loop.
+struct ServoThread {
+    Servo& servo;
+    ScheduleWish wish;
+    Platform& platform;
+    ServoMail& mail;
+    std::atomic<int> running{0};
+    int thread_id = 0;
+    std::uint64_t faults_at_start = 0;
+    pthread_t handle{};
+
+    static void* body(void* self) {
+        ServoThread& t = *static_cast<ServoThread*>(self);
+        prepare_thread(t.wish, t.platform);
+        t.servo.set_schedule_flags(t.platform.flags);
+        t.thread_id = gettid();
+        t.servo.warm_up();
+        t.faults_at_start = own_page_faults();
+        t.running.store(1, std::memory_order_release);
+        t.running.notify_one();
+        t.servo.run();
+        t.servo.publish_end(own_page_faults() - t.faults_at_start);
+        t.mail.ended.store(true, std::memory_order_release);
+        return nullptr;
+    }
+    void start() {
+        pthread_attr_t attributes;
+        pthread_attr_init(&attributes);
+        pthread_attr_setstacksize(&attributes, 1024 * 1024);
+        const int error = pthread_create(&handle, &attributes, &body, this);
+        pthread_attr_destroy(&attributes);
+        if (error != 0)
+            throw StartupError("starting the servo thread", std::strerror(error), "free some memory");
+        running.wait(0, std::memory_order_acquire);
+    }
+    void join() const { pthread_join(handle, nullptr); }
+};
+
+void say_how_it_went(const RtRegion& region) {
+    HealthTopic h{};
+    LatenessTopic l{};
+    if (!region.health.read(h) || !region.lateness.read(l)) return;
+    const auto us = [&](double p) {
+        return static_cast<double>(DurationHistogram::percentile_ns(l.counts, l.total, l.max_ns, p)) * 1e-3;
+    };
+    spdlog::info("{:.1f} updates a second over {} cycles; {} overruns, {} periods skipped",
+                 h.force_rate_mean_hz, h.cycle, h.overruns, h.skipped);
+    if (l.total > 0) {
+        spdlog::info("lateness p50 {:.2f} us, p99 {:.2f}, p99.9 {:.2f}, max {:.2f}", us(0.5), us(0.99),
+                     us(0.999), static_cast<double>(l.max_ns) * 1e-3);
+    }
+    spdlog::info("on the servo thread inside cycles: {} heap calls, {} locks, {} page faults", h.allocations,
+                 h.locks, h.page_faults);
+}
+
+int run(const Options& o, const Overrides& overrides) {
+    const RtConfig config = configure(o, overrides);
+    const DeviceEntry& driver = device_driver(config.device.driver);
+    const SceneFile scene = SceneFile::open(o.scene);
+
+    // The region first: taking the session's lock needs it, and a second controller must not touch the
+    // device.
+    OwnedRegion<RtRegion> region;
+    std::memset(static_cast<void*>(&*region), 0, sizeof(RtRegion));  // its pages are there from now on
+    const std::string path = std::filesystem::absolute(o.scene).string();
+    std::memcpy(region->scene_path, path.data(), std::min(path.size(), sizeof region->scene_path - 1));
+    region->scene_checksum = scene.checksum();
+    region.mark_ready();
+    std::optional<LinkServer> link;
+    if (!o.check) link.emplace(o.session, region.fd());
+
+    const DockingSettings docking{.start_offset_m = o.start_offset_a * kAngstromM,
+                                  .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
+                                  .seed = o.seed};
+    std::unique_ptr<ForceModel> model = load_docking_model(scene, docking);
+    const std::unique_ptr<HapticDevice> device = driver.make(device_settings_from(config));
+    const DeviceInfo info = device->open();
+    ServoSettings settings = settings_from(config, driver);
+    const HandParts hand{device.get(), model.get(), info};
+
+    ServoMail mail;
+    ServoClock clock(duration_us(config.servo.spin_us));
+    Servo servo({.clock = clock, .hands = {&hand, 1}, .region = *region, .mail = mail}, settings);
+    // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
+    struct LastModel {
+        Servo& servo;
+        ~LastModel() { delete servo.state().hand[0].model; }
+    } const last_model{servo};
+    static_cast<void>(model.release());
+
+    const std::vector<std::string> paths{kMeshPath, hand.model->knob().path};
+    std::vector<LevelWish> wishes;
+    for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
+    if (o.check) {
+        device->relax();
+        std::printf("tact-rt: scene %s, device %s, configuration: all good\n", o.scene.c_str(),
+                    info.name.c_str());
+        return 0;
+    }
+
+    Platform platform;
+    const bool sleeps = !config.servo.free_running && config.servo.spin_us < config.servo.period_us;
+    ServoThread thread{servo,
+                       {.priority = static_cast<int>(config.servo.priority),
+                        .core = static_cast<int>(config.servo.core),
+                        .lock_memory = config.servo.lock_memory,
+                        .limit_processor_time = sleeps},
+                       platform,
+                       mail};
+    House::catch_signals(mail);
+    prepare_process(thread.wish, platform);
+    thread.start();
+    for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
+    if (driver.emulated && config.safety.timing_latches == "real") {
+        spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
+    }
+    spdlog::info("{} on {}; {}; session {}", o.scene, info.name, schedule_text(platform.flags), o.session);
+
+    House house({.session = o.session,
+                 .seconds = o.seconds,
+                 .arm_with_gui = o.arm_with_gui && !o.arm,
+                 .path_names = paths,
+                 .servo_thread_id = thread.thread_id,
+                 .page_faults_at_start = thread.faults_at_start},
+                region, mail, *link);
+    for (const LevelWish& w : wishes) house.order(CommandKind::set_level, w.level, w.path);
+    if (o.arm) house.order(CommandKind::arm, 0.0, 0);
+    house.run();
+    thread.join();
+    device->relax();
+    release_process(platform);
+    say_how_it_went(*region);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("tact-rt"));
+    spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
+    tact::rt_guard::install();
+    CLI::App app{"tact-rt: closes the force loop on a baked scene"};
+    Options options;
+    Overrides overrides;
+    describe(app, options, overrides);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 1;
+    }
+    try {
+        return run(options, overrides);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact-rt: %s\n", e.what());
+        return 1;
+    }
+}

@@ -1,0 +1,69 @@
+// What may no longer be trusted: the age of the sample, the timing of the loop, the value of the force.
+//
+// Runs on   servo thread, every cycle, constant time
+// Owns      the number of overruns in a row; nothing else is remembered
+// Fails by  naming a reason and the value measured; rt/safety/state_machine.hpp decides what follows
+#pragma once
+
+#include <cstdint>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/rt.hpp"
+#include "ipc/base/run_state.hpp"
+
+namespace tact {
+
+struct WatchdogSettings {
+    Duration sample_age_max =
+        std::chrono::microseconds(3500);  // held for three cycles of 1 kHz, not a fourth
+    Duration late_max = std::chrono::milliseconds(5);
+    std::uint32_t overruns_warned = 3;  // in a row
+    std::uint32_t overruns_max = 5;     // in a row
+    bool timing_latches = true;         // false: lateness and overruns are counted and warned of, no more
+};
+
+struct WatchdogInput {
+    Instant now{};
+    Instant sample_taken_at{};
+    Duration lateness{0};  // of this cycle
+    bool overran = false;  // the cycle before this one
+    bool device_lost = false;
+    bool device_fault = false;
+    bool model_failed = false;
+    bool force_finite = true;
+};
+
+struct Trip {
+    RunReason reason = RunReason::none;
+    double measured = 0.0;  // microseconds or a count, as the reason says
+};
+
+class Watchdogs {
+public:
+    explicit Watchdogs(const WatchdogSettings& settings = {}) noexcept : settings_(settings) {}
+
+    Trip look(const WatchdogInput& in) noexcept TACT_RT {
+        overruns_in_a_row_ = in.overran ? overruns_in_a_row_ + 1 : 0;
+        if (in.device_lost) return {RunReason::device_lost, 0.0};
+        if (in.device_fault) return {RunReason::device_fault, 0.0};
+        if (!in.force_finite) return {RunReason::force_not_finite, 0.0};
+        if (in.model_failed) return {RunReason::model_failed, 0.0};
+        const Duration age = in.now - in.sample_taken_at;
+        if (age > settings_.sample_age_max) return {RunReason::sample_stale, to_us(age)};
+        if (!settings_.timing_latches) return {};
+        if (in.lateness > settings_.late_max) return {RunReason::too_late, to_us(in.lateness)};
+        if (overruns_in_a_row_ >= settings_.overruns_max) {
+            return {RunReason::overruns, static_cast<double>(overruns_in_a_row_)};
+        }
+        return {};
+    }
+    [[nodiscard]] bool warns() const noexcept { return overruns_in_a_row_ == settings_.overruns_warned; }
+    [[nodiscard]] std::uint32_t overruns_in_a_row() const noexcept { return overruns_in_a_row_; }
+    void forget() noexcept { overruns_in_a_row_ = 0; }
+
+private:
+    WatchdogSettings settings_;
+    std::uint32_t overruns_in_a_row_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,1 @@
+tact_bench(bench/ipc_bench.cpp USES base shm topics)

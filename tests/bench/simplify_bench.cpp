@@ -1,0 +1,190 @@
+// Simplification: time and two-sided error; and the walk of a progressive mesh.
+//
+// Shapes    two rings of seven blobs, their isosurface in a map of 73³ voxels (12,764 vertices); an open
+//           sheet of 1,250 triangles; a rough torus of a million triangles and one of two, only where the
+//           environment variable TACT_BENCH_LARGE is set, as they take half a minute.
+// Figures   rms_pct, max_pct of the diagonal of the box; sharp: smallest cosine between neighbouring
+//           triangles. copy_ms: a plain copy of the buffers of the level, to judge the machine by.
+//
+// Measured 2026-11-20, two shared and loaded cores of 2.6 GHz, processor time:
+//   rings -> 2000 / 200           17 / 19 ms   rms 0.070 / 0.71 %    max 0.35 / 4.1 %
+//   sheet -> 100 / 8              f = none 0.90 / 4.2 %, 1 0.081 / 1.9 %, 10 0.079 / 1.2 %, 30 0.083 / 1.3 %,
+//                                 100 0.083 / 2.2 %, 1000 0.11 / 2.7 %: so f = 10 is the default
+//   1 M triangles -> 5,000        1.17 s       rms 0.019 %, 236 bytes a vertex at the most
+//   1 M vertices, 100 % -> 28 %   5.5 ms where the plain copy takes 0.9; 28 % -> 100 % 12.6 ms
+//   1000 steps                    0.015 ms down, 0.020 ms up, memory warm
+//
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+
+#include "ipc/assets/mesh_cut.hpp"
+#include "prep/mesh/isosurface.hpp"
+#include "prep/mesh/progressive.hpp"
+#include "tests/support/mesh_distance.hpp"
+#include "tests/unit/prep_mesh_fixtures.hpp"
+
+namespace tact::test {
+namespace {
+
+const TriangleMesh& rings() {
+    static const TriangleMesh mesh = [] {
+        std::vector<Vec3> blob;
+        for (int ring = 0; ring < 2; ++ring) {
+            for (int k = 0; k < 7; ++k) {
+                for (int l = 0; l < 3; ++l) {
+                    const double angle = 2.0 * std::numbers::pi * (k + 0.5 * ring) / 7.0 + 0.1 * l;
+                    const double radius = 0.4 + 0.11 * std::sin(2.1 * l);
+                    blob.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                                      (ring == 1 ? 1.0 : -1.0) * (0.12 + 0.17 * l));
+                }
+            }
+        }
+        return isosurface(sampled(73,
+                                  [&](const Vec3& p) {
+                                      double sum = 0.0;
+                                      for (const Vec3& b : blob)
+                                          sum += std::exp(-(p - b).squaredNorm() / (2.0 * 0.0768 * 0.0768));
+                                      return sum;
+                                  }),
+                          0.35);
+    }();
+    return mesh;
+}
+
+// A grid of n x m points bent to a torus, with bumps of all sizes down to a few triangles.
+TriangleMesh rough_torus(std::uint32_t n, std::uint32_t m) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        for (std::uint32_t j = 0; j < m; ++j) {
+            const double u = 2.0 * std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / m;
+            double r = 0.3;
+            for (int k = 0; k < 7; ++k)
+                r +=
+                    0.02 / (1 << k) * std::sin((3 << k) * u + 1.7 * k) * std::sin((2 << k) * v + 0.9 * k * k);
+            const double d = 1.0 + r * std::cos(v);
+            for (const double x : {d * std::cos(u), d * std::sin(u), r * std::sin(v)})
+                mesh.position_m.push_back(static_cast<float>(x));
+            const std::uint32_t a = i * m + j, b = (i + 1) % n * m + j, c = i * m + (j + 1) % m,
+                                e = (i + 1) % n * m + (j + 1) % m;
+            mesh.triangle.insert(mesh.triangle.end(), {a, b, e, a, e, c});
+        }
+    }
+    return mesh;
+}
+const TriangleMesh& million() {
+    static const TriangleMesh mesh = rough_torus(1000, 500);
+    return mesh;
+}
+
+const TriangleMesh& sheet() {
+    static const TriangleMesh mesh = [] {
+        TriangleMesh made;
+        for (std::uint32_t y = 0; y <= 25; ++y) {
+            for (std::uint32_t x = 0; x <= 25; ++x) {
+                const float u = static_cast<float>(x) / 25.0F, v = static_cast<float>(y) / 25.0F;
+                made.position_m.insert(
+                    made.position_m.end(),
+                    {u, v + 0.1F * std::sin(4.0F * u), 0.15F * std::sin(5.0F * u) * std::cos(4.0F * v)});
+                if (x == 25 || y == 25) continue;
+                const std::uint32_t a = y * 26 + x;
+                made.triangle.insert(made.triangle.end(), {a, a + 1, a + 27, a, a + 27, a + 26});
+            }
+        }
+        return made;
+    }();
+    return mesh;
+}
+
+void simplify_to(benchmark::State& state, const TriangleMesh& (*shape)(), double boundary_weight) {
+    const TriangleMesh& mesh = shape();
+    const SimplifySettings settings{.vertices_min = static_cast<std::uint32_t>(state.range(0)),
+                                    .boundary_weight = boundary_weight};
+    Simplified result;
+    for (auto _ : state) result = simplify(mesh, settings);
+    const MeshDistance d = two_sided(mesh, result.mesh);
+    const double diagonal_m = MeshGrid(mesh).diagonal_m();
+    state.counters["rms_pct"] = 100.0 * d.rms_m / diagonal_m;
+    state.counters["max_pct"] = 100.0 * d.max_m / diagonal_m;
+    state.counters["sharp"] = topology(result.mesh).sharpest;
+}
+
+void bake(benchmark::State& state) {
+    ProgressiveMeshData data;
+    for (auto _ : state) data = make_progressive(rings());
+    state.counters["bytes_per_vertex"] =
+        static_cast<double>(ProgressiveMesh(data).memory_bytes()) / static_cast<double>(rings().vertices());
+}
+
+// From one percentage of the vertices to another; the way back is not timed.
+void jump(benchmark::State& state, const ProgressiveMesh& (*shape)()) {
+    const ProgressiveMesh& mesh = shape();
+    MeshCut cut(mesh);
+    const auto level = [&](std::int64_t per_mille) {
+        return static_cast<std::uint32_t>(mesh.vertices() * per_mille / 1000);
+    };
+    for (auto _ : state) {
+        state.PauseTiming();
+        cut.set_vertices(level(state.range(0)));
+        (void)cut.changes();
+        state.ResumeTiming();
+        cut.set_vertices(level(state.range(1)));
+        benchmark::DoNotOptimize(cut.changes());
+    }
+    std::vector<std::byte> copy(cut.vertex().size_bytes() + cut.index().size_bytes());
+    double best_ms = 1e9;
+    for (int i = 0; i < 5; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        std::memcpy(copy.data(), cut.vertex().data(), cut.vertex().size_bytes());
+        std::memcpy(copy.data() + cut.vertex().size_bytes(), cut.index().data(), cut.index().size_bytes());
+        benchmark::ClobberMemory();
+        best_ms = std::min(
+            best_ms,
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    state.counters["copy_ms"] = best_ms;
+}
+
+const ProgressiveMesh& walked_rings() {
+    static const ProgressiveMesh mesh(make_progressive(rings()));
+    return mesh;
+}
+const ProgressiveMesh& walked_million() {  // vertices; two million triangles
+    static const ProgressiveMesh mesh(make_progressive(rough_torus(1250, 800)));
+    return mesh;
+}
+
+BENCHMARK_CAPTURE(simplify_to, rings, rings, SimplifySettings{}.boundary_weight)
+    ->Arg(2000)
+    ->Arg(200)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_default, sheet, SimplifySettings{}.boundary_weight)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_none, sheet, 0.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_1, sheet, 1.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_10, sheet, 10.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_100, sheet, 100.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_seed, sheet, kSeedBoundaryWeight)->Arg(100)->Arg(8);
+BENCHMARK(bake)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark::kMillisecond);
+
+[[maybe_unused]] const bool large = [] {
+    if (std::getenv("TACT_BENCH_LARGE") == nullptr) return false;
+    benchmark::RegisterBenchmark("simplify_to/million", simplify_to, million,
+                                 SimplifySettings{}.boundary_weight)
+        ->Arg(5000)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("jump/million", jump, walked_million)
+        ->Args({1000, 280})
+        ->Args({280, 1000})
+        ->Args({280, 900})
+        ->Args({500, 499})
+        ->Args({499, 500})
+        ->Unit(benchmark::kMillisecond);
+    return true;
+}();
+
+}  // namespace
+}  // namespace tact::test

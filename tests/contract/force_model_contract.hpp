@@ -1,0 +1,212 @@
+// What every force model keeps, whatever it renders. One suite, run over each model by its unit test:
+//
+//     INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract, testing::Values(ForceModelCase{"ring", make,
+//     touch}));
+//
+// make builds the model; touch is a tool pose that feels a force, a hand's width around it is explored.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "rt/force/force_model.hpp"
+
+namespace tact {
+
+struct ForceModelCase {
+    std::string name;
+    std::function<std::unique_ptr<ForceModel>()> make;
+    // Where the tool is gripped, and where it is then led to feel something.
+    Pose grip, touch;
+    double force_n_min = 0.01;  // felt at touch, at full fidelity
+    double step_n_max = 0.1;    // largest change of force that is not felt
+};
+
+inline void PrintTo(const ForceModelCase& c, std::ostream* out) { *out << c.name; }
+
+class ForceModelContract : public testing::TestWithParam<ForceModelCase> {
+protected:
+    static constexpr int kSettle = 2000;  // steps after which every ramp is over
+
+    void SetUp() override {
+        model_ = GetParam().make();
+        ASSERT_NE(model_, nullptr);
+        model_->reset(at(GetParam().grip));
+    }
+    static ToolState at(const Pose& pose, std::uint32_t buttons = 0) {
+        ToolState tool;
+        tool.T_world_tool = pose;
+        tool.buttons = buttons;
+        return tool;
+    }
+    static Pose between(double s) {
+        const Pose &a = GetParam().grip, &b = GetParam().touch;
+        return {a.p_m + s * (b.p_m - a.p_m), a.q.slerp(s, b.q)};
+    }
+    static Budget budget(float fidelity) {
+        Budget b;
+        b.fidelity = fidelity;
+        return b;
+    }
+    static Budget no_time(float fidelity) {
+        Budget b = budget(fidelity);
+        b.deadline = instant_from_ns(0);
+        return b;
+    }
+    StepResult settle(const Pose& pose, float fidelity = 1.0F) {
+        StepResult result;
+        for (int i = 0; i <= 100; ++i) result = model_->step(at(between(0.01 * i)), budget(fidelity));
+        for (int i = 0; i < kSettle; ++i) result = model_->step(at(pose), budget(fidelity));
+        return result;
+    }
+    static double difference_n(const StepResult& a, const StepResult& b) {
+        return (a.wrench_world.force_n - b.wrench_world.force_n).norm();
+    }
+    std::unique_ptr<ForceModel> model_;
+};
+
+TEST_P(ForceModelContract, KnobIsNamedAndInRange) {
+    const KnobSpec knob = model_->knob();
+    EXPECT_NE(std::string(knob.path), "");
+    EXPECT_GE(knob.floor, 0.0F);
+    EXPECT_LE(knob.floor, knob.start);
+    EXPECT_LE(knob.start, 1.0F);
+    EXPECT_GT(knob.slew_per_s, 0.0F);
+    EXPECT_TRUE(knob.haptic);
+}
+
+// The loop warms up before a hand is there.
+TEST_P(ForceModelContract, AStepBeforeTheFirstResetMovesNoBody) {
+    model_ = GetParam().make();
+    const ModelBodies before = model_->bodies();
+    for (int i = 0; i < 10; ++i) (void)model_->step(at(GetParam().grip), budget(1.0F));
+    for (std::uint32_t i = 0; i < before.count; ++i) {
+        const Pose &a = before.T_model_body[i], b = model_->bodies().T_model_body[i];
+        EXPECT_LT((a.p_m - b.p_m).norm(), 1e-9 * (1e-9 + a.p_m.norm()));
+        EXPECT_LT(a.q.angularDistance(b.q), 1e-9);
+    }
+}
+
+TEST_P(ForceModelContract, TouchIsFelt) {
+    EXPECT_GE(settle(GetParam().touch).wrench_world.force_n.norm(), GetParam().force_n_min);
+}
+
+TEST_P(ForceModelContract, ItemsRiseAndErrorsFallWithTheKnob) {
+    (void)settle(GetParam().touch);
+    std::uint32_t items = 0;
+    double error = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= 100; ++i) {
+        const auto fidelity = 0.01F * static_cast<float>(i);
+        const StepResult result = model_->step(at(GetParam().touch), budget(fidelity));
+        EXPECT_EQ(result.status, StepStatus::ok);
+        EXPECT_GE(model_->items(fidelity), items);
+        EXPECT_EQ(result.load.items, model_->items(fidelity));
+        EXPECT_LE(result.load.error, error * (1.0 + 1e-9) + 1e-12);
+        EXPECT_GT(result.load.cost.count(), 0);
+        items = model_->items(fidelity);
+        error = result.load.error;
+    }
+}
+
+TEST_P(ForceModelContract, TurningTheKnobInContactIsNotFelt) {
+    StepResult before = settle(GetParam().touch, 0.0F);
+    // A governor's fastest sweep: slew_per_s at 1 kHz.
+    const float step = std::max(1e-4F, std::min(0.004F, model_->knob().slew_per_s * 1e-3F));
+    for (float fidelity = 0.0F; fidelity <= 1.0F; fidelity += step) {
+        const StepResult now = model_->step(at(GetParam().touch), budget(fidelity));
+        EXPECT_LT(difference_n(now, before), GetParam().step_n_max) << "at " << fidelity;
+        before = now;
+    }
+}
+
+TEST_P(ForceModelContract, AFidelityOutsideItsRangeIsTakenAsTheNearest) {
+    (void)settle(GetParam().touch);
+    const auto step = [&](float fidelity) { return model_->step(at(GetParam().touch), budget(fidelity)); };
+    EXPECT_EQ(difference_n(step(7.0F), step(1.0F)), 0.0);
+    EXPECT_EQ(difference_n(step(-3.0F), step(0.0F)), 0.0);
+    EXPECT_TRUE(step(std::numeric_limits<float>::quiet_NaN()).wrench_world.finite());
+}
+
+TEST_P(ForceModelContract, TheSameStepsGiveTheSameForces) {
+    const StepResult first = settle(GetParam().touch, 0.6F);
+    model_ = GetParam().make();
+    model_->reset(at(GetParam().grip));
+    EXPECT_EQ(difference_n(settle(GetParam().touch, 0.6F), first), 0.0);
+}
+
+TEST_P(ForceModelContract, WithoutTimeTheForceIsStillUsable) {
+    const StepResult full = settle(GetParam().touch);
+    for (const float fidelity : {0.0F, 0.3F, 0.95F, 1.0F}) {
+        const StepResult late = model_->step(at(GetParam().touch), no_time(fidelity));
+        EXPECT_EQ(late.status, StepStatus::out_of_time);
+        EXPECT_TRUE(late.wrench_world.finite());
+        EXPECT_LE(difference_n(late, full), late.load.error + GetParam().step_n_max);
+    }
+    EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
+}
+
+TEST_P(ForceModelContract, NoForceRightAfterReset) {
+    (void)settle(GetParam().touch);
+    model_->reset(at(GetParam().touch));
+    EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(), 1e-3);
+}
+
+TEST_P(ForceModelContract, ForceComesBackAfterResetWithoutAStep) {
+    StepResult before = settle(GetParam().touch);
+    model_->reset(at(GetParam().touch));
+    before.wrench_world = Wrench{};
+    for (int i = 0; i < kSettle; ++i) {
+        const StepResult now = model_->step(at(GetParam().touch), budget(1.0F));
+        ASSERT_LT(difference_n(now, before), GetParam().step_n_max);
+        before = now;
+    }
+    EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
+}
+
+TEST_P(ForceModelContract, PosesThatAreNotPosesGiveNoForceAndAreForgotten) {
+    (void)settle(GetParam().touch);
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    std::vector<Pose> absurd(6, GetParam().touch);
+    absurd[0].p_m.x() = nan;
+    absurd[1].p_m.y() = inf;
+    absurd[2].p_m.z() = -1e300;
+    absurd[3].q = Quat(nan, 0.0, 0.0, 0.0);
+    absurd[4].q = Quat(0.0, 0.0, 0.0, 0.0);
+    absurd[5].q = Quat(0.0, inf, 0.0, 0.0);
+    for (const Pose& pose : absurd) {
+        const ModelBodies before = model_->bodies();
+        const StepResult result = model_->step(at(pose), budget(1.0F));
+        EXPECT_EQ(result.status, StepStatus::out_of_range);
+        EXPECT_EQ(result.wrench_world.force_n, Vec3::Zero());
+        EXPECT_EQ(result.wrench_world.torque_n_m, Vec3::Zero());
+        const ModelBodies after = model_->bodies();
+        for (std::uint32_t b = 0; b < after.count; ++b) {
+            EXPECT_TRUE(after.T_model_body[b].finite());
+            EXPECT_EQ(after.T_model_body[b].p_m, before.T_model_body[b].p_m);
+        }
+        model_->reset(at(pose));
+        EXPECT_TRUE(model_->step(at(pose), budget(1.0F)).wrench_world.finite());
+        EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(),
+                  GetParam().step_n_max);
+    }
+    for (int i = 0; i < kSettle; ++i) (void)model_->step(at(GetParam().touch), budget(1.0F));
+    EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
+}
+
+TEST_P(ForceModelContract, BodiesAreCountedAndPlaced) {
+    (void)settle(GetParam().touch);
+    const ModelBodies bodies = model_->bodies();
+    EXPECT_LE(bodies.count, ModelBodies::kMax);
+    if (bodies.count > 0) {
+        EXPECT_LT(bodies.active, bodies.count);
+    }
+    for (std::uint32_t b = 0; b < bodies.count; ++b) EXPECT_TRUE(bodies.T_model_body[b].finite());
+}
+
+}  // namespace tact

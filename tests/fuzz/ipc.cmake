@@ -1,0 +1,1 @@
+tact_fuzz(ipc_fuzz SOURCES fuzz/ipc_fuzz.cpp USES base shm)

@@ -1,0 +1,78 @@
+// Maps and structures from anywhere. The first byte picks the format; what is accepted is a grid or a
+// structure whose parts fit together and whose numbers are finite.
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "ipc/base/error.hpp"
+#include "prep/map/import_map.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/unit/prep_samples.hpp"
+
+namespace tact::fuzz {
+namespace {
+
+enum Kind : unsigned char { kMrc, kSitus, kKinds };
+
+void require(bool claim) {
+    if (!claim) std::abort();
+}
+
+void use(const DensityGrid& grid) {
+    require(grid.values.size() == grid.count() && !grid.values.empty());
+    require(grid.origin_m.allFinite() && (grid.spacing_m.array() > 0.0).all());
+    for (const float v : grid.values) require(std::isfinite(v));
+}
+
+Input seed(Kind kind, const std::string& text) {
+    Input s;
+    s.reserve(1 + text.size());
+    s.push_back(static_cast<std::byte>(kind));
+    const auto bytes = std::as_bytes(std::span(text));
+    s.insert(s.end(), bytes.begin(), bytes.end());
+    return s;
+}
+
+}  // namespace
+
+bool run(std::span<const std::byte> input) {
+    if (input.empty()) return false;
+    const auto* const text = reinterpret_cast<const char*>(input.data() + 1);
+    const std::size_t size = input.size() - 1;
+    try {
+        switch (static_cast<unsigned>(input[0]) % kKinds) {
+            case kMrc:
+                use(import_map_bytes({text, text + size}, "fuzz.mrc", ".mrc").grid);
+                break;
+            default:
+                use(import_map_bytes({text, text + size}, "fuzz.situs", ".situs").grid);
+        }
+    } catch (const StartupError& error) {
+        require(std::strstr(error.what(), "mend:") != nullptr);
+        return false;
+    }
+    return true;
+}
+
+std::vector<Input> seeds() {
+    std::vector<Input> all;
+    for (const int mode : {0, 1, 2, 6}) {
+        sample::Mrc mrc;
+        mrc.mode = mode;
+        mrc.big_endian = mode == 1;
+        mrc.axes = mode == 6 ? std::array<int, 3>{3, 1, 2} : mrc.axes;
+        const std::vector<char> bytes = mrc.bytes();
+        all.push_back(seed(kMrc, std::string(bytes.begin(), bytes.end())));
+    }
+    sample::Mrc skew;
+    skew.angles = {90.0F, 90.0F, 120.0F};
+    const std::vector<char> bytes = skew.bytes();
+    all.push_back(seed(kMrc, std::string(bytes.begin(), bytes.end())));
+    std::string situs = "2.5 -10.0 0.0 5.0 4 5 4\n\n";
+    for (int i = 0; i < 80; ++i) situs += std::to_string(i % 7) + (i % 10 == 9 ? ".5\n" : ".25 ");
+    all.push_back(seed(kSitus, situs));
+    return all;
+}
+
+}  // namespace tact::fuzz

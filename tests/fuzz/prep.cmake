@@ -1,0 +1,5 @@
+# Fuzz targets of prep.
+tact_fuzz(map_fuzz SOURCES fuzz/map_fuzz.cpp USES prep_map)
+# clang 14 with the standard library of g++ 12 does not compile gemmi's reader of CIF files as C++20; there the
+# replay, under g++ and its sanitizers, is what runs.
+tact_fuzz(structure_fuzz SOURCES fuzz/structure_fuzz.cpp USES prep_structure CLANG_FROM 15)

@@ -1,0 +1,133 @@
+// Baked scenes. The first byte picks: 0 is a whole file as it comes; otherwise one section, put into a file
+// whose checksums are right, so that its reader is reached. What is accepted is then used as the programs use
+// it.
+#include <cstdlib>
+#include <cstring>
+
+#include "ipc/assets/density_map.hpp"
+#include "ipc/assets/mesh_cut.hpp"
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/assets/structure.hpp"
+#include "ipc/base/error.hpp"
+#include "prep/mesh/progressive.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/unit/assets_samples.hpp"
+
+namespace tact::fuzz {
+namespace {
+
+constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
+                                {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'}};
+
+void require(bool claim) {
+    if (!claim) std::abort();
+}
+
+template <class Read>
+std::size_t accepted(Read&& read) {
+    try {
+        read();
+        return 1;
+    } catch (const StartupError& error) {
+        require(std::strstr(error.what(), "mend:") != nullptr);
+    }
+    return 0;
+}
+
+// One good section per tag.
+const std::vector<Input>& good_sections() {
+    static const std::vector<Input> sections = [] {
+        SceneWriter scene = sample::scene();
+        TriangleMesh octahedron;
+        octahedron.position_m = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+        octahedron.triangle = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+        write_progressive_mesh(scene, 0, octahedron);
+        const Input bytes = scene.to_bytes();
+        const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
+        std::vector<Input> good;
+        for (const SectionTag& tag : kTags) {
+            const auto section = file.section(tag, 1);
+            good.emplace_back(section.begin(), section.end());
+        }
+        return good;
+    }();
+    return sections;
+}
+
+void use_grid(const SceneFile& file) {
+    const DensityGrid grid = read_grid(file);
+    require(grid.values.size() == grid.count());
+    if (grid.count() > 100'000) return;
+    const DensityMap map(grid, 0.0, 1.0);
+    Vec3 gradient;
+    (void)map.sample(grid.origin_m + 1.5 * grid.spacing_m, gradient);
+    (void)map.sample(Vec3(1e300, -1e300, 0.0), gradient);
+}
+
+void use_structure(const SceneFile& file) {
+    const Structure s = read_structure(file, 0);
+    require(s.y_m.size() == s.size() && s.chain.size() == s.size() && s.trace.size() == s.size());
+    for (const std::uint16_t chain : s.chain) require(chain < s.chain_names.size());
+}
+
+void use_codebook(const SceneFile& file) {
+    for (const Codebook::Level& level : read_codebook(file, 0).levels) {
+        require(level.weight.size() == level.size());
+        for (const auto& edge : level.edges) require(edge[0] < level.size() && edge[1] < level.size());
+    }
+}
+
+void use_mesh(const SceneFile& file) {
+    const ProgressiveMesh mesh = read_mesh(file, 0);
+    MeshCut cut(mesh);
+    for (const std::uint32_t n : {mesh.vertices(), mesh.vertices_min(), mesh.vertices() / 2}) {
+        cut.set_vertices(n);
+        for (const std::uint32_t i : cut.index()) require(i < cut.vertices());
+    }
+}
+
+}  // namespace
+
+bool run(std::span<const std::byte> input) {
+    if (input.empty()) return false;
+    const auto kind = static_cast<std::size_t>(input[0]) % (1 + std::size(kTags));
+    const auto rest = input.subspan(1);
+    Input made;
+    if (kind > 0) {
+        SceneWriter out;
+        for (std::size_t i = 0; i < std::size(kTags); ++i)
+            out.add(kTags[i], 1, 0, i + 1 == kind ? Input(rest.begin(), rest.end()) : good_sections()[i]);
+        made = out.to_bytes();
+    }
+    std::size_t sections = 0;
+    accepted([&] {
+        const SceneFile file =
+            SceneFile::from_bytes(kind == 0 ? rest : std::span<const std::byte>(made), "fuzz.tact");
+        sections += accepted([&] { (void)read_meta(file); });
+        sections += accepted([&] { (void)read_note(file); });
+        sections += accepted([&] { use_grid(file); });
+        sections += accepted([&] { use_structure(file); });
+        sections += accepted([&] { use_codebook(file); });
+        sections += accepted([&] { use_mesh(file); });
+    });
+    return sections == std::size(kTags);
+}
+
+std::vector<Input> seeds() {
+    SceneWriter scene;
+    std::vector<Input> all;
+    for (std::size_t i = 0; i < std::size(kTags); ++i) {
+        const Input& section = good_sections()[i];
+        scene.add(kTags[i], 1, 0, section);
+        Input seed(1, static_cast<std::byte>(i + 1));
+        seed.insert(seed.end(), section.begin(), section.end());
+        all.push_back(std::move(seed));
+    }
+    const Input bytes = scene.to_bytes();
+    all.emplace_back(1, std::byte{0});
+    all.back().insert(all.back().end(), bytes.begin(), bytes.end());
+    return all;
+}
+
+}  // namespace tact::fuzz

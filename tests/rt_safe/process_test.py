@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""tact-rt as a process: what its servo thread asks of the kernel, how it ends, whom it refuses.
+
+usage: process_test.py BIN_DIR WRITE_SMALL_SCENE. Exit 77 (skipped) where nothing of it can run.
+"""
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+BIN, WRITER = None, None
+# What the servo thread may ask for between its first planned cycle and its last: to sleep, and nothing else.
+# Before and after: its own preparation, and one getrusage on either side.
+ALLOWED = {"clock_nanosleep"}
+
+
+class Process(unittest.TestCase):
+    def setUp(self):
+        self.dir = tempfile.mkdtemp(prefix="tact_rt_")
+        self.scene = os.path.join(self.dir, "small.tact")
+        subprocess.run([WRITER, self.scene], check=True)
+        self.env = dict(os.environ, TACT_RUNTIME_DIR=self.dir)
+        self.children = []
+
+    def tearDown(self):
+        for child in self.children:
+            if child.poll() is None:
+                child.kill()
+            child.communicate()
+        shutil.rmtree(self.dir)
+
+    def start(self, *options, before=()):
+        child = subprocess.Popen([*before, os.path.join(BIN, "tact-rt"), self.scene, *options], env=self.env,
+                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.children.append(child)
+        return child
+
+    def lines_until(self, child, word):
+        seen = ""
+        for line in child.stdout:
+            seen += line
+            if word in line:
+                return seen
+        self.fail(f"'{word}' was never said:\n{seen}")
+
+    def test_signals_end_it_in_order(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            child = self.start("--arm")
+            self.lines_until(child, "armed to active")
+            time.sleep(0.3)
+            begin = time.monotonic()
+            child.send_signal(number)
+            out, _ = child.communicate(timeout=20)
+            self.assertEqual(child.returncode, 0, out)
+            self.assertIn("active to ready", out)
+            self.assertIn("ready to off", out)
+            self.assertIn("updates a second", out)
+            self.assertLess(time.monotonic() - begin, 15)
+
+    def test_a_second_controller_is_refused_and_the_first_goes_on(self):
+        first = self.start("--arm")
+        self.lines_until(first, "armed to active")
+        second = self.start("--arm")
+        out, _ = second.communicate(timeout=20)
+        self.assertEqual(second.returncode, 1, out)
+        self.assertIn(str(first.pid), out)
+        self.assertIn("mend:", out)
+        other = self.start("--session", "other", "--seconds", "0.2")
+        other.communicate(timeout=20)
+        self.assertEqual(other.returncode, 0)
+        self.assertIsNone(first.poll())
+
+    def test_killed_outright_the_device_goes_to_zero_force_by_itself_and_a_new_controller_stays_disarmed(self):
+        config, log = os.path.join(self.dir, "process.toml"), os.path.join(self.dir, "device.log")
+        with open(config, "w", encoding="utf-8") as f:
+            f.write(f'[device]\ndriver = "sim-process"\nwatchdog_us = 10000\nprocess_log = "{log}"\n'
+                    '[safety]\nsample_age_us_max = 50000\n')
+
+        def states():
+            with open(log, encoding="utf-8") as f:
+                return [line.split() for line in f.read().splitlines()]
+
+        def wait_for(condition):
+            end = time.monotonic() + 10
+            while time.monotonic() < end and not condition():
+                time.sleep(0.01)
+
+        for _ in range(3):
+            child = self.start("--arm", "--config", config)
+            self.lines_until(child, "armed to active")
+            wait_for(lambda: states()[-1][1] == "powered")
+            self.assertEqual(states()[-1][1], "powered")
+            child.send_signal(signal.SIGKILL)
+            child.wait(timeout=10)
+            wait_for(lambda: states()[-1][1] == "watchdog_tripped")
+            last = states()[-1]
+            self.assertEqual(last[1], "watchdog_tripped")
+            self.assertEqual(float(last[2]), 0.0)
+            self.assertGreaterEqual(float(last[5]), 10.0)
+            # The session is free again, and nothing re-arms itself.
+            again = self.start("--config", config, "--seconds", "0.3")
+            out, _ = again.communicate(timeout=20)
+            self.assertEqual(again.returncode, 0, out)
+            self.assertNotIn("armed", out)
+
+    def test_bad_input_is_refused_in_words(self):
+        config = os.path.join(self.dir, "bad.toml")
+        with open(config, "w", encoding="utf-8") as f:
+            f.write("[servo]\nperiod_ms = 1\n")
+        with open(self.scene, "rb") as f:
+            data = bytearray(f.read())
+        data[-100] ^= 0xFF
+        broken = os.path.join(self.dir, "broken.tact")
+        with open(broken, "wb") as f:
+            f.write(data)
+        for options, words in (
+            ([self.scene, "--config", config], ["bad.toml:2", "servo.period_ms", "mend:"]),
+            ([broken], ["broken.tact", "mend:"]),
+            ([os.path.join(self.dir, "none.tact")], ["none.tact", "mend:"]),
+            ([self.scene, "--level", "docking.force=3"], ["docking.force=3", "mend:"]),
+            ([self.scene, "--law", "mine"], ["governor.law", "mine", "mend:"]),
+        ):
+            done = subprocess.run([os.path.join(BIN, "tact-rt"), *options], env=self.env, capture_output=True, text=True,
+                                  timeout=60)
+            self.assertEqual(done.returncode, 1, options)
+            for word in words:
+                self.assertIn(word, done.stderr)
+        good = subprocess.run([os.path.join(BIN, "tact-rt"), self.scene, "--check"], env=self.env, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(good.returncode, 0, good.stderr)
+
+    def test_the_servo_thread_asks_the_kernel_for_nothing_but_sleep(self):
+        if not shutil.which("strace"):
+            self.skipTest("strace is not installed")
+        log = os.path.join(self.dir, "strace.log")
+        probe = subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True)
+        if probe.returncode != 0:
+            self.skipTest("ptrace is not permitted here")
+        # Ordinary scheduling: under strace every sleep costs two stops, too long for a FIFO loop beside others.
+        child = self.start("--arm", "--seconds", "2", "--rate", "200", "--priority", "0", before=["strace", "-f", "-o", log])
+        out, _ = child.communicate(timeout=120)
+        if "LeakSanitizer has encountered a fatal error" in out:
+            self.skipTest("the sanitizer does not work under ptrace")
+        self.assertEqual(child.returncode, 0, out)
+        with open(log, encoding="utf-8", errors="replace") as f:
+            lines = f.read().splitlines()
+        named = [line for line in lines if re.search(r'PR_SET_NAME, "servo"|comm", O_RDWR', line)]
+        self.assertTrue(named, "the servo thread was not found")
+        thread = named[0].split()[0]
+        calls = [m.group(1) for line in lines if (m := re.match(rf"{thread} +(?:<\.\.\. )?(\w+)", line))
+                 and "resumed" not in line]
+        usage = [i for i, name in enumerate(calls) if name == "getrusage"]
+        self.assertEqual(len(usage), 2, calls[-50:])
+        first = calls.index("clock_nanosleep", usage[0])  # before it, the thread tells main that it is ready
+        cycle_calls = calls[first:usage[1]]
+        self.assertGreater(len(cycle_calls), 100)
+        self.assertEqual(set(cycle_calls) - ALLOWED, set())
+
+
+if __name__ == "__main__":
+    BIN, WRITER = sys.argv[1], sys.argv[2]
+    unittest.main(argv=sys.argv[:1], verbosity=2)

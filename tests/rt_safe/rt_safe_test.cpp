@@ -1,0 +1,149 @@
+// The servo cycle under the interposer: any heap call or mutex lock inside one aborts. Real docking model,
+// emulated device, all commands and all fault paths.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <mutex>
+
+#include "hal/sim/sim_device.hpp"
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/base/clock.hpp"
+#include "rt/force/docking/docking_model.hpp"
+#include "rt/loop/rt_guard.hpp"
+#include "rt/loop/servo.hpp"
+#include "tests/support/small_scene.hpp"
+
+namespace tact {
+namespace {
+
+bool guarded() {
+    static const bool installed = rt_guard::install();
+    return installed;
+}
+
+// The compiler must not see that the block is unused, or it takes both calls out.
+[[gnu::noinline]] void touch_the_heap() {
+    void* volatile block = std::malloc(32);
+    std::free(block);
+}
+
+[[gnu::noinline]] void touch_the_heap_by_new() {
+    int* volatile block = new int[100];
+    delete[] block;
+}
+
+TEST(RtSafeDeathTest, the_guard_itself_sees_what_it_is_for) {
+    if (!guarded()) GTEST_SKIP() << "a sanitizer owns malloc here";
+    const auto inside = [](auto what) {
+        rt_guard::abort_on_violation(true);
+        const RtSection section;
+        what();
+    };
+    EXPECT_DEATH(inside([] { touch_the_heap(); }), "inside a servo cycle: malloc");
+    EXPECT_DEATH(inside([] { touch_the_heap_by_new(); }), "inside a servo cycle: malloc");
+    EXPECT_DEATH(inside([] { std::string(100, 'x').append("y"); }), "inside a servo cycle");
+    EXPECT_DEATH(inside([] {
+                     std::mutex m;
+                     m.lock();
+                 }),
+                 "inside a servo cycle: pthread_mutex_lock");
+}
+
+TEST(RtSafe, outside_of_a_cycle_nothing_is_counted_and_inside_everything_is) {
+    if (!guarded()) GTEST_SKIP() << "a sanitizer owns malloc here";
+    const rt_guard::Counts before = rt_guard::counts();
+    touch_the_heap();
+    EXPECT_EQ(rt_guard::counts().allocations, before.allocations);
+    {
+        const RtSection section;
+        touch_the_heap();
+    }
+    EXPECT_EQ(rt_guard::counts().allocations, before.allocations + 2);
+}
+
+TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap_nor_mutex) {
+    const std::vector<std::byte> bytes = small_scene().to_bytes();
+    const SceneFile scene = SceneFile::from_bytes(bytes, "small scene");
+    const auto make_model = [&](std::uint64_t seed) -> std::unique_ptr<ForceModel> {
+        return load_docking_model(scene, {.start_offset_m = 5e-10, .start_rotation_rad = 0.3, .seed = seed});
+    };
+    const auto region = std::make_unique<RtRegion>();
+    SimSettings sim;
+    sim.hand.script = "wander";
+    SimDevice device(sim);
+    ManualClock clock;
+    clock.advance(std::chrono::seconds(10));
+    ServoMail mail;
+    std::unique_ptr<ForceModel> model = make_model(1);
+    const HandParts hand{&device, model.release(), device.open()};
+    ServoSettings settings;
+    settings.watchdogs.timing_latches = true;
+    settings.chain.passivity = true;
+    settings.model_deadline = true;  // long past on the machine's clock: the step's shortest way out
+    Servo servo({clock, {&hand, 1}, *region, mail}, settings);
+
+    rt_guard::abort_on_violation(guarded());
+    servo.warm_up();
+    std::uint64_t sequence = 0;
+    const auto order = [&](CommandKind kind, double value = 0.0, std::uint32_t index = 0) {
+        mail.orders.push({++sequence, value, static_cast<std::uint32_t>(kind), index});
+    };
+    const auto cycles = [&](int n) {
+        for (int i = 0; i < n && !servo.finished(); ++i) servo.cycle();
+    };
+    const auto recover = [&] {
+        device.inject(SimFault::none);
+        static_cast<void>(device.open());
+        cycles(5);
+        order(CommandKind::reset_fault);
+        cycles(2);
+        order(CommandKind::arm);
+        cycles(50);
+        ASSERT_EQ(servo.state().run.state, RunState::active);
+    };
+    order(CommandKind::arm);
+    cycles(1200);
+    for (const SimFault fault :
+         {SimFault::unplugged, SimFault::frozen, SimFault::amplifier, SimFault::wild_pose}) {
+        device.inject(fault);
+        cycles(20);
+        ASSERT_EQ(servo.state().run.state, RunState::fault);
+        recover();
+    }
+    clock.advance(std::chrono::milliseconds(8));
+    cycles(5);
+    ASSERT_EQ(servo.state().run.state, RunState::fault);
+    recover();
+    device.inject(SimFault::hand_off);
+    cycles(100);
+    device.inject(SimFault::none);
+    for (int kind = 0; kind < 12; ++kind) {
+        for (const double value : {0.5, -1.0, 800.0}) {
+            order(static_cast<CommandKind>(kind), value, 1);
+            cycles(3);
+        }
+    }
+    HouseReport gui{};
+    gui.gui_attached = 1;
+    gui.gui_heartbeat_ns = to_ns(clock.now());
+    gui.gui_vertices_max = 5000;
+    mail.house.publish(gui);
+    cycles(1200);  // it falls silent as well
+    std::unique_ptr<ForceModel> fresh = make_model(2);
+    ASSERT_TRUE(mail.model.offer(fresh));
+    cycles(300);
+    mail.model.collect().reset();
+    mail.stop_signal = 15;
+    cycles(1000);
+    rt_guard::abort_on_violation(false);
+    EXPECT_TRUE(servo.finished());
+    HealthTopic health{};
+    ASSERT_TRUE(region->health.read(health));
+    if (guarded()) {
+        EXPECT_EQ(health.locks, 0U);
+    }
+    delete servo.state().hand[0].model;
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,299 @@
+// What may happen to a running controller, and what must happen then. The rows are REALTIME.md's fault table
+// as far as they need no hardware.
+#include <gtest/gtest.h>
+#include <pwd.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <random>
+
+#include "tests/scenario/rig.hpp"
+
+namespace tact::scenario {
+namespace {
+
+constexpr double kForceMaxN = 3.3;  // of the safety chain, by default
+
+double length(const float (&v)[3]) {
+    return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// The loop stops in the same way for each of them.
+class StopSignal : public ::testing::TestWithParam<int> {};
+
+TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisecond_and_the_exit_code_is_0) {
+    const Rig rig;
+    Controller rt(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    ASSERT_TRUE(watch.cycles_pass(600));  // the ramp-in takes 500
+    RingCursor trace = watch.region().trace.tail();
+    kill(rt.child().pid(), GetParam());
+    const auto& ending = rt.child().wait(std::chrono::minutes(1));
+    ASSERT_TRUE(ending) << "it did not end";
+    EXPECT_TRUE(ending->clean()) << ending->text() << "\n" << rt.said();
+
+    // The region outlives the controller: its last words can be read at leisure.
+    std::vector<TraceTopic> cycles;
+    TraceTopic t{};
+    while (watch.region().trace.next(trace, t)) cycles.push_back(t);
+    ASSERT_EQ(trace.missed, 0U);
+    std::size_t left_active = 0;
+    while (left_active < cycles.size() &&
+           (cycles[left_active].status & 0xFFU) == static_cast<unsigned>(RunState::active))
+        ++left_active;
+    ASSERT_LT(left_active, cycles.size()) << "it never left the state active";
+    std::size_t last_force = left_active;
+    for (std::size_t i = left_active; i < cycles.size(); ++i)
+        if (length(cycles[i].force_world_n) > 0.0) last_force = i;
+    EXPECT_LT(last_force + 1, cycles.size()) << "the last cycle still had a force";
+    EXPECT_LE(last_force - left_active, 100U);
+    EXPECT_GT(length(cycles[left_active].force_world_n), 0.0) << "the force was cut, not ramped";
+    EXPECT_EQ(watch.force_n(), 0.0);
+    EXPECT_EQ(watch.state(), RunState::off);
+    std::printf("signal %d: zero force %zu cycles, %.1f ms after the stop began\n", GetParam(),
+                last_force - left_active,
+                static_cast<double>(cycles[last_force].taken_at_ns - cycles[left_active].taken_at_ns) * 1e-6);
+    EXPECT_FALSE(std::filesystem::exists(rig.socket()));
+    EXPECT_TRUE(rig.lock_is_free());
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, StopSignal, ::testing::Values(SIGTERM, SIGINT, SIGHUP));
+
+TEST(SecondController, is_refused_by_name_and_process_and_the_first_does_not_notice) {
+    const Rig rig;
+    Controller first(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << first.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << first.said();
+    const std::uint64_t generation = watch.generation();
+    const auto second = run_to_end(
+        rig, rt_program(), {rig.scene().string(), "--session", rig.session(), "--priority", "0", "--arm"});
+    ASSERT_TRUE(second) << "the second did not end";
+    EXPECT_FALSE(second->ending.by_signal);
+    EXPECT_EQ(second->ending.number, 1);
+    EXPECT_TRUE(has(second->text, "process " + std::to_string(first.child().pid()))) << second->text;
+    EXPECT_TRUE(has(second->text, "--session")) << second->text;
+    visual.frame();
+    ASSERT_TRUE(watch.cycles_pass(100));
+    EXPECT_EQ(watch.generation(), generation);
+    EXPECT_EQ(watch.state(), RunState::active);
+    EXPECT_FALSE(first.child().poll());
+}
+
+// Random bytes that can be no order to disarm: the kind's high byte is set.
+CommandTopic random_command(std::mt19937& random) {
+    CommandTopic c{};
+    auto* const bytes = reinterpret_cast<unsigned char*>(&c);
+    for (std::size_t i = 0; i < sizeof c; ++i) bytes[i] = static_cast<unsigned char>(random());
+    c.kind = static_cast<std::uint16_t>(c.kind | 0x0100U);
+    return c;
+}
+
+TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on) {
+    const Rig rig;
+    Controller rt(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    const std::uint64_t refused = watch.health().bad_input;
+    std::mt19937 random(20261120);
+    int commands = 0, loads = 0;
+    for (int burst = 0; burst < 100; ++burst) {
+        for (int i = 0; i < 20; ++i, ++commands) visual.region().commands.push(random_command(random));
+        // Known orders with impossible content.
+        CommandTopic c{};
+        c.sequence = 1;  // long past: the numbers run backwards
+        c.kind = static_cast<std::uint16_t>(CommandKind::set_goal_hz);
+        for (const double bad : {std::nan(""), -1.0, HUGE_VAL, 0.0, 1e300}) {
+            c.value = bad;
+            visual.region().commands.push(c);
+            ++commands;
+        }
+        c.kind = static_cast<std::uint16_t>(CommandKind::set_law);
+        std::memset(c.text, 'A', sizeof c.text);  // does not end
+        visual.region().commands.push(c);
+        ++commands;
+        LoadTopic load{};
+        auto* const bytes = reinterpret_cast<unsigned char*>(&load);
+        for (std::size_t i = 0; i < sizeof load; ++i) bytes[i] = static_cast<unsigned char>(random());
+        load.frame_s = burst % 2 == 0 ? std::nan("") : -1.0;
+        visual.region().load.publish(load);
+        ++loads;
+        ASSERT_TRUE(watch.cycles_pass(5));
+        EXPECT_EQ(watch.state(), RunState::active);
+        EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
+    }
+    // And bytes anywhere in the shared memory: counters, sequences, records. The first bytes of the ring are
+    // left as they are, so that no burst of old records is read again as new orders.
+    auto* const memory = reinterpret_cast<unsigned char*>(&visual.region().load);
+    for (int i = 0; i < 200; ++i) {
+        for (std::size_t k = 0; k < sizeof visual.region().load; ++k)
+            memory[k] = static_cast<unsigned char>(random());
+        ASSERT_TRUE(watch.cycles_pass(2));
+    }
+    ASSERT_TRUE(until([&] { return watch.health().bad_input > refused + 1000; })) << watch.health().bad_input;
+    ASSERT_TRUE(watch.cycles_pass(200));
+    const HealthTopic h = watch.health();
+    EXPECT_EQ(h.state, static_cast<std::uint8_t>(RunState::active));
+    EXPECT_EQ(h.allocations, 0U);
+    EXPECT_TRUE(std::isfinite(watch.force_n()));
+    EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
+    std::printf("%d impossible commands and %d loads sent, %llu refusals counted\n", commands, loads,
+                static_cast<unsigned long long>(h.bad_input - refused));
+    // Good words are still understood.
+    EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
+    EXPECT_EQ(watch.state(), RunState::ready);
+}
+
+TEST(HostileVisualProcess, a_ring_whose_count_runs_wild_costs_bounded_work_and_no_cycle) {
+    const Rig rig;
+    Controller rt(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    // The count is the ring's first word.
+    auto* const count = reinterpret_cast<std::atomic<std::uint64_t>*>(&visual.region().commands);
+    const std::uint64_t refused = watch.health().bad_input;
+    for (const std::uint64_t wild : {~0ULL, 1ULL, 1ULL << 63U, 0ULL, 12345678901ULL, 2ULL}) {
+        count->store(wild);
+        visual.frame();
+        ASSERT_TRUE(watch.cycles_pass(50));
+        EXPECT_EQ(watch.state(), RunState::active);
+    }
+    EXPECT_GT(watch.health().bad_input, refused);
+    EXPECT_FALSE(rt.child().poll());
+}
+
+TEST(SilentVisualProcess, by_default_the_force_goes_on_and_the_silence_is_said) {
+    const Rig rig;
+    Controller rt(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    RingCursor events = watch.region().events.tail();
+    bool said = false;
+    ASSERT_TRUE(until([&] {  // it hangs: no frame any more
+        EventTopic e{};
+        while (watch.region().events.next(events, e))
+            said = said || e.code == static_cast<std::uint16_t>(EventCode::gui_silent);
+        return said;
+    }));
+    ASSERT_TRUE(watch.cycles_pass(200));
+    EXPECT_EQ(watch.state(), RunState::active);
+    EXPECT_GT(watch.health().gui_heartbeat_age_ns, 500'000'000);
+    ASSERT_TRUE(until([&] { return watch.force_n() > 0.01; }));
+}
+
+TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_has_to_arm_again) {
+    const Rig rig;
+    Controller rt(rig, {}, "[safety]\non_gui_silent = \"ramp\"\n");
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    ASSERT_TRUE(until([&] { return watch.state() == RunState::ready; })) << rt.said();
+    EXPECT_EQ(watch.health().reason, static_cast<std::uint8_t>(RunReason::gui_silent));
+    ASSERT_TRUE(until([&] { return watch.force_n() == 0.0; }));
+    for (int i = 0; i < 100; ++i) {  // it is back, and that alone changes nothing
+        visual.frame();
+        ASSERT_TRUE(watch.cycles_pass(5));
+        EXPECT_EQ(watch.state(), RunState::ready);
+        EXPECT_EQ(watch.force_n(), 0.0);
+    }
+    EXPECT_TRUE(bring_to_force(visual, watch)) << rt.said();
+}
+
+TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with_its_mend) {
+    const Rig rig;
+    const auto open_to_all = rig.folder() / "open";
+    std::filesystem::create_directory(open_to_all);
+    std::filesystem::permissions(open_to_all, std::filesystem::perms::all);
+    const auto said =
+        run_to_end(rig, rt_program(), {rig.scene().string(), "--priority", "0"}, open_to_all.string());
+    ASSERT_TRUE(said);
+    EXPECT_EQ(said->ending.number, 1);
+    EXPECT_TRUE(has(said->text, open_to_all.string())) << said->text;
+    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+}
+
+// The same programs as a user without any privilege, by setpriv of util-linux.
+class WithoutPrivilege : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (getuid() != 0) return;  // the test itself has none
+        const passwd* const nobody = getpwnam("nobody");
+        setpriv_ = launch::find_in_path("setpriv");
+        if (nobody == nullptr || setpriv_.empty()) GTEST_SKIP() << "root without setpriv or a user nobody";
+        ASSERT_EQ(chmod(rig_.folder().c_str(), 0711), 0);
+        private_ = rig_.folder() / "private";
+        std::filesystem::create_directory(private_);
+        std::filesystem::permissions(private_, std::filesystem::perms::owner_all);
+        ASSERT_EQ(chown(private_.c_str(), nobody->pw_uid, nobody->pw_gid), 0);
+        words_ = {"--reuid=" + std::to_string(nobody->pw_uid), "--regid=" + std::to_string(nobody->pw_gid),
+                  "--clear-groups", "--"};
+        const auto can = run({rt_program().string(), "--help"});
+        if (!can || !can->ending.clean()) GTEST_SKIP() << "the user nobody cannot reach the programs' folder";
+    }
+    std::optional<Said> run(std::vector<std::string> line) {
+        std::filesystem::path program = line.front();
+        line.erase(line.begin());
+        if (words_.empty()) return run_to_end(rig_, program, line);
+        std::vector<std::string> all = words_;
+        all.push_back(program.string());
+        all.insert(all.end(), line.begin(), line.end());
+        return run_to_end(rig_, setpriv_, all, private_.string());
+    }
+    Rig rig_;
+    std::filesystem::path setpriv_, private_;
+    std::vector<std::string> words_;
+};
+
+TEST_F(WithoutPrivilege, a_scene_that_may_not_be_read_is_named_with_the_reason) {
+    ASSERT_EQ(chmod(rig_.scene().c_str(), 0000), 0);
+    const auto said = run({rt_program().string(), rig_.scene().string(), "--priority", "0", "--check"});
+    ASSERT_TRUE(said);
+    EXPECT_EQ(said->ending.number, 1);
+    EXPECT_TRUE(has(said->text, rig_.scene().string())) << said->text;
+    EXPECT_TRUE(has(said->text, "ermission")) << said->text;
+    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+}
+
+TEST_F(WithoutPrivilege,
+       real_time_scheduling_that_is_not_permitted_is_said_with_its_mend_and_the_run_goes_on) {
+    const auto said = run({rt_program().string(), rig_.scene().string(), "--seconds", "0.3"});
+    ASSERT_TRUE(said);
+    EXPECT_TRUE(said->ending.clean()) << said->text;
+    if (has(said->text, "FIFO,")) GTEST_SKIP() << "this user may use real-time scheduling";
+    EXPECT_TRUE(has(said->text, "rtprio") || has(said->text, "RLIMIT_RTPRIO")) << said->text;
+}
+
+TEST_F(WithoutPrivilege, a_runtime_folder_of_another_user_is_refused) {
+    if (words_.empty()) GTEST_SKIP() << "needs a second user";
+    const auto theirs = rig_.folder() / "theirs";
+    std::filesystem::create_directory(theirs);
+    ASSERT_EQ(chown(theirs.c_str(), 12345, 12345), 0);
+    std::vector<std::string> all = words_;
+    for (const auto& w :
+         {rt_program().string(), rig_.scene().string(), std::string("--priority"), std::string("0")})
+        all.push_back(w);
+    const auto said = run_to_end(rig_, setpriv_, all, theirs.string());
+    ASSERT_TRUE(said);
+    EXPECT_EQ(said->ending.number, 1);
+    EXPECT_TRUE(has(said->text, theirs.string())) << said->text;
+    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+}
+
+}  // namespace
+}  // namespace tact::scenario

@@ -1,0 +1,77 @@
+// The whole servo loop on a clock that is moved by hand, with the emulated device: nothing waits, all
+// repeats.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "hal/sim/sim_device.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/topics/regions.hpp"
+#include "rt/loop/servo.hpp"
+#include "tests/support/spring_model.hpp"
+
+namespace tact {
+
+class Lockstep {
+public:
+    explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {})
+        : region_(new RtRegion{}), device_(sim) {
+        settings.model_deadline = false;
+        settings.dry_cycles = 20;
+        clock_.advance(std::chrono::seconds(100));
+        hand_ = {&device_, &model_, device_.open()};
+        servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mail_}, settings);
+        servo_->warm_up();
+    }
+
+    void cycles(int n) {
+        for (int i = 0; i < n && !servo_->finished(); ++i) servo_->cycle();
+    }
+    void order(CommandKind kind, double value = 0.0, std::uint32_t index = 0) {
+        mail_.orders.push({++sequence_, value, static_cast<std::uint32_t>(kind), index});
+    }
+    // Armed, active, ramp over.
+    void active() {
+        order(CommandKind::arm);
+        cycles(600);
+    }
+    [[nodiscard]] RunState state() const { return servo_->state().run.state; }
+    [[nodiscard]] RunReason reason() const { return servo_->state().run.reason; }
+    [[nodiscard]] double shown_n() const { return device_.shown_dev().force_n.norm(); }
+    [[nodiscard]] ToolTopic tool() const {
+        ToolTopic t{};
+        static_cast<void>(region_->tool[0].read(t));
+        return t;
+    }
+    [[nodiscard]] HealthTopic health() const {
+        HealthTopic t{};
+        static_cast<void>(region_->health.read(t));
+        return t;
+    }
+    [[nodiscard]] LevelsTopic levels() const {
+        LevelsTopic t{};
+        static_cast<void>(region_->levels.read(t));
+        return t;
+    }
+    // How many events of this code so far.
+    [[nodiscard]] int said(EventCode code) const {
+        RingCursor cursor;
+        EventTopic e{};
+        int n = 0;
+        while (region_->events.next(cursor, e)) n += e.code == static_cast<std::uint16_t>(code);
+        return n;
+    }
+
+    ManualClock clock_;
+    std::unique_ptr<RtRegion> region_;
+    SimDevice device_;
+    SpringModel model_;
+    ServoMail mail_;
+    HandParts hand_{};
+    std::optional<Servo> servo_;
+    std::uint64_t sequence_ = 0;
+};
+
+}  // namespace tact

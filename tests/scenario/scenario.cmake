@@ -1,0 +1,10 @@
+# Stories about the whole: the real controller as a process, with what befalls it. See scenario/README.md.
+function(tact_scenario_rig name)
+    target_sources(${name} PRIVATE scenario/rig.cpp)
+    target_compile_definitions(${name} PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
+    add_dependencies(${name} tact-rt)
+endfunction()
+tact_test(scenario/faults_test.cpp USES base shm topics assets launch TIMEOUT 240 LABELS scenario)
+tact_scenario_rig(faults_test)
+tact_test(scenario/kill_campaign_test.cpp USES base shm topics assets launch TIMEOUT 240 LABELS scenario)
+tact_scenario_rig(kill_campaign_test)

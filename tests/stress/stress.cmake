@@ -1,0 +1,6 @@
+# Two processes at full speed for two seconds. The same within one process, for the thread sanitizer, is in
+# unit/ipc_latest_ring_test.cpp.
+tact_program(two_process_stress SOURCES stress/two_process_stress.cpp USES shm)
+set_target_properties(two_process_stress PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+add_test(NAME two_process_stress COMMAND two_process_stress 2)
+set_tests_properties(two_process_stress PROPERTIES TIMEOUT 60 LABELS stress)

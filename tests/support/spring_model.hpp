@@ -1,0 +1,55 @@
+// A force model whose answer is known: a spring to a point, with faults and delays on demand.
+#pragma once
+
+#include <limits>
+
+#include "ipc/base/clock.hpp"
+#include "rt/force/force_model.hpp"
+
+namespace tact {
+
+class SpringModel final : public ForceModel {
+public:
+    Vec3 rest_world_m{0.02, -0.01, 0.03};
+    double stiffness_n_m = 40.0;
+    double turn_stiffness_n_m = 0.02;
+    bool not_a_number = false;
+    ManualClock* clock = nullptr;  // a step then takes `cost`, at the level
+    Duration cost{0};
+    int* destroyed = nullptr;
+    int resets = 0;
+
+    ~SpringModel() override {
+        if (destroyed != nullptr) ++*destroyed;
+    }
+    [[nodiscard]] KnobSpec knob() const noexcept override {
+        return {.path = "spring.force", .floor = 0.1F, .start = 1.0F, .slew_per_s = 1e9F, .haptic = true};
+    }
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept override {
+        return static_cast<std::uint32_t>(1000.0F * fidelity + 0.5F);
+    }
+    void reset(const ToolState&) noexcept override { ++resets; }
+    StepResult step(const ToolState& tool, const Budget& budget) noexcept override {
+        place_ = tool.T_world_tool;
+        if (clock != nullptr) {
+            clock->advance(Duration(static_cast<std::int64_t>(static_cast<double>(cost.count()) *
+                                                              static_cast<double>(budget.fidelity))));
+        }
+        StepResult result;
+        result.wrench_world.force_n = stiffness_n_m * (rest_world_m - tool.T_world_tool.p_m);
+        result.wrench_world.torque_n_m = -turn_stiffness_n_m * rotation_vector_rad(tool.T_world_tool.q);
+        if (not_a_number) result.wrench_world.force_n.y() = std::numeric_limits<double>::quiet_NaN();
+        return result;
+    }
+    [[nodiscard]] ModelBodies bodies() const noexcept override {
+        ModelBodies bodies;
+        bodies.count = 1;
+        bodies.T_model_body[0] = place_;
+        return bodies;
+    }
+
+private:
+    Pose place_;
+};
+
+}  // namespace tact

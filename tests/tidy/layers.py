@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""Includes point downward, and only to what USES says.
+
+Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_test, tact_bench and tact_fuzz, finds
+which target each source belongs to (a header: the target of its .cpp, else the library of its folder), and reports
+  1. an include of another folder's header that the target's USES do not lead to,
+  2. a folder that includes what ARCHITECTURE's table puts above it or beside it,
+  3. a third-party header outside the folder that wraps it,
+  4. an include that does not start at the root or does not exist, and a source that no target lists.
+Prints file:line: what, and exits 1 if there was anything. --self-test proves on a small tree that it finds each.
+"""
+import os
+import re
+import sys
+import tempfile
+
+# Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
+BELOW = {
+    "ipc/base": [],
+    "ipc/shm": ["ipc/base"],
+    "ipc/topics": ["ipc/base", "ipc/shm"],
+    "ipc/assets": ["ipc/base"],
+    "hal": ["ipc/base", "ipc/shm"],  # shm: mailboxes between a bus pump and the servo
+    "rt/force": ["ipc/base", "ipc/assets"],
+    "rt/govern": ["ipc/base"],
+    "rt/safety": ["ipc/base"],
+    "rt": ["ipc", "hal"],
+    "gui": ["ipc"],
+    "prep": ["ipc/base", "ipc/assets"],
+    "deploy": ["ipc", "rt/force"],
+    "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
+}
+# Third-party header -> folders that wrap it.
+WRAPPED = [
+    (r"libusb", ["hal/phantom"]),
+    (r"gpiod", ["hal/io"]),
+    (r"gemmi/", ["prep", "tests"]),
+    (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
+    (r"png\.h|pngconf", ["gui", "deploy/tact/plot_canvas", "tests"]),
+    (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
+    (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
+    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "tests"]),
+    (r"nlohmann/", ["deploy", "prep", "gui", "rt/main", "tests"]),
+]
+CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz)\s*\(([^()]*)\)", re.S)
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT", "CLANG_FROM"}
+SKIP = {"build", "out", ".git", ".cache"}
+
+
+def files_under(root):
+    for folder, names, files in os.walk(root):
+        names[:] = sorted(n for n in names if n not in SKIP)
+        for f in sorted(files):
+            yield os.path.relpath(os.path.join(folder, f), root)
+
+
+class Target:
+    def __init__(self, name, folder, sources, uses, library):
+        self.name, self.folder, self.sources, self.uses, self.library = name, folder, sources, uses, library
+
+
+FUNCTION = re.compile(r"function\s*\(.*?endfunction\s*\(\s*\)", re.S)
+
+
+def shared_sources(root, cmake_files):
+    """Sources that a helper function adds to every target it makes."""
+    shared = set()
+    for path in cmake_files:
+        with open(os.path.join(root, path), encoding="utf-8") as f:
+            for body in FUNCTION.findall(f.read()):
+                shared |= {os.path.join(path.split("/")[0], s) for s in re.findall(r"[\w/]+\.cpp", body)}
+    return shared
+
+
+def read_targets(root, cmake_files):
+    targets = []
+    for path in cmake_files:
+        with open(os.path.join(root, path), encoding="utf-8") as f:
+            text = re.sub(r"#.*", "", f.read())
+        text = FUNCTION.sub("", text)
+        folder = os.path.dirname(path)
+        if folder.startswith("tests/"):
+            folder = "tests"  # tests/*/*.cmake are included by tests/CMakeLists.txt
+        for kind, body in CALL.findall(text):
+            lists, now = {"first": []}, "first"
+            for word in body.split():
+                if word in KEYWORDS:
+                    now = word
+                    lists[now] = []
+                else:
+                    lists[now].append(word.strip('"'))
+            if not lists["first"]:
+                continue
+            sources = lists.get("SOURCES", []) + lists.get("EXTRA", [])
+            name = lists["first"][0]
+            if kind in ("tact_test", "tact_bench"):
+                sources = [name] + sources
+            sources = [os.path.normpath(os.path.join(folder, s.replace("${CMAKE_SOURCE_DIR}/", "../" * len(folder.split("/")) if folder else "")))
+                       for s in sources]
+            targets.append(Target(name, folder, sources, set(lists.get("USES", [])), kind == "tact_library"))
+    return targets
+
+
+def owners(path, targets, by_source):
+    """Targets a file may belong to."""
+    if path in by_source:
+        return by_source[path]
+    stem = os.path.splitext(path)[0]
+    if stem + ".cpp" in by_source:
+        return by_source[stem + ".cpp"]
+    folder = os.path.dirname(path)
+    while True:
+        here = [t for t in targets if t.folder == folder and folder != "tests"]
+        if here or not folder:
+            return [t for t in here if t.library]  # nobody's, if the folder is a program's: the folders decide
+        folder = os.path.dirname(folder)
+
+
+def reach(target, targets):
+    """Names of the libraries that a target's USES lead to, as CMake passes them on."""
+    libraries = {t.name: t for t in targets if t.library}
+    seen, todo = set(), list(target.uses)
+    while todo:
+        name = todo.pop()
+        if name not in seen:
+            seen.add(name)
+            todo += libraries[name].uses if name in libraries else []
+    return seen
+
+
+def longest(prefixes, path):
+    fits = [p for p in prefixes if path == p or path.startswith(p + "/") or (path.startswith(p) and path[len(p)] in "._")]
+    return max(fits, key=len) if fits else None
+
+
+def check(root):
+    found = []
+    everything = list(files_under(root))
+    known = set(everything)
+    cmake_files = [p for p in everything if p.endswith("CMakeLists.txt") or p.endswith(".cmake")]
+    targets = read_targets(root, cmake_files)
+    shared = shared_sources(root, cmake_files)
+    by_source = {}
+    for t in targets:
+        for s in t.sources:
+            by_source.setdefault(s, []).append(t)
+    for path in everything:
+        if not path.endswith((".hpp", ".cpp")):
+            continue
+        mine = owners(path, targets, by_source)
+        if path.endswith(".cpp") and path not in by_source and path not in shared:
+            found.append(f"{path}:1: no target lists this source")
+        home = longest(BELOW, path)
+        with open(os.path.join(root, path), encoding="utf-8") as f:
+            lines = f.readlines()
+        for number, line in enumerate(lines, 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            quote, target_path = match.groups()
+            at = f"{path}:{number}: "
+            for pattern, folders in WRAPPED:
+                if re.match(pattern, target_path) and longest(folders, path) is None:
+                    found.append(f"{at}<{target_path}> belongs to {' or '.join(folders)}")
+            if quote == "<":
+                continue
+            if target_path not in known:
+                found.append(f'{at}"{target_path}" is not a path from the root')
+                continue
+            if home is not None:
+                other = longest(BELOW, target_path)
+                if other != home and longest(BELOW[home], target_path) is None:
+                    if not (target_path.startswith(home + "/")):
+                        found.append(f'{at}{home} may not include "{target_path}" (it may: {", ".join(BELOW[home]) or "nothing"})')
+                        continue
+            theirs = owners(target_path, targets, by_source)
+            neighbours = os.path.dirname(path) == os.path.dirname(target_path)
+            if not theirs or not mine or set(theirs) & set(mine) or neighbours:
+                continue
+            # A source that several targets list needs the library in each of them; a header in a folder of several
+            # libraries belongs to one of them, which cannot be told.
+            lacking = [t for t in mine if not any(o.name in reach(t, targets) for o in theirs)]
+            for t in lacking:
+                if path in by_source or len(lacking) == len(mine):
+                    found.append(f'{at}"{target_path}" needs USES {theirs[0].name} in target {t.name}')
+                    break
+    return found
+
+
+def self_test():
+    tree = {
+        "ipc/base/CMakeLists.txt": "tact_library(base)",
+        "ipc/base/a.hpp": "#pragma once\n",
+        "ipc/shm/CMakeLists.txt": "tact_library(shm SOURCES s.cpp USES base)",
+        "ipc/shm/s.hpp": '#include "ipc/base/a.hpp"\n',
+        "ipc/shm/s.cpp": '#include "ipc/shm/s.hpp"\n',
+        "rt/force/CMakeLists.txt": "tact_library(force SOURCES f.cpp USES base)",
+        "rt/force/f.hpp": '#include "ipc/base/a.hpp"\n',
+        "rt/force/f.cpp": '#include "rt/force/f.hpp"\n',
+        "rt/loop/CMakeLists.txt": "tact_library(loop SOURCES l.cpp USES force base)",
+        "rt/loop/l.hpp": '#include "rt/force/f.hpp"\n',
+        "rt/loop/l.cpp": '#include "rt/loop/l.hpp"\n#include <spdlog/spdlog.h>\n',
+        "tests/unit/x.cmake": "tact_test(unit/x_test.cpp USES shm)",
+        "tests/unit/x_test.cpp": '#include "ipc/shm/s.hpp"\n',
+    }
+    violations = {
+        "include above": ("rt/force/f.cpp", '#include "rt/loop/l.hpp"\n', "rt/force may not include"),
+        "include beside": ("rt/force/f.cpp", '#include "ipc/shm/s.hpp"\n', "rt/force may not include"),
+        "USES missing": ("tests/unit/x_test.cpp", '#include "rt/force/f.hpp"\n', "needs USES force"),
+        "USES missing, allowed folder": ("rt/loop/l.cpp", '#include "ipc/shm/s.hpp"\n', "needs USES shm"),
+        "third party": ("rt/force/f.cpp", "#include <gemmi/ccp4.hpp>\n", "belongs to prep"),
+        "third party, dotted": ("ipc/shm/s.cpp", "#include <imgui.h>\n", "belongs to gui"),
+        "relative": ("ipc/shm/s.cpp", '#include "s.hpp"\n', "not a path from the root"),
+        "unlisted": ("ipc/shm/new.cpp", "\n", "no target lists"),
+    }
+    bad = 0
+    for name, (path, text, wanted) in [("clean", ("", "", ""))] + list(violations.items()):
+        with tempfile.TemporaryDirectory() as root:
+            files = dict(tree)
+            if path:
+                files[path] = files.get(path, "") + text
+            for p, content in files.items():
+                os.makedirs(os.path.dirname(os.path.join(root, p)), exist_ok=True)
+                with open(os.path.join(root, p), "w", encoding="utf-8") as f:
+                    f.write(content)
+            found = check(root)
+        right = found == [] if name == "clean" else len(found) == 1 and wanted in found[0]
+        bad += not right
+        print(f"{'ok  ' if right else 'FAIL'} {name}: {found}")
+    return bad
+
+
+def main():
+    if "--self-test" in sys.argv:
+        return 1 if self_test() else 0
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    found = check(root)
+    print("\n".join(found) if found else "includes follow USES")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

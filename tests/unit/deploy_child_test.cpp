@@ -1,0 +1,165 @@
+#include "deploy/tact/child.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/signals.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+ChildSettings shell(const std::string& script) {
+    ChildSettings s;
+    s.arguments = {"-c", script};
+    return s;
+}
+
+TEST(Child, an_exit_code_is_told_as_it_was) {
+    Child child("sh", "/bin/sh", shell("exit 7"));
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_FALSE(ending->by_signal);
+    EXPECT_EQ(ending->number, 7);
+    EXPECT_FALSE(ending->clean());
+    EXPECT_EQ(ending->text(), "ended with exit code 7");
+}
+
+TEST(Child, a_child_that_is_killed_is_told_by_its_signal) {
+    Child child("sh", "/bin/sh", shell("kill -9 $$"));
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_TRUE(ending->by_signal);
+    EXPECT_EQ(ending->number, SIGKILL);
+    EXPECT_FALSE(ending->asked);
+    EXPECT_NE(ending->text().find("signal 9"), std::string::npos);
+}
+
+TEST(Child, stop_ends_a_child_that_would_run_on) {
+    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    EXPECT_FALSE(child.poll());
+    child.stop();
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_TRUE(ending->asked);
+    EXPECT_EQ(ending->number, SIGTERM);
+    EXPECT_FALSE(ending->forced);
+}
+
+TEST(Child, stop_reaches_a_child_that_was_halted) {
+    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    kill(child.pid(), SIGSTOP);
+    child.stop();
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_EQ(ending->number, SIGTERM);
+}
+
+TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace) {
+    ScratchFolder scratch;
+    const auto mark = scratch.path() / "ready";
+    auto settings = shell("trap '' TERM; : > " + mark.string() + "; while :; do sleep 0.05; done");
+    settings.grace = milliseconds(100);
+    Child child("sh", "/bin/sh", settings);
+    for (int i = 0; i < 2000 && !std::filesystem::exists(mark); ++i) usleep(10000);
+    ASSERT_TRUE(std::filesystem::exists(mark));
+    child.stop();
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_TRUE(ending->forced);
+    EXPECT_EQ(ending->number, SIGKILL);
+    EXPECT_NE(ending->text().find("had not heeded"), std::string::npos);
+}
+
+TEST(Child, a_program_that_does_not_exist_is_refused_with_its_path) {
+    try {
+        Child child("nothing", "/nonexistent/program", {});
+        FAIL() << "no error";
+    } catch (const StartupError& e) {
+        EXPECT_NE(std::string(e.what()).find("/nonexistent/program"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("mend:"), std::string::npos);
+    }
+}
+
+TEST(Child, gets_the_environment_it_was_given_and_loses_what_is_emptied) {
+    ScratchFolder scratch;
+    const auto out = scratch.path() / "out";
+    setenv("TACT_TEST_GONE", "1", 1);
+    auto settings = shell("echo \"$TACT_TEST_NEW/${TACT_TEST_GONE-none}\" > " + out.string());
+    settings.environment = {{"TACT_TEST_NEW", "here"}, {"TACT_TEST_GONE", ""}};
+    Child child("sh", "/bin/sh", settings);
+    ASSERT_TRUE(child.wait(seconds(20)));
+    EXPECT_EQ(read_small(out), "here/none\n");
+}
+
+TEST(Child, does_not_inherit_the_signals_that_tact_blocks) {
+    const Signals blocked;
+    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    kill(child.pid(), SIGINT);
+    const auto& ending = child.wait(seconds(20));
+    ASSERT_TRUE(ending);
+    EXPECT_EQ(ending->number, SIGINT);
+}
+
+TEST(Child, is_gone_when_its_object_is) {
+    pid_t pid = 0;
+    {
+        Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+        pid = child.pid();
+    }
+    EXPECT_EQ(kill(pid, 0), -1);
+}
+
+TEST(Signals, a_request_to_end_is_taken_and_a_dead_child_only_wakes) {
+    Signals signals;
+    Child child("true", "/bin/true", {});
+    ASSERT_TRUE(child.wait(seconds(20)));
+    EXPECT_EQ(signals.wait(0), 0);
+    kill(getpid(), SIGTERM);
+    EXPECT_EQ(signals.wait(1000), SIGTERM);
+    EXPECT_EQ(signals.wait(0), 0);
+}
+
+TEST(Files, a_file_is_written_whole_and_no_remainder_stays) {
+    ScratchFolder scratch;
+    const auto path = scratch.path() / "a" / "b.json";
+    write_whole(path, "one");
+    write_whole(path, "two");
+    EXPECT_EQ(read_small(path), "two");
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& e : std::filesystem::directory_iterator(path.parent_path())) ++files;
+    EXPECT_EQ(files, 1U);
+}
+
+TEST(Files, a_folder_that_cannot_be_written_is_said_with_its_path) {
+    ScratchFolder scratch;
+    std::ofstream(scratch.path() / "file") << "x";
+    try {
+        write_whole(scratch.path() / "file" / "under", "content");
+        FAIL() << "no error";
+    } catch (const StartupError& e) {
+        EXPECT_NE(std::string(e.what()).find("under"), std::string::npos);
+    }
+}
+
+TEST(ContentHash, differs_where_the_same_letters_are_cut_otherwise) {
+    ContentHash a, b, c;
+    a.add("ab");
+    a.add("c");
+    b.add("a");
+    b.add("bc");
+    c.add("ab");
+    c.add("c");
+    EXPECT_NE(a.hex(), b.hex());
+    EXPECT_EQ(a.hex(), c.hex());
+}
+
+}  // namespace
+}  // namespace tact::launch

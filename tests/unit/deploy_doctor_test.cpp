@@ -1,0 +1,120 @@
+#include "deploy/tact/doctor.hpp"
+
+#include <errno.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace tact::launch {
+namespace {
+
+// A PC set up for a device: Debian 12, linux-image-rt-amd64, core 3 isolated.
+Machine tuned() {
+    Machine m;
+    m.kernel_version = "6.1.0-18-rt-amd64 #1 SMP PREEMPT_RT Debian 6.1.76-1 (2024-02-01)";
+    m.realtime = "1\n";
+    m.isolated = "3\n";
+    m.nohz_full = "3\n";
+    m.governors = {"performance\n", "performance\n", "performance\n", "performance\n"};
+    m.rt_runtime_us = "950000\n";
+    m.swaps = "Filename\t\t\t\tType\t\tSize\t\tUsed\t\tPriority\n";
+    m.huge_pages = "always [madvise] never\n";
+    m.clocksource = "tsc\n";
+    m.cpuinfo = "processor\t: 0\nvendor_id\t: GenuineIntel\nflags\t\t: fpu vme de tsc msr\n\n";
+    m.capabilities = "Name:\ttact\nCapEff:\t0000000000000000\nCapBnd:\t000001ffffffffff\n";
+    m.rtprio_max = 90;
+    m.memlock_bytes_max = ~0ULL;
+    m.cores = 4;
+    return m;
+}
+
+Finding one(const Machine& m, const std::string& name) {
+    const auto all = judge(m);
+    const auto at = std::find_if(all.begin(), all.end(), [&](const Finding& f) { return f.name == name; });
+    return at == all.end() ? Finding{} : *at;
+}
+
+TEST(Doctor, a_tuned_machine_has_nothing_to_mend) {
+    for (const Finding& f : judge(tuned())) {
+        EXPECT_EQ(f.level, FindingLevel::ok) << f.name << ": " << f.says;
+        EXPECT_EQ(f.mend, "") << f.name;
+    }
+}
+
+TEST(Doctor, every_warning_says_how_to_mend_it) {
+    Machine m = tuned();
+    m.kernel_version = "6.1.0-18-amd64 #1 SMP PREEMPT_DYNAMIC Debian 6.1.76-1 (2024-02-01)";
+    m.realtime = m.isolated = m.nohz_full = "";
+    m.governors = {"powersave\n", "powersave\n"};
+    m.swaps += "/dev/nvme0n1p3                          partition\t999420\t\t0\t\t-2\n";
+    m.huge_pages = "[always] madvise never\n";
+    m.clocksource = "hpet\n";
+    m.cpuinfo = "processor\t: 0\nflags\t\t: fpu vme hypervisor lahf_lm\n";
+    m.rtprio_max = 0;
+    m.memlock_bytes_max = 8ULL << 20U;
+    m.cores = 2;
+    m.fifo_error = EPERM;
+    m.dma_latency_error = EACCES;
+    int warnings = 0;
+    for (const Finding& f : judge(m)) {
+        if (f.level == FindingLevel::ok) continue;
+        ++warnings;
+        EXPECT_NE(f.mend, "") << f.name;
+    }
+    EXPECT_EQ(warnings, 11);  // all but the throttling, which is only told
+}
+
+TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
+    Machine m = tuned();
+    m.fifo_error = EPERM;
+    m.rtprio_max = 0;
+    EXPECT_NE(one(m, "rtprio").says.find("RLIMIT_RTPRIO is 0"), std::string::npos);
+    EXPECT_NE(one(m, "rtprio").mend.find("limits.d"), std::string::npos);
+    m.rtprio_max = 99;
+    EXPECT_NE(one(m, "rtprio").says.find("container"), std::string::npos);
+}
+
+TEST(Doctor, an_isolated_core_that_still_ticks_is_not_good_enough) {
+    Machine m = tuned();
+    m.nohz_full = "";
+    EXPECT_EQ(one(m, "isolation").level, FindingLevel::warn);
+    EXPECT_NE(one(m, "isolation").mend.find("nohz_full=3"), std::string::npos);
+}
+
+TEST(Doctor, root_may_lock_memory_whatever_the_limit) {
+    Machine m = tuned();
+    m.memlock_bytes_max = 65536;
+    EXPECT_EQ(one(m, "memlock").level, FindingLevel::warn);
+    m.capabilities = "CapInh:\t0000000000000000\nCapEff:\t000001ffffffffff\n";
+    EXPECT_EQ(one(m, "memlock").level, FindingLevel::ok);
+}
+
+TEST(Doctor, core_lists_are_read_as_the_kernel_writes_them) {
+    EXPECT_EQ(parse_core_list("2-4,7\n"), (std::vector<int>{2, 3, 4, 7}));
+    EXPECT_EQ(parse_core_list("0\n"), (std::vector<int>{0}));
+    for (const char* const bad : {"", "\n", "(null)\n", "3-", "-3", "4-2", "1,x", "1-99999999999"})
+        EXPECT_TRUE(parse_core_list(bad).empty()) << bad;
+}
+
+TEST(Doctor, small_texts_of_proc_are_read) {
+    EXPECT_EQ(chosen_word("always [madvise] never\n"), "madvise");
+    EXPECT_EQ(chosen_word("]["), "");
+    EXPECT_EQ(chosen_word(""), "");
+    EXPECT_TRUE(has_capability("CapEff:\t0000000000800000\n", 23));
+    EXPECT_FALSE(has_capability("CapEff:\t0000000000800000\n", 14));
+    EXPECT_FALSE(has_capability("", 0));
+    EXPECT_TRUE(parse_swaps("Filename Type Size Used Priority\n").empty());
+    EXPECT_EQ(parse_swaps("Filename Type\n/swapfile file 1 0 -2\n/dev/sda2 partition 1 0 -3\n"),
+              (std::vector<std::string>{"/swapfile", "/dev/sda2"}));
+}
+
+TEST(Doctor, reading_a_machine_without_the_files_gives_no_crash) {
+    const Machine m = read_machine("/nonexistent");
+    EXPECT_GE(m.cores, 1);
+    EXPECT_TRUE(m.governors.empty());
+    EXPECT_EQ(m.dma_latency_error, ENOENT);
+    EXPECT_FALSE(judge(m).empty());
+}
+
+}  // namespace
+}  // namespace tact::launch

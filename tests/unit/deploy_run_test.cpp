@@ -1,0 +1,301 @@
+// Whole runs of the launcher with stand-ins for the two programs: this very file under the names tact-rt and
+// tact-gui. The stand-in for the controller publishes a real region with known numbers; MISBEHAVE tells it
+// how to end.
+#include "deploy/tact/run.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/observer.hpp"
+#include "ipc/shm/link.hpp"
+#include "ipc/topics/regions.hpp"
+#include "tests/unit/assets_samples.hpp"
+
+namespace tact::launch {
+namespace {
+
+volatile sig_atomic_t asked_to_end = 0;
+
+std::string value_of(int argc, char** argv, const std::string& option) {
+    for (int i = 1; i + 1 < argc; ++i)
+        if (argv[i] == option) return argv[i + 1];
+    return "";
+}
+
+std::string misbehaviour() {
+    const char* const m = std::getenv("MISBEHAVE");
+    return m != nullptr ? m : "";
+}
+
+void fill(RtRegion& region, std::uint64_t cycle) {
+    HealthTopic h{};
+    h.taken_at_ns = to_ns(Monotonic::now());
+    h.cycle = cycle;
+    h.period_ns = 1'000'000;
+    h.force_rate_hz = 999.0;
+    h.force_rate_mean_hz = 998.5;
+    h.overruns = 3;
+    h.page_faults = 5;
+    h.allocations = 7;
+    h.schedule_flags = kScheduleFifo;
+    h.gui_fps = 42.5;
+    h.gui_vertices = 1234;
+    h.gui_attached = 1;
+    h.state = static_cast<std::uint8_t>(RunState::active);
+    region.health.publish(h);
+    DurationHistogram lateness;
+    for (int i = 0; i < 99; ++i) lateness.add(std::chrono::nanoseconds(2000));
+    lateness.add(std::chrono::nanoseconds(50000));
+    LatenessTopic l{};
+    std::copy(lateness.counts().begin(), lateness.counts().end(), l.counts);
+    l.total = lateness.total();
+    l.max_ns = lateness.max_ns();
+    region.lateness.publish(l);
+    LevelsTopic levels{};
+    std::strcpy(levels.law, "sensitus");
+    levels.goal_hz = 800.0;
+    levels.count = 1;
+    std::strcpy(levels.path[0].path, kMeshPath);
+    levels.path[0].level = 0.5F;
+    levels.path[0].items = 600;
+    region.levels.publish(levels);
+    // 3 A off and turned by 90 degrees about z.
+    BodiesTopic bodies{};
+    bodies.count = 1;
+    const Vec3 home = sample::structure().home_com_model_m;
+    bodies.body[0] = {{home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}};
+    region.bodies.publish(bodies);
+}
+
+int controller(int argc, char** argv) {
+    if (misbehaviour() == "ignore") {
+        signal(SIGTERM, SIG_IGN);
+    } else {
+        struct sigaction action {};
+        action.sa_handler = [](int) { asked_to_end = 1; };
+        sigaction(SIGTERM, &action, nullptr);
+    }
+    if (misbehaviour() == "refuse") return 3;
+    OwnedRegion<RtRegion> region;
+    std::strcpy(region->scene_path, argv[1]);
+    region->scene_checksum = 0xABCD;
+    region.mark_ready();
+    LinkServer link(value_of(argc, argv, "--session"), region.fd());
+    const Instant start = Monotonic::now();
+    for (std::uint64_t cycle = 1; asked_to_end == 0; ++cycle) {
+        link.poll(5);
+        fill(*region, cycle);
+        if (misbehaviour() == "crash" && Monotonic::now() > start + std::chrono::milliseconds(600)) {
+            signal(SIGSEGV, SIG_DFL);  // a sanitizer would make an exit code of it
+            raise(SIGSEGV);
+        }
+    }
+    return 0;
+}
+
+// Lives as long as --seconds says, writes its "picture" and ends.
+int window(int argc, char** argv) {
+    const std::string seconds = value_of(argc, argv, "--seconds");
+    if (misbehaviour() == "window") return 4;
+    ::poll(nullptr, 0, seconds.empty() ? 600'000 : static_cast<int>(std::stod(seconds) * 1000));
+    if (const auto picture = value_of(argc, argv, "--screenshot"); !picture.empty())
+        std::ofstream(picture) << "PNG";
+    return 0;
+}
+
+class DeployRun : public testing::Test {
+protected:
+    void SetUp() override {
+        setenv("TACT_RUNTIME_DIR", scratch_.path().c_str(), 1);
+        setenv("DISPLAY", ":0", 0);  // the stand-in opens no window
+        const auto self = std::filesystem::read_symlink("/proc/self/exe");
+        for (const char* const name : {"tact-rt", "tact-gui"})
+            std::filesystem::create_symlink(self, scratch_.path() / name);
+        scene_ = scratch_.path() / "sample.tact";
+        sample::scene().write(scene_);
+        options_.programs = scratch_.path();
+        options_.json = scratch_.path() / "out" / "run.json";
+        options_.seconds = 1.0;
+    }
+    void TearDown() override { unsetenv("MISBEHAVE"); }
+    static void misbehave(const char* how) { setenv("MISBEHAVE", how, 1); }
+
+    int run() {
+        testing::internal::CaptureStdout();
+        testing::internal::CaptureStderr();
+        const int code = run_scene(scene_, options_);
+        said_ = testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+        if (std::filesystem::exists(options_.json))
+            report_ = nlohmann::json::parse(read_small(options_.json));
+        return code;
+    }
+
+    ScratchFolder scratch_;
+    std::filesystem::path scene_;
+    RunOptions options_;
+    std::string said_;
+    nlohmann::json report_;
+};
+
+TEST_F(DeployRun, the_json_holds_what_the_controller_published) {
+    options_.gui = false;
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_EQ(report_["force_rate_hz"], 998.5);
+    const auto& servo = report_["servo"];
+    EXPECT_EQ(servo["overruns"], 3);
+    EXPECT_EQ(servo["page_faults"], 5);
+    EXPECT_EQ(servo["allocations"], 7);
+    EXPECT_EQ(servo["schedule"], "FIFO");
+    EXPECT_NEAR(servo["lateness_us"]["p50"].get<double>(), 2.0, 0.13);  // a bucket is 6 % wide
+    EXPECT_NEAR(servo["lateness_us"]["p99"].get<double>(), 2.0, 0.13);
+    EXPECT_EQ(servo["lateness_us"]["p999"], servo["lateness_us"]["p99"]);  // of 100 samples
+    EXPECT_EQ(servo["lateness_us"]["max"], 50.0);
+    EXPECT_EQ(report_["gui"]["fps"], 42.5);
+    EXPECT_EQ(report_["gui"]["vertices"], 1234);
+    EXPECT_EQ(report_["governor"]["law"], "sensitus");
+    EXPECT_EQ(report_["governor"]["paths"]["gui.mesh"]["level"], 0.5);
+    EXPECT_EQ(report_["state"], "active");
+    EXPECT_EQ(report_["scene"]["checksum"], "000000000000abcd");
+    EXPECT_NEAR(report_["fit"]["offset_a"].get<double>(), 3.0, 1e-6);
+    EXPECT_NEAR(report_["fit"]["angle_deg"].get<double>(), 90.0, 1e-6);
+    EXPECT_NEAR(report_["fit"]["at_file_place"]["offset_a"].get<double>(), 0.0, 1e-9);
+    EXPECT_TRUE(report_["ended"]["ok"].get<bool>());
+    EXPECT_EQ(report_["ended"]["tact-rt"]["exit_code"], 0);
+    EXPECT_GT(report_["seconds"].get<double>(), 0.5);
+}
+
+TEST_F(DeployRun, the_window_ends_the_run_and_its_picture_is_told) {
+    options_.screenshot = scratch_.path() / "new" / "picture.png";
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_TRUE(std::filesystem::exists(options_.screenshot));
+    EXPECT_EQ(report_["ended"]["why"], "the time is over");
+    EXPECT_EQ(report_["ended"]["tact-gui"]["exit_code"], 0);
+}
+
+TEST_F(DeployRun, out_collects_json_picture_and_samples) {
+    options_.json.clear();
+    options_.out = scratch_.path() / "all";
+    ASSERT_EQ(run(), 0) << said_;
+    for (const char* const name : {"run.json", "run.csv", "run.png"})
+        EXPECT_TRUE(std::filesystem::exists(scratch_.path() / "all" / name)) << name;
+    const std::string csv = read_small(scratch_.path() / "all" / "run.csv");
+    EXPECT_GE(std::count(csv.begin(), csv.end(), '\n'), 5);
+    EXPECT_NE(csv.find(",active,999.00,"), std::string::npos);
+}
+
+TEST_F(DeployRun, a_controller_that_dies_ends_the_run_with_its_signal_told) {
+    misbehave("crash");
+    options_.seconds = 60.0;
+    EXPECT_EQ(run(), 1);
+    EXPECT_FALSE(report_["ended"]["ok"].get<bool>());
+    EXPECT_EQ(report_["ended"]["tact-rt"]["signal"], SIGSEGV);
+    EXPECT_NE(said_.find("tact-rt was killed by signal 11"), std::string::npos) << said_;
+    EXPECT_EQ(report_["force_rate_hz"], 998.5) << "what it had published stays readable";
+}
+
+TEST_F(DeployRun, a_controller_that_refuses_to_start_is_told_by_its_exit_code) {
+    misbehave("refuse");
+    EXPECT_EQ(run(), 1);
+    EXPECT_EQ(report_["ended"]["tact-rt"]["exit_code"], 3);
+    EXPECT_TRUE(report_["scene"]["checksum"].is_null());
+}
+
+TEST_F(DeployRun, a_window_that_dies_ends_the_controller_in_order) {
+    misbehave("window");
+    EXPECT_EQ(run(), 1);
+    EXPECT_EQ(report_["ended"]["tact-gui"]["exit_code"], 4);
+    EXPECT_EQ(report_["ended"]["tact-rt"]["exit_code"], 0);
+}
+
+TEST_F(DeployRun, a_controller_that_hangs_is_killed_and_the_run_fails) {
+    misbehave("ignore");
+    options_.gui = false;
+    EXPECT_EQ(run(), 1);
+    EXPECT_EQ(report_["ended"]["tact-rt"]["signal"], SIGKILL);
+    EXPECT_NE(said_.find("had not heeded"), std::string::npos) << said_;
+}
+
+TEST_F(DeployRun, a_signal_to_tact_ends_all_in_order) {
+    options_.seconds = 0.0;
+    const pid_t pid = fork();
+    if (pid == 0) {
+        const int code = run_scene(scene_, options_);
+        std::fflush(nullptr);
+        _exit(code);
+    }
+    ::poll(nullptr, 0, 700);
+    kill(pid, SIGINT);
+    int status = 0;
+    ASSERT_EQ(waitpid(pid, &status, 0), pid);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    report_ = nlohmann::json::parse(read_small(options_.json));
+    EXPECT_EQ(report_["ended"]["why"], "asked by Interrupt");
+    EXPECT_EQ(report_["ended"]["tact-rt"]["exit_code"], 0);
+}
+
+TEST_F(DeployRun, a_controller_is_ended_by_the_kernel_where_tact_itself_is_killed) {
+    options_.seconds = 0.0;
+    options_.gui = false;
+    const pid_t pid = fork();
+    if (pid == 0) {
+        run_scene(scene_, options_);
+        _exit(0);
+    }
+    Observer observer("default");
+    const auto within = [&](auto&& wanted) {
+        for (int i = 0; i < 1000 && !wanted(); ++i) ::poll(nullptr, 0, 10);
+        return wanted();
+    };
+    EXPECT_TRUE(within([&] {
+        observer.poll();
+        return observer.attached();
+    }));
+    kill(pid, SIGKILL);
+    waitpid(pid, nullptr, 0);
+    EXPECT_TRUE(within([&] {
+        observer.poll();
+        return !observer.attached();
+    }));
+    EXPECT_TRUE(observer.seen()) << "what it had published stays readable";
+}
+
+TEST_F(DeployRun, a_second_run_in_the_same_session_is_refused_before_anything_starts) {
+    Child other("tact-rt", scratch_.path() / "tact-rt",
+                {.arguments = {scene_.string(), "--session", "default"}, .environment = {}, .cores = {}});
+    for (int i = 0; i < 500 && !std::filesystem::exists(scratch_.path() / "tact-default.sock"); ++i)
+        ::poll(nullptr, 0, 10);
+    const std::string error = sample::error_of([&] { run_scene(scene_, options_); });
+    EXPECT_NE(error.find("--session"), std::string::npos) << error;
+}
+
+TEST_F(DeployRun, a_picture_without_a_window_is_refused) {
+    options_.gui = false;
+    options_.screenshot = "x.png";
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("--no-gui"), std::string::npos);
+}
+
+TEST_F(DeployRun, a_broken_scene_is_refused_by_its_name) {
+    std::ofstream(scene_, std::ios::trunc) << "not a scene";
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("sample.tact"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tact::launch
+
+int main(int argc, char** argv) {
+    const std::string name = std::filesystem::path(argv[0]).filename();
+    if (name == "tact-rt") return tact::launch::controller(argc, argv);
+    if (name == "tact-gui") return tact::launch::window(argc, argv);
+    testing::InitGoogleTest(&argc, argv);
+    return RUN_ALL_TESTS();
+}

@@ -1,0 +1,333 @@
+// The docking model against the derivatives of its own energy, and its grip, clutch, knob and deadline.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "ipc/base/error.hpp"
+#include "rt/force/docking/docking_model.hpp"
+#include "rt/force/docking/start_pose.hpp"
+#include "tests/contract/force_model_contract.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kA = 1e-10;
+constexpr double kCentre = 30.0 * kA;
+
+// A bent rod of atoms in a map of Gaussians around the place where it belongs.
+struct Scene {
+    SceneMeta meta{};
+    DensityGrid grid;
+    Structure rod;
+    Codebook codebook;
+};
+
+void add_level(Codebook& codebook, const Structure& s, std::size_t share) {
+    Codebook::Level level;
+    for (std::size_t i = 0; i < s.size(); i += share) {
+        double x = 0, y = 0, z = 0, w = 0;
+        for (std::size_t k = i; k < std::min(i + share, s.size()); ++k) {
+            const auto m = static_cast<double>(s.mass_fraction[k]);
+            x += m * static_cast<double>(s.x_m[k]), y += m * static_cast<double>(s.y_m[k]);
+            z += m * static_cast<double>(s.z_m[k]), w += m;
+        }
+        level.x_m.push_back(static_cast<float>(x / w)), level.y_m.push_back(static_cast<float>(y / w));
+        level.z_m.push_back(static_cast<float>(z / w)), level.weight.push_back(static_cast<float>(w));
+    }
+    codebook.levels.push_back(std::move(level));
+}
+
+Scene make_scene(std::size_t atoms) {
+    Scene scene;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> jitter(-2.0 * kA, 2.0 * kA), mass(12.0, 16.0);
+    std::vector<Vec3> place;
+    std::vector<double> m;
+    Vec3 com = Vec3::Zero();
+    double total = 0.0;
+    for (std::size_t i = 0; i < atoms; ++i) {
+        const double s = 2.0 * static_cast<double>(i) / static_cast<double>(atoms) - 1.0;
+        place.emplace_back(18.0 * kA * s + jitter(random), 9.0 * kA * s * s + jitter(random), jitter(random));
+        m.push_back(mass(random));
+        com += m.back() * place.back();
+        total += m.back();
+    }
+    com /= total;
+    Structure& rod = scene.rod;
+    rod.name = "rod";
+    rod.mass_u = total;
+    rod.home_com_model_m = Vec3::Constant(kCentre);
+    for (std::size_t i = 0; i < atoms; ++i) {
+        rod.x_m.push_back(static_cast<float>((place[i] - com).x()));
+        rod.y_m.push_back(static_cast<float>((place[i] - com).y()));
+        rod.z_m.push_back(static_cast<float>((place[i] - com).z()));
+        rod.mass_fraction.push_back(static_cast<float>(m[i] / total));
+    }
+    DensityGrid& grid = scene.grid;
+    grid.size = {30, 30, 30};
+    grid.spacing_m = Vec3::Constant(2.0 * kA);
+    grid.values.assign(grid.count(), 0.0F);
+    for (std::uint32_t z = 0; z < 30; ++z) {
+        for (std::uint32_t y = 0; y < 30; ++y) {
+            for (std::uint32_t x = 0; x < 30; ++x) {
+                const Vec3 p = 2.0 * kA * Vec3(x, y, z);
+                double v = 0.0;
+                for (std::size_t i = 0; i < atoms; i += atoms / 40 + 1) {
+                    const Vec3 atom = Vec3::Constant(kCentre) + place[i] - com;
+                    v += std::exp(-(p - atom).squaredNorm() / (2.0 * 16.0 * kA * kA));
+                }
+                grid.values[(std::size_t{z} * 30 + y) * 30 + x] = static_cast<float>(v);
+            }
+        }
+    }
+    SceneMeta& meta = scene.meta;
+    meta.kind = SceneKind::docking;
+    meta.body_count = 1;
+    meta.world_per_model = 0.1 / (60.0 * kA);
+    for (double& c : meta.centre_model_m) c = kCentre;
+    meta.energy_j_per_sigma = 0.02;
+    meta.map_sigma = 1.5;
+    for (const std::size_t share : {40, 20, 10, 4, 2}) add_level(scene.codebook, rod, share);
+    return scene;
+}
+
+const Scene& scene() {
+    static const Scene made = make_scene(1000);
+    return made;
+}
+
+std::unique_ptr<DockingModel> make_model(const DockingSettings& settings = {}) {
+    const Scene& s = scene();
+    return std::make_unique<DockingModel>(s.meta, s.grid, std::vector<Structure>{s.rod},
+                                          std::vector<Codebook>{s.codebook}, settings);
+}
+
+Pose world_pose(double x_m, double y_m, double z_m, const Vec3& turn_rad) {
+    return {Vec3(x_m, y_m, z_m), quat_from_rotation_vector(turn_rad)};
+}
+
+const Pose kGrip = world_pose(0.03, -0.02, 0.05, Vec3(0.2, 0.1, -0.4));
+const Pose kTouch = world_pose(0.04, -0.025, 0.052, Vec3(0.5, 0.1, -0.3));
+
+INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract,
+                         testing::Values(ForceModelCase{"rod", [] { return make_model(); }, kGrip, kTouch,
+                                                        0.05, 0.05}),
+                         [](const auto& tested) { return tested.param.name; });
+
+ToolState tool_at(const Pose& pose, std::uint32_t buttons = 0) {
+    ToolState tool;
+    tool.T_world_tool = pose;
+    tool.buttons = buttons;
+    return tool;
+}
+
+Budget at(float fidelity) {
+    Budget budget;
+    budget.fidelity = fidelity;
+    return budget;
+}
+
+// -k_E sum w rho, in double precision, atom by atom.
+double energy_j(const DockingModel& model, const Pose& T_model_body) {
+    const Structure& rod = scene().rod;
+    double sum = 0.0;
+    Vec3 gradient;
+    for (std::size_t i = 0; i < rod.size(); ++i) {
+        const Vec3 b(static_cast<double>(rod.x_m[i]), static_cast<double>(rod.y_m[i]),
+                     static_cast<double>(rod.z_m[i]));
+        sum += static_cast<double>(rod.mass_fraction[i]) * model.map().sample(T_model_body * b, gradient);
+    }
+    return -scene().meta.energy_j_per_sigma * sum;
+}
+
+TEST(Docking, WrenchIsTheSlopeOfTheEnergyByTheToolsPlaceAndRotation) {
+    const auto model = make_model();
+    const double scale = scene().meta.world_per_model;
+    SeededRandom random(3);
+    for (int i = 0; i < 20; ++i) {
+        const Pose body =
+            start_pose(model->home(), 8.0 * kA * random.uniform(), random.uniform(), random.next());
+        const Wrench wrench = model->evaluate(body, at(1.0F)).wrench_world;
+        for (int a = 0; a < 3; ++a) {
+            const double step_m = 1e-5, turn_rad = 1e-5;  // of the hand
+            Pose fore = body, back = body;
+            fore.p_m[a] += step_m / scale;
+            back.p_m[a] -= step_m / scale;
+            const double force_n = -(energy_j(*model, fore) - energy_j(*model, back)) / (2.0 * step_m);
+            EXPECT_NEAR(wrench.force_n[a], force_n, 2e-4);
+            fore = back = body;
+            fore.q = quat_from_rotation_vector(turn_rad * Vec3::Unit(a)) * body.q;
+            back.q = quat_from_rotation_vector(-turn_rad * Vec3::Unit(a)) * body.q;
+            const double torque_n_m = -(energy_j(*model, fore) - energy_j(*model, back)) / (2.0 * turn_rad);
+            EXPECT_NEAR(wrench.torque_n_m[a], torque_n_m, 1e-5);
+        }
+    }
+}
+
+TEST(Docking, AHandThatGoesInCirclesGainsNoEnergyAtAnyLevel) {
+    const auto model = make_model();
+    for (const float fidelity : {0.0F, 0.37F, 1.0F}) {
+        model->reset(tool_at(kGrip));
+        for (int i = 0; i < 2000; ++i) (void)model->step(tool_at(kGrip), at(fidelity));
+        double work_j = 0.0, size_j = 0.0;
+        constexpr int kSteps = 4000;
+        Pose before = kGrip;
+        Wrench felt = model->step(tool_at(kGrip), at(fidelity)).wrench_world;
+        for (int i = 1; i <= kSteps; ++i) {
+            const double a = 2.0 * M_PI * i / kSteps;
+            const Vec3 d(0.02 * std::sin(a), 0.015 * (1.0 - std::cos(a)), 0.01 * std::sin(2.0 * a));
+            const Vec3 turn(0.5 * std::sin(a), 0.0, 0.4 * (1.0 - std::cos(a)));
+            const Pose now{kGrip.p_m + d, quat_from_rotation_vector(turn) * kGrip.q};
+            const Wrench next = model->step(tool_at(now), at(fidelity)).wrench_world;
+            const Vec3 turned = rotation_vector_rad(now.q * before.q.conjugate());
+            const double dw = 0.5 * (felt.force_n + next.force_n).dot(now.p_m - before.p_m) +
+                              0.5 * (felt.torque_n_m + next.torque_n_m).dot(turned);
+            work_j += dw;
+            size_j += std::abs(dw);
+            before = now;
+            felt = next;
+        }
+        EXPECT_GT(size_j, 1e-4);
+        EXPECT_LT(std::abs(work_j), 1e-4 * size_j) << "at " << fidelity;
+    }
+}
+
+TEST(Docking, TheToolMovesTheBodyByTheScaleAndTurnsItAboutItsCentreOfMass) {
+    const auto model = make_model();
+    model->reset(tool_at(kGrip));
+    (void)model->step(tool_at(kGrip), at(0.0F));
+    EXPECT_LT((model->bodies().T_model_body[0].p_m - model->home().p_m).norm(), 1e-6 * kA);
+    Pose hand = kGrip;
+    hand.p_m += Vec3(0.01, 0.0, -0.02);
+    (void)model->step(tool_at(hand), at(0.0F));
+    const Vec3 moved = model->bodies().T_model_body[0].p_m - model->home().p_m;
+    EXPECT_LT((moved - Vec3(0.01, 0.0, -0.02) / scene().meta.world_per_model).norm(), 1e-6 * kA);
+    const Quat turn = quat_from_rotation_vector(Vec3(0.3, -0.2, 0.9));
+    hand = kGrip;
+    hand.q = turn * hand.q;
+    (void)model->step(tool_at(hand), at(0.0F));
+    EXPECT_LT((model->bodies().T_model_body[0].p_m - model->home().p_m).norm(), 1e-6 * kA);
+    EXPECT_LT(model->bodies().T_model_body[0].q.angularDistance(turn * model->home().q), 1e-9);
+}
+
+TEST(Docking, WithTheClutchHeldTheToolMovesAloneAndNothingIsFeltSuddenly) {
+    const auto model = make_model();
+    model->reset(tool_at(kGrip));
+    Wrench before = model->step(tool_at(kGrip), at(1.0F)).wrench_world;
+    Pose hand = kGrip;
+    for (int i = 0; i < 6000; ++i) {
+        const bool clutch = i >= 2000 && i < 4000;
+        if (i < 1000) hand.p_m.x() += 1e-5;
+        if (clutch) hand.p_m.z() -= 2e-5, hand.q = quat_from_rotation_vector(Vec3(0, 2e-4, 0)) * hand.q;
+        const Pose held = model->bodies().T_model_body[0];
+        const StepResult result = model->step(tool_at(hand, clutch ? 1U : 0U), at(1.0F));
+        ASSERT_LT((result.wrench_world.force_n - before.force_n).norm(), 0.05) << "step " << i;
+        before = result.wrench_world;
+        if (i >= 1001) {
+            EXPECT_LT((model->bodies().T_model_body[0].p_m - held.p_m).norm(), 1e-9 * kA);
+            EXPECT_LT(model->bodies().T_model_body[0].q.angularDistance(held.q), 1e-7);
+        }
+        if (i == 3999) {
+            EXPECT_EQ(result.wrench_world.force_n, Vec3::Zero());
+        }
+        if (i == 1999 || i == 5999) {
+            EXPECT_GT(result.wrench_world.force_n.norm(), 0.05);
+        }
+    }
+}
+
+TEST(Docking, ForceDoesNotDependOnHowManyPointsStandForTheBody) {
+    const auto model = make_model();
+    const Pose body = start_pose(model->home(), 6.0 * kA, 0.2, 5);
+    const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
+    for (const float fidelity : {0.0F, 0.2F, 0.4F, 0.6F, 0.8F}) {
+        const StepResult result = model->evaluate(body, at(fidelity));
+        EXPECT_LT((result.wrench_world.force_n - all).norm(), 0.25 * all.norm()) << "at " << fidelity;
+    }
+}
+
+TEST(Docking, TheErrorItReportsHoldsNearHome) {
+    const auto model = make_model();
+    SeededRandom random(11);
+    int above = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Pose body =
+            start_pose(model->home(), 15.0 * kA * random.uniform(), 0.5 * random.uniform(), random.next());
+        const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
+        for (const float fidelity : {0.0F, 0.3F, 0.7F}) {
+            const StepResult result = model->evaluate(body, at(fidelity));
+            if ((result.wrench_world.force_n - all).norm() > result.load.error) ++above;
+        }
+    }
+    EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
+    EXPECT_EQ(model->predict(1.0F).error, 0.0);
+    EXPECT_GT(model->predict(0.0F).error, 0.0);
+}
+
+TEST(Docking, CostIsPredictedInOrderOfSize) {
+    const auto model = make_model();
+    EXPECT_GT(model->predict(1.0F).cost_predicted.count(), 0);
+    EXPECT_LT(model->predict(0.0F).cost_predicted, model->predict(1.0F).cost_predicted);
+    EXPECT_EQ(model->items(0.0F), 25U);
+    EXPECT_EQ(model->items(1.0F), 1000U);
+    EXPECT_EQ(std::string(model->knob().path), "docking.force");
+    EXPECT_GE(model->items(model->knob().start), 200U);
+}
+
+TEST(Docking, StartsWhereItIsToldTheSameEveryTime) {
+    DockingSettings settings;
+    settings.start_offset_m = 15.0 * kA;
+    settings.start_rotation_rad = 0.5;
+    settings.seed = 42;
+    const Pose a = make_model(settings)->bodies().T_model_body[0],
+               b = make_model(settings)->bodies().T_model_body[0];
+    EXPECT_EQ(a.p_m, b.p_m);
+    EXPECT_EQ(a.q.coeffs(), b.q.coeffs());
+    EXPECT_NEAR((a.p_m - Vec3::Constant(kCentre)).norm(), 15.0 * kA, 1e-9 * kA);
+    EXPECT_NEAR(a.q.angularDistance(Quat::Identity()), 0.5, 1e-9);
+    settings.seed = 43;
+    EXPECT_NE(make_model(settings)->bodies().T_model_body[0].p_m, a.p_m);
+}
+
+TEST(Docking, ForceScaleScales) {
+    DockingSettings settings;
+    settings.force_scale = 0.25;
+    const Pose body = start_pose(make_model()->home(), 6.0 * kA, 0.2, 5);
+    const Wrench full = make_model()->evaluate(body, at(1.0F)).wrench_world;
+    const Wrench quarter = make_model(settings)->evaluate(body, at(1.0F)).wrench_world;
+    EXPECT_LT((0.25 * full.force_n - quarter.force_n).norm(), 1e-12);
+    EXPECT_LT((0.25 * full.torque_n_m - quarter.torque_n_m).norm(), 1e-12);
+}
+
+TEST(Docking, RefusesBrokenScenes) {
+    const Scene& good = scene();
+    const auto build = [](const Scene& s, std::size_t codebooks = 1) {
+        return DockingModel(s.meta, s.grid, {s.rod}, std::vector<Codebook>(codebooks, s.codebook), {});
+    };
+    EXPECT_THROW(build(good, 2), StartupError);
+    Scene s = good;
+    s.meta.world_per_model = 0.0;
+    EXPECT_THROW(build(s), StartupError);
+    s = good;
+    s.codebook.levels.clear();  // 1000 atoms and nothing that always fits
+    EXPECT_THROW(build(s), StartupError);
+    s = good;
+    std::swap(s.codebook.levels[0], s.codebook.levels[1]);
+    EXPECT_THROW(build(s), StartupError);
+    s = good;
+    s.rod.x_m[3] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(build(s), StartupError);
+    s = good;
+    s.rod.mass_fraction[0] = 0.5F;
+    EXPECT_THROW(build(s), StartupError);
+    s = good;
+    s.codebook.levels[0].weight.pop_back();
+    EXPECT_THROW(build(s), StartupError);
+    DockingSettings settings;
+    settings.force_scale = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(make_model(settings), StartupError);
+}
+
+}  // namespace
+}  // namespace tact

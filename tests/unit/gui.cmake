@@ -1,0 +1,11 @@
+# Tests of gui.
+if(TACT_GUI)
+    tact_test(unit/gui_plot_series_test.cpp USES gui_panels)
+    tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
+    tact_test(unit/gui_link_test.cpp USES gui_link gui_panels topics shm base)
+    tact_test(unit/gui_fit_test.cpp USES gui_fit gui_render prep_mesh topics shm assets base)
+    tact_test(unit/gui_window_test.cpp USES prep_mesh topics shm assets base SYSTEM PNG::PNG TIMEOUT 300)
+    target_compile_definitions(gui_window_test PRIVATE TACT_GUI_PROGRAM="$<TARGET_FILE:tact-gui>")
+    add_dependencies(gui_window_test tact-gui)
+    set_tests_properties(gui_window_test PROPERTIES RUN_SERIAL ON)
+endif()

@@ -1,0 +1,92 @@
+// The fit beside the frame loop: the same numbers as asked for directly, and no work while nothing moves.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "gui/app/fit_worker.hpp"
+#include "tests/unit/gui_fake.hpp"
+
+namespace tact {
+namespace {
+
+FitOutcome next(FitWorker& worker, FitOutcome outcome) {
+    for (int i = 0; i < 30'000 && !worker.take(outcome); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return outcome;
+}
+
+std::shared_ptr<SceneContent> content() {
+    auto c = std::make_shared<SceneContent>();
+    c->bodies.push_back(fake::helix(18));
+    c->codebooks.emplace_back();
+    c->grid = fake::density_of(c->bodies[0], 24, 40.0 / 23.0, 3.0);
+    c->meta.contour = 0.5;
+    c->meta.resolution_m = 12e-10;
+    c->meta.map_sigma = 1.0;
+    return c;
+}
+
+TEST(FitWorker, GivesTheNumbersOfTheNewestPlace) {
+    const auto c = content();
+    FitWorker worker(c, Duration(0));
+    const std::vector<Pose> home{c->bodies[0].home()};
+    worker.wish(home);
+    const FitOutcome at_home = next(worker, {});
+    ASSERT_TRUE(at_home.good) << at_home.error;
+    const PlacedStructure placed[] = {{&c->bodies[0], home[0]}};
+    const FitMetrics direct = fit_metrics(
+        c->grid, placed, {.resolution_m = 12e-10, .contour = 0.5, .background = 0.0, .sigma = 1.0});
+    EXPECT_DOUBLE_EQ(at_home.metrics.cc_zero, direct.cc_zero);
+    EXPECT_DOUBLE_EQ(at_home.metrics.cc_mean, direct.cc_mean);
+    EXPECT_FALSE(at_home.resolution_assumed);
+
+    std::vector<Pose> away = home;
+    away[0].p_m.x() += 8e-10;
+    worker.wish(away);
+    const FitOutcome moved_away = next(worker, at_home);
+    ASSERT_TRUE(moved_away.good);
+    EXPECT_EQ(moved_away.number, at_home.number + 1);
+    EXPECT_LT(moved_away.metrics.cc_mean, at_home.metrics.cc_mean);
+}
+
+TEST(FitWorker, RestsWhileNothingMoves) {
+    const auto c = content();
+    FitWorker worker(c, Duration(0));
+    const std::vector<Pose> home{c->bodies[0].home()};
+    worker.wish(home);
+    FitOutcome outcome = next(worker, {});
+    for (int i = 0; i < 50; ++i) {
+        worker.wish(home);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_FALSE(worker.take(outcome));
+}
+
+TEST(FitWorker, SaysWhenItHadToAssumeTheResolution) {
+    const auto c = content();
+    c->meta.resolution_m = 0.0;
+    FitWorker worker(c, Duration(0));
+    worker.wish(std::vector<Pose>{c->bodies[0].home()});
+    const FitOutcome outcome = next(worker, {});
+    EXPECT_TRUE(outcome.resolution_assumed);
+    EXPECT_NEAR(outcome.resolution_m, 3.0 * 40.0 / 23.0 * 1e-10, 1e-15);
+}
+
+TEST(FitWorker, EndsAtOnceWithoutAWish) { const FitWorker worker(content()); }
+
+TEST(Moved, IsAboutWhatCanBeSeenInTheNumbers) {
+    const std::vector<Pose> a(1), none;
+    std::vector<Pose> b(1);
+    EXPECT_FALSE(moved(a, b));
+    b[0].p_m.x() = 0.005e-10;
+    EXPECT_FALSE(moved(a, b));
+    b[0].p_m.x() = 0.05e-10;
+    EXPECT_TRUE(moved(a, b));
+    b = a;
+    b[0].q = Quat(Eigen::AngleAxisd(0.1 * kDegreeRad, Vec3::UnitX()));
+    EXPECT_TRUE(moved(a, b));
+    EXPECT_TRUE(moved(a, none));
+}
+
+}  // namespace
+}  // namespace tact

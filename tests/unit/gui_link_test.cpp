@@ -1,0 +1,214 @@
+// What the visual process believes of the controller: records checked, levels obeyed, commands followed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "gui/app/command_sender.hpp"
+#include "gui/app/controller.hpp"
+#include "gui/app/mesh_level.hpp"
+#include "gui/app/pose_predictor.hpp"
+#include "gui/app/region_checks.hpp"
+#include "gui/panels/verdict.hpp"
+
+namespace tact {
+namespace {
+
+BodiesTopic good_bodies() {
+    BodiesTopic b{};
+    b.count = 2;
+    b.active = 1;
+    for (BodyPlace& p : b.body) p.quat_model_body_xyzw[3] = 1.0;
+    return b;
+}
+
+TEST(RegionChecks, AcceptWhatAControllerWrites) {
+    EXPECT_TRUE(sensible(good_bodies()));
+    EXPECT_TRUE(sensible(BodiesTopic{}));
+    EXPECT_TRUE(sensible(HealthTopic{}));
+    EXPECT_TRUE(sensible(LevelsTopic{}));
+    ToolTopic tool{};
+    tool.quat_world_tool_xyzw[3] = 1.0;
+    EXPECT_TRUE(sensible(tool));
+}
+
+TEST(RegionChecks, RefuseBodiesThatCannotBe) {
+    const double kNan = std::nan("");
+    BodiesTopic b = good_bodies();
+    b.count = 17;
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.count = 0xFFFFFFFFU;
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.active = 2;
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.body[1].pos_model_m[2] = kNan;
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.body[0].pos_model_m[0] = 1e9;
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.body[0].quat_model_body_xyzw[3] = 0.0;  // no rotation at all
+    EXPECT_FALSE(sensible(b));
+    b = good_bodies();
+    b.body[5].pos_model_m[0] = kNan;  // beyond count: not looked at
+    EXPECT_TRUE(sensible(b));
+}
+
+TEST(RegionChecks, RefuseNumbersAndTextsThatCannotBe) {
+    HealthTopic h{};
+    h.force_rate_hz = std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(sensible(h));
+    h = {};
+    h.lateness_max_ns = std::numeric_limits<std::int64_t>::min();
+    EXPECT_FALSE(sensible(h));
+    h = {};
+    h.state = 99;
+    EXPECT_FALSE(sensible(h));
+    ToolTopic t{};
+    t.quat_world_tool_xyzw[3] = 1.0;
+    t.force_model_n[1] = std::nan("");
+    EXPECT_FALSE(sensible(t));
+    LevelsTopic l{};
+    l.count = 9;
+    EXPECT_FALSE(sensible(l));
+    l = {};
+    std::memset(l.law, 'x', sizeof l.law);  // never ends
+    EXPECT_FALSE(sensible(l));
+    l = {};
+    l.count = 1;
+    l.path[0].level = 1.5F;
+    EXPECT_FALSE(sensible(l));
+    l.path[0].level = std::nanf("");
+    EXPECT_FALSE(sensible(l));
+    l.path[0].level = 0.5F;
+    EXPECT_TRUE(sensible(l));
+    std::memset(l.path[0].path, 'x', sizeof l.path[0].path);
+    EXPECT_FALSE(sensible(l));
+}
+
+TEST(RegionChecks, FindAPathByItsWholeName) {
+    LevelsTopic l{};
+    l.count = 2;
+    std::strcpy(l.path[0].path, "gui.mesh2");
+    std::strcpy(l.path[1].path, "gui.mesh");
+    EXPECT_EQ(find_path(l, kMeshPath), &l.path[1]);
+    EXPECT_EQ(find_path(l, "gui.mes"), nullptr);
+    l.count = 1;
+    EXPECT_EQ(find_path(l, kMeshPath), nullptr);
+}
+
+TEST(MeshLevel, TakesTheGovernorsItemsWhenItKnowsThisMesh) {
+    PathLevel p{};
+    p.level = 0.5F;
+    p.items = 1234;
+    p.items_max = 10'000;
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 1234U);
+}
+
+TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
+    PathLevel p{};
+    p.level = 0.25F;
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 2500U);
+    p.items = 50;
+    p.items_max = 100;  // of another mesh
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 2500U);
+    p.level = 0.0F;
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 10U);
+    p.level = 1.0F;
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
+    p.items = 20'000;
+    p.items_max = 10'000;  // more than there are
+    EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
+}
+
+TEST(PosePredictor, FollowsASteadyMotionToTheTimeOfThePicture) {
+    PosePredictor predictor;
+    const Vec3 speed(1e-8, -2e-8, 0.5e-8);
+    const double spin = 1.5;
+    const auto pose_at = [&](double t) {
+        return Pose{speed * t, Quat(Eigen::AngleAxisd(spin * t, Vec3::UnitZ()))};
+    };
+    for (int i = 0; i <= 400; ++i) predictor.add(1 + i * 1'000'000LL, pose_at(1e-3 * i));
+    const Pose seen = predictor.at(1 + 412'000'000LL);
+    const Pose wanted = pose_at(0.412);
+    EXPECT_LT((seen.p_m - wanted.p_m).norm(), 1e-13);
+    EXPECT_LT(seen.q.angularDistance(wanted.q), 1e-4);
+}
+
+TEST(PosePredictor, DoesNotRunAwayFromAControllerThatWentSilent) {
+    PosePredictor predictor;
+    for (int i = 0; i <= 100; ++i)
+        predictor.add(1 + i * 1'000'000LL, {Vec3(1e-8 * i, 0, 0), Quat::Identity()});
+    const double most = 1e-8 * 100 + 1e-5 * 1e-9 * static_cast<double>(PosePredictor::kHorizon_ns);
+    EXPECT_LE(predictor.at(1 + 280'000'000LL).p_m.x(), most * (1 + 1e-9));
+    EXPECT_EQ(predictor.at(1 + 5'000'000'000LL).p_m.x(), 1e-8 * 100);
+    // After a gap the speed is unknown.
+    predictor.add(9'000'000'000LL, {Vec3::Zero(), Quat::Identity()});
+    EXPECT_EQ(predictor.at(9'010'000'000LL).p_m, Vec3::Zero());
+}
+
+TEST(CommandSender, NumbersCommandsAndTellsWhatBecameOfThem) {
+    OwnedRegion<GuiRegion> region;
+    CommandSender sender(region->commands);
+    using Stage = CommandSender::Stage;
+    ASSERT_TRUE(sender.send(CommandKind::arm, 0.0, "", 100));
+    ASSERT_TRUE(sender.send(CommandKind::set_law, 0.0, "fixed", 200));
+    RingCursor cursor;
+    CommandTopic command{};
+    ASSERT_TRUE(region->commands.next(cursor, command));
+    EXPECT_EQ(command.sequence, 1U);
+    EXPECT_EQ(command.kind, static_cast<std::uint16_t>(CommandKind::arm));
+    ASSERT_TRUE(region->commands.next(cursor, command));
+    EXPECT_EQ(command.sequence, 2U);
+    EXPECT_STREQ(command.text, "fixed");
+
+    HealthTopic health{};
+    health.command_sequence = 1;
+    health.command_result = static_cast<std::uint32_t>(CommandResult::done);
+    sender.update(health, 300);
+    EXPECT_EQ(sender.stage(), Stage::sent);  // that was the first one
+    sender.update(health, 200 + CommandSender::kPatience_ns + 1);
+    EXPECT_EQ(sender.stage(), Stage::unanswered);
+    health.command_sequence = 2;
+    health.command_result = static_cast<std::uint32_t>(CommandResult::refused_value);
+    sender.update(health, 400);
+    EXPECT_EQ(sender.stage(), Stage::refused);
+    EXPECT_FALSE(sender.send(CommandKind::set_law, 0.0, std::string(32, 'x'), 500));
+    EXPECT_EQ(sender.sequence(), 2U);
+}
+
+TEST(Verdict, GradesTheRateAgainstItsGoal) {
+    EXPECT_EQ(rate_verdict(1000.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_verdict(951.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_verdict(940.0, 1000.0).grade, Grade::watch);
+    EXPECT_EQ(rate_verdict(700.0, 1000.0).grade, Grade::bad);
+    EXPECT_NE(rate_verdict(700.0, 1000.0).words.find("30 %"), std::string::npos);
+    EXPECT_EQ(rate_verdict(5.0, 0.0).grade, Grade::unknown);
+}
+
+TEST(Verdict, EveryGradeComesWithWords) {
+    for (int state = 0; state < 7; ++state)
+        for (int reason = 0; reason < 15; ++reason)
+            EXPECT_FALSE(
+                state_verdict(static_cast<RunState>(state), static_cast<RunReason>(reason)).words.empty());
+    EXPECT_EQ(state_verdict(RunState::fault, RunReason::device_lost).grade, Grade::bad);
+    EXPECT_EQ(overrun_verdict(0, 1000).grade, Grade::good);
+    EXPECT_EQ(overrun_verdict(1, 1'000'000).grade, Grade::watch);
+    EXPECT_EQ(overrun_verdict(100, 1000).grade, Grade::bad);
+    EXPECT_EQ(lateness_verdict(50'000, 1'000'000).grade, Grade::good);
+    EXPECT_EQ(lateness_verdict(900'000, 1'000'000).grade, Grade::bad);
+    HealthTopic health{};
+    EXPECT_EQ(memory_verdict(health).grade, Grade::good);
+    health.page_faults = 2;
+    EXPECT_EQ(memory_verdict(health).grade, Grade::watch);
+    health.allocations = 1;
+    EXPECT_EQ(memory_verdict(health).grade, Grade::bad);
+    EXPECT_NE(memory_verdict(health).words.find("1 allocation,"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tact

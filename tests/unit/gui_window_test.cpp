@@ -1,0 +1,293 @@
+// tact-gui as a process, on an X server of its own: waits, attaches, obeys, survives, draws.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <png.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "tests/unit/gui_fake.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// Long, as a loaded machine under sanitizers draws slowly; reached only when something is wrong.
+constexpr seconds kPatience(60);
+
+template <class F>
+bool wait_for(F&& happened) {
+    const Instant until = Monotonic::now() + kPatience;
+    while (Monotonic::now() < until) {
+        if (happened()) return true;
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+    return false;
+}
+
+std::string in_path(const char* program) {
+    std::stringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (access((folder + "/" + program).c_str(), X_OK) == 0) return folder + "/" + program;
+    return {};
+}
+
+class Process {
+public:
+    // Output goes to the file. Extra descriptors above 2 stay open where they are not close-on-exec.
+    Process(const std::vector<std::string>& command, const std::string& output) {
+        pid_ = fork();
+        if (pid_ != 0) return;
+        const int out = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+        dup2(out, 1);
+        dup2(out, 2);
+        std::vector<char*> arguments;
+        for (const std::string& a : command) arguments.push_back(const_cast<char*>(a.c_str()));
+        arguments.push_back(nullptr);
+        execv(arguments[0], arguments.data());
+        _exit(127);
+    }
+    ~Process() {
+        if (pid_ <= 0) return;
+        kill(pid_, SIGKILL);
+        waitpid(pid_, nullptr, 0);
+    }
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+    void signal(int number) const { kill(pid_, number); }
+    bool running() {
+        if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
+        return pid_ > 0;
+    }
+    // Exit code, or 128 + signal; 999 when it does not end.
+    int wait() {
+        if (!wait_for([&] { return !running(); })) return 999;
+        return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+    }
+
+private:
+    pid_t pid_ = 0;
+    int status_ = 0;
+};
+
+class GuiWindow : public testing::Test {
+protected:
+    void SetUp() override {
+        const std::string xvfb = in_path("Xvfb");
+        if (xvfb.empty()) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        char name[] = "/tmp/tact-gui-test-XXXXXX";
+        folder_ = mkdtemp(name);
+        setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        unsetenv("WAYLAND_DISPLAY");
+        // Graphics drivers and X libraries keep memory to the end on purpose.
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
+        int ends[2];
+        ASSERT_EQ(pipe(ends), 0);
+        x_server_ = std::make_unique<Process>(
+            std::vector<std::string>{xvfb, "-displayfd", std::to_string(ends[1]), "-screen", "0",
+                                     "800x600x24", "-nolisten", "tcp"},
+            folder_ + "/xvfb.log");
+        close(ends[1]);
+        std::string number;
+        char c = '\0';
+        while (read(ends[0], &c, 1) == 1 && c != '\n') number += c;
+        close(ends[0]);
+        if (number.empty()) GTEST_SKIP() << "Xvfb does not start: " << log("xvfb.log");
+        setenv("DISPLAY", (":" + number).c_str(), 1);
+    }
+    void TearDown() override {
+        x_server_.reset();
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+
+    std::unique_ptr<Process> gui(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), {TACT_GUI_PROGRAM, "--session", "t", "--size", "640x480"});
+        return std::make_unique<Process>(arguments, folder_ + "/gui.log");
+    }
+    std::string log(const std::string& name = "gui.log") const {
+        std::ifstream file(folder_ + "/" + name);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    std::string scene() {
+        const std::string path = folder_ + "/scene.tact";
+        checksum_ = fake::write_helix_scene(path);
+        vertices_ = read_mesh(SceneFile::open(path), 0).vertices();
+        return path;
+    }
+    // Serves until the GUI draws the scene.
+    bool drawing(fake::Controller& controller) {
+        return wait_for([&] {
+            LoadTopic load{};
+            return controller.serve(1) && controller.gui()->load.read(load) && load.vertices_drawn > 0;
+        });
+    }
+    static std::set<std::uint32_t> colours(const std::string& path, std::uint32_t width,
+                                           std::uint32_t height) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return {};
+        EXPECT_EQ(image.width, width);
+        EXPECT_EQ(image.height, height);
+        image.format = PNG_FORMAT_RGBA;
+        std::vector<std::uint32_t> pixels(std::size_t{image.width} * image.height);
+        if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return {};
+        return {pixels.begin(), pixels.end()};
+    }
+
+    std::string folder_;
+    std::unique_ptr<Process> x_server_;
+    std::uint64_t checksum_ = 0;
+    std::uint32_t vertices_ = 0;
+};
+
+TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
+    const std::string picture = folder_ + "/alone.png";
+    for (const bool hidden : {false, true}) {
+        std::vector<std::string> arguments{scene(), "--seconds", "1", "--screenshot", picture};
+        if (hidden) arguments.push_back("--hidden");
+        EXPECT_EQ(gui(arguments)->wait(), 0) << log();
+        EXPECT_GT(colours(picture, 640, 480).size(), 100U) << "hidden: " << hidden << "\n" << log();
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            EXPECT_NE(entry.path().extension(), ".partial");
+        std::filesystem::remove(picture);
+    }
+}
+
+TEST_F(GuiWindow, TheFrameAfterALevelChangeDrawsThatManyVertices) {
+    fake::Controller controller("t", scene(), checksum_);
+    const auto process = gui({});
+    ASSERT_TRUE(drawing(controller)) << log();
+    for (const float level : {0.5F, 0.1F, 1.0F, 0.3F}) {
+        const auto items = static_cast<std::uint32_t>(level * static_cast<float>(vertices_));
+        LoadTopic load{};
+        ASSERT_TRUE(controller.gui()->load.read(load));
+        const std::uint64_t before = load.frame;
+        controller.publish_level(kMeshPath, level, items, vertices_);
+        ASSERT_TRUE(wait_for([&] {
+            return controller.gui()->load.read(load) && load.levels_sequence == controller.levels_sequence();
+        })) << log();
+        EXPECT_EQ(load.vertices_drawn, items);
+        EXPECT_EQ(load.vertices_max, vertices_);
+        // The frame under way may have looked already; the one after it must have seen the change.
+        for (std::uint64_t frame = load.frame; frame < before + 3;) {
+            ASSERT_TRUE(controller.gui()->load.read(load));
+            if (load.frame == frame) continue;
+            frame = load.frame;
+            EXPECT_EQ(load.vertices_drawn, items);
+        }
+    }
+    process->signal(SIGTERM);
+    EXPECT_EQ(process->wait(), 0) << log();
+}
+
+TEST_F(GuiWindow, HeartbeatCarriesPartsAndProcessorTime) {
+    fake::Controller controller("t", scene(), checksum_);
+    const auto process = gui({"--fps-max", "0"});
+    ASSERT_TRUE(drawing(controller)) << log();
+    LoadTopic first{}, last{};
+    ASSERT_TRUE(controller.gui()->load.read(first));
+    ASSERT_TRUE(wait_for([&] { return controller.gui()->load.read(last) && last.frame >= first.frame + 5; }));
+    EXPECT_GT(last.taken_at_ns, first.taken_at_ns);
+    EXPECT_GT(last.cpu_s, first.cpu_s);
+    EXPECT_GT(last.fps, 0.0);
+    double sum = 0.0;
+    for (const double part : last.part_s) {
+        EXPECT_GE(part, 0.0);
+        sum += part;
+    }
+    // Drawing on the processor there is no display to wait for: all of it is work.
+    EXPECT_NEAR(sum, last.busy_s, 1e-9);
+    EXPECT_GT(last.triangles_drawn, 0U);
+    process->signal(SIGINT);
+    EXPECT_EQ(process->wait(), 0) << log();
+}
+
+TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
+    fake::Controller controller("t", scene(), checksum_);
+    const auto process = gui({});
+    ASSERT_TRUE(drawing(controller)) << log();
+    BodiesTopic bodies;
+    std::memset(&bodies, 0xFF, sizeof bodies);  // counts of four thousand million, poses that are NaN
+    LevelsTopic levels;
+    std::memset(&levels, 0xFF, sizeof levels);
+    HealthTopic health;
+    std::memset(&health, 0xFF, sizeof health);
+    ToolTopic tool;
+    std::memset(&tool, 0xFF, sizeof tool);
+    EventTopic event;
+    std::memset(&event, 0xFF, sizeof event);
+    LoadTopic load{};
+    ASSERT_TRUE(controller.gui()->load.read(load));
+    const std::uint64_t before = load.frame;
+    while (load.frame < before + 20 && process->running()) {
+        controller.region().bodies.publish(bodies);
+        controller.region().levels.publish(levels);
+        controller.region().health.publish(health);
+        controller.region().tool[0].publish(tool);
+        controller.region().events.push(event);
+        (void)controller.gui()->load.read(load);
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    ASSERT_TRUE(process->running()) << log();
+    controller.publish_level(kMeshPath, 0.25F, vertices_ / 4, vertices_);
+    EXPECT_TRUE(
+        wait_for([&] { return controller.gui()->load.read(load) && load.vertices_drawn == vertices_ / 4; }));
+    process->signal(SIGTERM);
+    EXPECT_EQ(process->wait(), 0) << log();
+}
+
+TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {
+    const std::string path = scene();
+    auto controller = std::make_unique<fake::Controller>("t", path, checksum_);
+    const auto process = gui({});
+    ASSERT_TRUE(drawing(*controller)) << log();
+    for (int round = 0; round < 3; ++round) {
+        controller.reset();
+        controller = std::make_unique<fake::Controller>("t", path, checksum_);
+        ASSERT_TRUE(drawing(*controller)) << log();
+        controller->publish_level(kMeshPath, 0.4F, vertices_ / 3 + static_cast<std::uint32_t>(round),
+                                  vertices_);
+        LoadTopic load{};
+        EXPECT_TRUE(wait_for([&] {
+            return controller->gui()->load.read(load) &&
+                   load.vertices_drawn == vertices_ / 3 + static_cast<std::uint32_t>(round);
+        })) << log();
+    }
+    process->signal(SIGTERM);
+    EXPECT_EQ(process->wait(), 0) << log();
+}
+
+TEST_F(GuiWindow, BrokenSceneIsToldAndTheWindowStays) {
+    const std::string path = folder_ + "/broken.tact";
+    std::ofstream(path) << "this is no scene";
+    EXPECT_EQ(gui({path, "--seconds", "1", "--screenshot", folder_ + "/broken.png"})->wait(), 0) << log();
+    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_GT(colours(folder_ + "/broken.png", 640, 480).size(), 20U);
+}
+
+TEST_F(GuiWindow, WithoutADisplayItSaysSoAndWhatMendsIt) {
+    unsetenv("DISPLAY");
+    EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
+    EXPECT_NE(log().find("no display"), std::string::npos) << log();
+    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+}
+
+TEST_F(GuiWindow, PictureThatCannotBeWrittenIsAnErrorAndArgumentsAreChecked) {
+    EXPECT_EQ(gui({"--seconds", "0.5", "--screenshot", folder_ + "/none/such.png"})->wait(), 1);
+    EXPECT_NE(log().find("such.png"), std::string::npos) << log();
+    EXPECT_NE(gui({"--size", "5x5"})->wait(), 0);
+    EXPECT_NE(gui({"--nonsense"})->wait(), 0);
+    EXPECT_NE(gui({"--session", "../../etc"})->wait(), 0);
+}
+
+}  // namespace
+}  // namespace tact

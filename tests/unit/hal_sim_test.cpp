@@ -1,0 +1,210 @@
+// The emulated Phantom and hand: the contract, and the physics against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "hal/registry.hpp"
+#include "hal/sim/sim_device.hpp"
+#include "ipc/base/error.hpp"
+#include "tests/contract/haptic_device_contract.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+INSTANTIATE_TEST_SUITE_P(Sim, HapticDeviceContract,
+                         testing::Values(DeviceCase{"sim", [] { return device_driver("sim").make({}); },
+                                                    [](Instant now, Duration d) { return now + d; }}),
+                         [](const auto& tested) { return tested.param.name; });
+
+// On the machine's clock, so with a watchdog that a busy machine does not trip by itself.
+std::unique_ptr<HapticDevice> make_process() {
+    DeviceSettings settings;
+    settings.sim.watchdog = milliseconds(300);
+    return device_driver("sim-process").make(settings);
+}
+
+INSTANTIATE_TEST_SUITE_P(SimProcess, HapticDeviceContract,
+                         testing::Values(DeviceCase{"sim_process", &make_process,
+                                                    [](Instant, Duration d) {
+                                                        std::this_thread::sleep_for(d);
+                                                        return Monotonic::now();
+                                                    },
+                                                    milliseconds(800)}),
+                         [](const auto& tested) { return tested.param.name; });
+
+constexpr double kMass = 0.25, kDamping = 5.0;
+
+TEST(SimHand, moves_as_the_damped_mass_does_at_any_step) {
+    const double t = 0.2, f = 0.7;
+    const double exact = f / kDamping * (t - kMass / kDamping * (1.0 - std::exp(-kDamping * t / kMass)));
+    for (const int steps : {5, 200, 20000}) {
+        SimHand hand({}, Vec3::Constant(1.0));
+        for (int i = 0; i < steps; ++i)
+            hand.step(Duration(200'000'000 / steps), {Vec3(f, 0.0, 0.0), Vec3::Zero()});
+        EXPECT_NEAR(hand.pose().p_m.x(), exact, 1e-9) << steps;
+    }
+}
+
+TEST(SimHand, turns_about_the_torque_at_the_speed_its_damping_allows) {
+    SimHand hand({}, Vec3::Constant(1.0));
+    const Vec3 torque(0.0, 0.0, 0.01);
+    for (int i = 0; i < 1000; ++i) hand.step(milliseconds(1), {Vec3::Zero(), torque});
+    EXPECT_NEAR(hand.twist().angular_rad_s.z(), 0.01 / 0.02, 1e-6);
+    EXPECT_NEAR(rotation_vector_rad(hand.pose().q).z(), 0.5 * (1.0 - 1e-4 / 0.02), 1e-3);
+}
+
+TEST(SimHand, a_sampled_spring_below_the_stability_bound_comes_to_rest_at_any_servo_rate) {
+    for (const Duration dt :
+         {Duration(microseconds(50)), Duration(microseconds(1000)), Duration(microseconds(4000))}) {
+        // K < b / (T/2 + T): the force of one sample acts until the next.
+        const double k = 0.5 * kDamping / (1.5 * to_s(dt));
+        SimHand hand({}, Vec3::Constant(1.0));
+        const Vec3 rest(0.02, -0.01, 0.03);
+        for (Duration t{0}; t < std::chrono::seconds(3); t += dt) {
+            hand.step(dt, {k * (rest - hand.pose().p_m), Vec3::Zero()});
+        }
+        EXPECT_LT((hand.pose().p_m - rest).norm(), 1e-6) << to_us(dt);
+    }
+}
+
+TEST(SimHand, stops_at_the_end_of_the_arm) {
+    SimHand hand({}, Vec3::Constant(0.05));
+    for (int i = 0; i < 2000; ++i) hand.step(milliseconds(1), {Vec3(5.0, 0.0, 0.0), Vec3::Zero()});
+    EXPECT_DOUBLE_EQ(hand.pose().p_m.x(), 0.05);
+    EXPECT_DOUBLE_EQ(hand.twist().linear_m_s.x(), 0.0);
+}
+
+TEST(SimHand, wanders_smoothly_within_bounds_and_the_same_way_for_the_same_seed) {
+    SimHandSettings settings;
+    settings.script = "wander";
+    settings.seed = 5;
+    SimHand a(settings, Vec3::Constant(0.2)), b(settings, Vec3::Constant(0.2));
+    settings.seed = 6;
+    SimHand other(settings, Vec3::Constant(0.2));
+    double farthest = 0.0, fastest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+        for (SimHand* h : {&a, &b, &other}) h->step(milliseconds(1), {});
+        ASSERT_EQ(a.pose().p_m, b.pose().p_m);
+        farthest = std::max(farthest, a.pose().p_m.norm());
+        fastest = std::max(fastest, a.twist().linear_m_s.norm());
+    }
+    EXPECT_NE(a.pose().p_m, other.pose().p_m);
+    EXPECT_GT(farthest, 0.005);
+    EXPECT_LT(farthest, 0.06);
+    EXPECT_LT(fastest, 0.5);
+}
+
+TEST(SimHand, an_unknown_script_is_refused_in_words) {
+    SimHandSettings settings;
+    settings.script = "dance";
+    EXPECT_THROW(SimHand(settings, Vec3::Ones()), StartupError);
+}
+
+TEST(SimDevice, the_watchdog_drops_the_amplifier_at_its_very_instant) {
+    // Force for 10 ms after the last heartbeat and not longer, however late anybody looks.
+    const auto way = [](std::initializer_list<int> looks_ms) {
+        SimDevice device({});
+        static_cast<void>(device.open());
+        const Instant begin = instant_from_ns(1'000'000);
+        DeviceSample s;
+        static_cast<void>(device.read(s, begin));
+        DeviceCommand c;
+        c.enable = true;
+        c.heartbeat = 1;
+        c.wrench_dev.force_n = {1.0, 0.0, 0.0};
+        static_cast<void>(device.write(c, begin));
+        for (const int ms : looks_ms) static_cast<void>(device.read(s, begin + milliseconds(ms)));
+        EXPECT_EQ(s.state, DeviceState::watchdog_tripped);
+        EXPECT_TRUE(device.shown_dev().force_n.isZero(0.0));
+        return device.hand_pose().p_m.x();
+    };
+    EXPECT_NEAR(way({30}), way({1, 2, 3, 9, 10, 11, 17, 30}), 1e-12);
+    SimHand free({}, Vec3::Constant(1.0));
+    free.step(milliseconds(10), {Vec3(1.0, 0.0, 0.0), Vec3::Zero()});
+    free.step(milliseconds(20), {});
+    EXPECT_NEAR(way({30}), free.pose().p_m.x(), 1e-12);
+}
+
+TEST(SimDevice, positions_come_in_steps_of_the_encoder) {
+    SimDevice device({});
+    const DeviceInfo info = device.open();
+    Instant now = instant_from_ns(1'000'000);
+    DeviceSample s;
+    DeviceCommand c;
+    c.enable = true;
+    c.wrench_dev.force_n = {0.3, 0.2, 0.1};
+    for (int i = 0; i < 300; ++i) {
+        now += milliseconds(1);
+        static_cast<void>(device.read(s, now));
+        ++c.heartbeat;
+        static_cast<void>(device.write(c, now));
+        for (const double x : s.T_dev_tool.p_m) {
+            const double steps = x / info.position_step_m;
+            ASSERT_NEAR(steps, std::round(steps), 1e-6);
+        }
+    }
+    EXPECT_GT(s.T_dev_tool.p_m.norm(), 20 * info.position_step_m);
+}
+
+TEST(SimDevice, the_estimated_speed_is_that_of_the_hand) {
+    SimDevice device({});
+    static_cast<void>(device.open());
+    Instant now = instant_from_ns(1'000'000);
+    DeviceSample s;
+    DeviceCommand c;
+    c.enable = true;
+    c.wrench_dev.force_n = {0.5, 0.0, 0.0};
+    for (int i = 0; i < 500; ++i) {
+        now += milliseconds(1);
+        static_cast<void>(device.read(s, now));
+        ++c.heartbeat;
+        static_cast<void>(device.write(c, now));
+    }
+    EXPECT_NEAR(s.twist_dev.linear_m_s.x(), 0.5 / kDamping, 0.01);
+}
+
+TEST(SimDevice, too_much_force_is_shortened_and_keeps_its_direction) {
+    SimDevice device({});
+    const DeviceInfo info = device.open();
+    DeviceSample s;
+    static_cast<void>(device.read(s, instant_from_ns(1)));
+    DeviceCommand c;
+    c.enable = true;
+    c.heartbeat = 1;
+    c.wrench_dev.force_n = {300.0, 400.0, 0.0};
+    static_cast<void>(device.write(c, instant_from_ns(2)));
+    EXPECT_TRUE(device.shown_dev().force_n.isApprox(Vec3(0.6, 0.8, 0.0) * info.force_n_max, 1e-12));
+}
+
+TEST(SimDevice, an_unplugged_device_stays_lost_until_it_is_opened_again) {
+    SimDevice device({});
+    static_cast<void>(device.open());
+    DeviceSample s;
+    device.inject(SimFault::unplugged);
+    EXPECT_EQ(device.read(s, instant_from_ns(1'000'000)), IoStatus::lost);
+    device.inject(SimFault::none);
+    EXPECT_EQ(device.read(s, instant_from_ns(2'000'000)), IoStatus::lost);
+    EXPECT_EQ(device.write({.wrench_dev = {}, .enable = true, .heartbeat = 3}, instant_from_ns(2'000'000)),
+              IoStatus::lost);
+    static_cast<void>(device.open());
+    EXPECT_EQ(device.read(s, instant_from_ns(3'000'000)), IoStatus::ok);
+    EXPECT_EQ(s.state, DeviceState::ready);
+}
+
+TEST(Registry, an_unknown_driver_is_refused_with_the_names_there_are) {
+    try {
+        static_cast<void>(device_driver("omega"));
+        FAIL();
+    } catch (const StartupError& e) {
+        EXPECT_NE(std::strstr(e.what(), "omega"), nullptr);
+        EXPECT_NE(std::strstr(e.what(), "sim"), nullptr);
+    }
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+namespace {
+
+// Every value of an enum from 0 up to the last has words of its own, and those beyond it say so.
+template <class E, class Text>
+void expect_own_words(Text text, E last, bool zero_is_empty) {
+    std::set<std::string> seen;
+    for (unsigned v = 0; v <= static_cast<unsigned>(last); ++v) {
+        const std::string words = text(static_cast<E>(v));
+        EXPECT_NE(words, "unknown") << v;
+        EXPECT_EQ(words.empty(), zero_is_empty && v == 0) << v;
+        EXPECT_TRUE(seen.insert(words).second) << v << " has the words of another: " << words;
+    }
+    EXPECT_STREQ(text(static_cast<E>(static_cast<unsigned>(last) + 1)), "unknown");
+    EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
+}
+
+TEST(Text, EveryCodeHasWordsOfItsOwn) {
+    expect_own_words(run_state_text, RunState::fault, false);
+    expect_own_words(run_reason_text, RunReason::model_failed, true);
+    expect_own_words(event_code_text, EventCode::torque_slew_limited, true);
+    expect_own_words(level_reason_text, LevelReason::by_command, false);
+    expect_own_words(command_kind_text, CommandKind::set_fidelity_auto, true);
+    expect_own_words(command_result_text, CommandResult::unknown, true);
+    expect_own_words(frame_part_text, FramePart::swap, false);
+}
+
+TEST(Text, EventsCarryTheirNumbersAndUnits) {
+    const auto text = [](EventCode code, double a, double b) {
+        EventTopic e{};
+        e.code = static_cast<std::uint16_t>(code);
+        e.a = a;
+        e.b = b;
+        return event_text(e);
+    };
+    EXPECT_EQ(text(EventCode::overrun, 120, 3), "overrun: 120 us late, 3 so far");
+    EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
+    EXPECT_EQ(text(EventCode::force_limited, 5.5, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
+    EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
+    EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
+}
+
+TEST(Text, HostileEventsAreOnlyWords) {
+    for (const double bad :
+         {std::nan(""), std::numeric_limits<double>::infinity(), -1e300, 1e300, -1.0, 256.0}) {
+        for (unsigned code = 0; code < 300; ++code) {
+            EventTopic e{};
+            e.code = static_cast<std::uint16_t>(code);
+            e.a = bad;
+            e.b = bad;
+            EXPECT_LT(event_text(e).size(), 120U);
+        }
+    }
+}
+
+TEST(Text, ScheduleIsSpelledOut) {
+    EXPECT_EQ(schedule_text(0), "ordinary scheduling");
+    EXPECT_EQ(schedule_text(kScheduleFifo | kSchedulePinned | kScheduleLocked),
+              "FIFO, pinned, memory locked");
+    EXPECT_EQ(schedule_text(kScheduleLocked), "ordinary scheduling, memory locked");
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,157 @@
+// The configuration: its documentation is true, and every error names file, line, key and mend.
+#include "rt/loop/config.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+class TempFile {
+public:
+    explicit TempFile(const std::string& text)
+        : path_(std::filesystem::temp_directory_path() /
+                ("tact_config_" + std::to_string(getpid()) + ".toml")) {
+        std::ofstream(path_) << text;
+    }
+    ~TempFile() { std::filesystem::remove(path_); }
+    [[nodiscard]] std::string path() const { return path_.string(); }
+
+private:
+    std::filesystem::path path_;
+};
+
+// What the file's error says; empty: it is fine.
+std::string error_of(const std::string& text) {
+    const TempFile file(text);
+    RtConfig config;
+    try {
+        read_config(file.path(), config);
+    } catch (const StartupError& e) {
+        return e.what();
+    }
+    return {};
+}
+
+bool says(const std::string& text, std::initializer_list<const char*> parts) {
+    for (const char* part : parts) {
+        if (text.find(part) == std::string::npos) return false;
+    }
+    return true;
+}
+
+TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
+    RtConfig config;
+    config.servo.period_us = 1.0;  // whatever is not in the file would stay changed
+    config.governor.law = "x";
+    config.safety.force_n_max = 0.0;
+    read_config("deploy/tact.toml", config);
+    const RtConfig defaults;
+    EXPECT_EQ(config.servo.period_us, defaults.servo.period_us);
+    EXPECT_EQ(config.servo.free_running, defaults.servo.free_running);
+    EXPECT_EQ(config.servo.spin_us, defaults.servo.spin_us);
+    EXPECT_EQ(config.servo.core, defaults.servo.core);
+    EXPECT_EQ(config.servo.priority, defaults.servo.priority);
+    EXPECT_EQ(config.servo.model_us_max, defaults.servo.model_us_max);
+    EXPECT_EQ(config.servo.lock_memory, defaults.servo.lock_memory);
+    EXPECT_EQ(config.device.driver, defaults.device.driver);
+    EXPECT_EQ(config.device.hand, defaults.device.hand);
+    EXPECT_EQ(config.device.hand_seed, defaults.device.hand_seed);
+    EXPECT_EQ(config.device.watchdog_us, defaults.device.watchdog_us);
+    EXPECT_EQ(config.device.process_log, defaults.device.process_log);
+    EXPECT_EQ(config.shape.force_scale, defaults.shape.force_scale);
+    EXPECT_EQ(config.shape.damping_n_s_m, defaults.shape.damping_n_s_m);
+    EXPECT_EQ(config.safety.force_n_max, defaults.safety.force_n_max);
+    EXPECT_EQ(config.safety.torque_n_m_max, defaults.safety.torque_n_m_max);
+    EXPECT_EQ(config.safety.force_slew_n_s, defaults.safety.force_slew_n_s);
+    EXPECT_EQ(config.safety.torque_slew_n_m_s, defaults.safety.torque_slew_n_m_s);
+    EXPECT_EQ(config.safety.ramp_in_ms, defaults.safety.ramp_in_ms);
+    EXPECT_EQ(config.safety.ramp_out_ms, defaults.safety.ramp_out_ms);
+    EXPECT_EQ(config.safety.wall_margin_mm, defaults.safety.wall_margin_mm);
+    EXPECT_EQ(config.safety.wall_stiffness_n_m, defaults.safety.wall_stiffness_n_m);
+    EXPECT_EQ(config.safety.heat_tau_s, defaults.safety.heat_tau_s);
+    EXPECT_EQ(config.safety.passivity, defaults.safety.passivity);
+    EXPECT_EQ(config.safety.passivity_energy_j, defaults.safety.passivity_energy_j);
+    EXPECT_EQ(config.safety.sample_age_us_max, defaults.safety.sample_age_us_max);
+    EXPECT_EQ(config.safety.late_us_max, defaults.safety.late_us_max);
+    EXPECT_EQ(config.safety.overruns_max, defaults.safety.overruns_max);
+    EXPECT_EQ(config.safety.timing_latches, defaults.safety.timing_latches);
+    EXPECT_EQ(config.safety.gui_silent_ms, defaults.safety.gui_silent_ms);
+    EXPECT_EQ(config.safety.on_gui_silent, defaults.safety.on_gui_silent);
+    EXPECT_EQ(config.governor.law, defaults.governor.law);
+    EXPECT_EQ(config.governor.goal_hz, defaults.governor.goal_hz);
+    EXPECT_EQ(config.governor.gain, defaults.governor.gain);
+    EXPECT_EQ(config.governor.tolerance, defaults.governor.tolerance);
+    EXPECT_EQ(config.governor.interval_ms, defaults.governor.interval_ms);
+
+    // Every key that config.cpp knows has a line in the documentation.
+    std::ifstream code("rt/loop/config.cpp"), doc("deploy/tact.toml");
+    ASSERT_TRUE(code && doc);
+    std::stringstream code_text, doc_text;
+    code_text << code.rdbuf();
+    doc_text << doc.rdbuf();
+    const std::string source = code_text.str();
+    int keys = 0;
+    for (std::size_t row = source.find("{\"servo."); row != std::string::npos;
+         row = source.find("{\"", row + 1)) {
+        const std::size_t dot = source.find('.', row), quote = source.find('"', row + 2);
+        if (dot > quote || source.compare(quote, 6, "\", &c.") != 0) continue;  // not a row of the table
+        const std::string key = source.substr(dot + 1, quote - dot - 1);
+        EXPECT_NE(doc_text.str().find("\n" + key + " ="), std::string::npos) << key;
+        ++keys;
+    }
+    EXPECT_GE(keys, 36);
+}
+
+TEST(Config, an_unknown_key_is_refused_with_line_and_the_likely_one) {
+    const std::string error = error_of("[servo]\nperiod_us = 500\nspin_tail_us = 3\n");
+    EXPECT_TRUE(says(error, {".toml:3", "servo.spin_tail_us", "no such key", "mend:", "servo.spin_us"}))
+        << error;
+}
+
+TEST(Config, an_impossible_value_is_refused_with_its_range) {
+    EXPECT_TRUE(
+        says(error_of("[servo]\n\nperiod_us = -5\n"), {".toml:3", "servo.period_us", "-5", "50 to 100000"}));
+    EXPECT_TRUE(says(error_of("[governor]\ngain = nan\n"), {".toml:2", "governor.gain"}));
+    EXPECT_TRUE(
+        says(error_of("[safety]\non_gui_silent = \"sing\"\n"), {".toml:2", "sing", "continue", "ramp"}));
+}
+
+TEST(Config, a_wrong_type_is_refused) {
+    EXPECT_TRUE(says(error_of("[servo]\npriority = 80.5\n"), {".toml:2", "servo.priority", "whole number"}));
+    EXPECT_TRUE(says(error_of("[servo]\nfree_running = 1\n"), {".toml:2", "true or false"}));
+    EXPECT_TRUE(says(error_of("[device]\ndriver = 3\n"), {".toml:2", "text"}));
+    EXPECT_TRUE(says(error_of("[safety]\nforce_n_max = [1, 2]\n"), {".toml:2", "number"}));
+}
+
+TEST(Config, a_key_outside_a_section_is_refused) {
+    EXPECT_TRUE(says(error_of("period_us = 1000\n"), {".toml:1", "no section"}));
+}
+
+TEST(Config, broken_toml_and_a_missing_file_are_refused_in_words) {
+    EXPECT_TRUE(says(error_of("[servo\n"), {".toml:1", "mend:"}));
+    EXPECT_TRUE(says(error_of("[servo]\nperiod_us = = 3\n"), {".toml:2"}));
+    RtConfig config;
+    EXPECT_THROW(read_config("/nowhere/tact.toml", config), StartupError);
+}
+
+TEST(Config, values_of_the_file_reach_the_servo_in_si_units) {
+    const TempFile file("[servo]\nperiod_us = 250\n[safety]\nwall_margin_mm = 2\nramp_in_ms = 20\n");
+    RtConfig config;
+    read_config(file.path(), config);
+    const ServoSettings s = settings_from(config, device_driver("sim"));
+    EXPECT_EQ(s.period, std::chrono::microseconds(250));
+    EXPECT_DOUBLE_EQ(s.chain.wall_margin_m, 0.002);
+    EXPECT_DOUBLE_EQ(s.chain.ramp_in_s, 0.02);
+    EXPECT_DOUBLE_EQ(s.governor.goal_hz, 4000.0);
+    EXPECT_FALSE(s.watchdogs.timing_latches);  // emulated
+}
+
+}  // namespace
+}  // namespace tact

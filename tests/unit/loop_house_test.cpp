@@ -1,0 +1,93 @@
+// What the house thread lets through from the other process.
+#include "rt/loop/house.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace tact {
+namespace {
+
+const std::vector<std::string> kPaths{"gui.mesh", "docking.force"};
+
+CommandTopic command(CommandKind kind, double value = 0.0, const char* text = "") {
+    CommandTopic c{};
+    c.sequence = 7;
+    c.kind = static_cast<std::uint16_t>(kind);
+    c.value = value;
+    std::strncpy(c.text, text, sizeof c.text - 1);
+    return c;
+}
+
+TEST(House, passes_good_commands_in_the_servos_terms) {
+    const CheckedCommand level = check_command(command(CommandKind::set_level, 0.5, "docking.force"), kPaths);
+    EXPECT_EQ(level.result, CommandResult::none);
+    EXPECT_EQ(level.order.index, 1U);
+    EXPECT_EQ(level.order.sequence, 7U);
+    const CheckedCommand law = check_command(command(CommandKind::set_law, 0.0, "fixed"), kPaths);
+    EXPECT_EQ(law.result, CommandResult::none);
+    EXPECT_EQ(law.order.index, 1U);
+    EXPECT_EQ(check_command(command(CommandKind::arm), kPaths).result, CommandResult::none);
+    EXPECT_EQ(check_command(command(CommandKind::set_goal_hz, 800.0), kPaths).result, CommandResult::none);
+}
+
+TEST(House, refuses_what_cannot_be_meant) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(check_command(command(CommandKind::arm, nan), kPaths).result, CommandResult::refused_value);
+    EXPECT_EQ(check_command(command(CommandKind::set_level, 0.5, "nowhere"), kPaths).result,
+              CommandResult::refused_value);
+    EXPECT_EQ(check_command(command(CommandKind::set_level, 1.5, "gui.mesh"), kPaths).result,
+              CommandResult::refused_value);
+    EXPECT_EQ(check_command(command(CommandKind::set_law, 0.0, "mine"), kPaths).result,
+              CommandResult::refused_value);
+    EXPECT_EQ(check_command(command(CommandKind::set_goal_hz, 0.0), kPaths).result,
+              CommandResult::refused_value);
+    EXPECT_EQ(check_command(command(static_cast<CommandKind>(99)), kPaths).result, CommandResult::unknown);
+    CommandTopic endless = command(CommandKind::set_law);
+    std::memset(endless.text, 'x', sizeof endless.text);
+    EXPECT_EQ(check_command(endless, kPaths).result, CommandResult::refused_value);
+}
+
+TEST(House, garbage_of_any_bytes_is_judged_without_harm_and_what_passes_is_in_range) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 20000; ++i) {
+        CommandTopic c{};
+        auto* const bytes = reinterpret_cast<unsigned char*>(&c);
+        for (std::size_t k = 0; k < sizeof c; ++k) bytes[k] = static_cast<unsigned char>(random());
+        c.kind = static_cast<std::uint16_t>(c.kind % 12);
+        const CheckedCommand checked = check_command(c, kPaths);
+        if (checked.result == CommandResult::none) {
+            ASSERT_LT(checked.order.index, 2U);
+            ASSERT_TRUE(std::isfinite(checked.order.value));
+        }
+        LoadTopic load{};
+        auto* const load_bytes = reinterpret_cast<unsigned char*>(&load);
+        for (std::size_t k = 0; k < sizeof load; ++k) load_bytes[k] = static_cast<unsigned char>(random());
+        if (plausible(load)) {
+            ASSERT_LE(load.vertices_drawn, load.vertices_max);
+        }
+    }
+}
+
+TEST(House, a_load_must_be_possible) {
+    LoadTopic load{};
+    load.frame_s = 0.016;
+    load.fps = 60.0;
+    load.vertices_drawn = 100;
+    load.vertices_max = 200;
+    EXPECT_TRUE(plausible(load));
+    load.vertices_drawn = 201;
+    EXPECT_FALSE(plausible(load));
+    load.vertices_drawn = 100;
+    load.busy_s = -1.0;
+    EXPECT_FALSE(plausible(load));
+    load.busy_s = 0.0;
+    load.fps = std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(plausible(load));
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,198 @@
+// tact-prep as a program: exit codes, messages, and that a scene is whole or absent.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "ipc/assets/scene_meta.hpp"
+#include "tests/unit/prep_samples.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ended {
+    int code = -1;
+    std::string out, err;
+};
+
+class Program : public ::testing::Test {
+protected:
+    Program() {
+        std::string name = (fs::temp_directory_path() / "tact-cli-XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+    }
+    ~Program() override { fs::remove_all(folder_); }
+
+    // With `interrupt`, SIGINT is sent as soon as the program says anything.
+    Ended run(const std::vector<std::string>& arguments, bool interrupt = false) const {
+        std::vector<char*> argv{const_cast<char*>(TACT_PREP)};
+        for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+        argv.push_back(nullptr);
+        const fs::path out = folder_ / "stdout";
+        int err[2];
+        if (::pipe(err) != 0) return {};
+        const pid_t child = ::fork();
+        if (child == 0) {
+            const int file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+            ::dup2(file, 1);
+            ::dup2(err[1], 2);
+            ::close(err[0]);
+            ::close(err[1]);
+            ::execv(TACT_PREP, argv.data());
+            ::_exit(127);
+        }
+        ::close(err[1]);
+        Ended ended;
+        char text[4096];
+        for (ssize_t n = 0; (n = ::read(err[0], text, sizeof text)) > 0;) {
+            ended.err.append(text, static_cast<std::size_t>(n));
+            if (interrupt) ::kill(child, SIGINT);
+            interrupt = false;
+        }
+        ::close(err[0]);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+        std::ostringstream all;
+        all << std::ifstream(out).rdbuf();
+        ended.out = all.str();
+        fs::remove(out);
+        return ended;
+    }
+    fs::path write(const char* name, const std::string& text) const {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+        return folder_ / name;
+    }
+    fs::path write(const char* name, const std::vector<char>& bytes) const {
+        return write(name, std::string(bytes.begin(), bytes.end()));
+    }
+    [[nodiscard]] std::size_t entries() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+    }
+
+    void expect_refused(const std::vector<std::string>& arguments,
+                        const std::vector<const char*>& words) const {
+        const Ended e = run(arguments);
+        EXPECT_EQ(e.code, 1) << e.err;
+        for (const char* word : words)
+            EXPECT_NE(e.err.find(word), std::string::npos) << word << " is not in: " << e.err;
+        EXPECT_NE(e.err.find("mend: "), std::string::npos) << e.err;
+        EXPECT_FALSE(fs::exists(folder_ / "s.tact"));
+    }
+    fs::path folder_;
+};
+
+TEST_F(Program, BakesTheDemoAndTellsWhatIsInIt) {
+    const std::string scene = folder_ / "ring.tact";
+    const Ended baked = run({"demo", "dock", "-o", scene, "--json"});
+    ASSERT_EQ(baked.code, 0) << baked.err;
+    EXPECT_EQ(baked.err.find('\r'), std::string::npos) << "no terminal, no moving line";
+    const auto json = nlohmann::json::parse(baked.out);
+    EXPECT_GT(json["mesh"]["vertices"].get<int>(), 1000);
+    EXPECT_GT(json["bodies"][0]["inside_home"].get<double>(), 0.95);
+    const Ended info = run({"info", scene, "--json"});
+    ASSERT_EQ(info.code, 0) << info.err;
+    EXPECT_EQ(nlohmann::json::parse(info.out)["checksum"], json["checksum"]);
+    EXPECT_NE(run({"info", scene}).out.find("world per model: "), std::string::npos);
+    EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Program, BakesAMapAndAStructureFromFiles) {
+    sample::Mrc mrc;
+    mrc.start = {-3, 2, 0};
+    const std::string map = write("m.mrc", mrc.bytes()),
+                      model = write("a.pdb", sample::pdb_atom(" CA ", "ALA", 'A', 1, 2.0, 15.0, 10.0) +
+                                                 sample::pdb_atom(" CB ", "ALA", 'A', 1, 3.0, 15.0, 11.0));
+    const Ended e =
+        run({"dock", map, model, "-o", folder_ / "s.tact", "--contour", "10", "--resolution-a", "8.5"});
+    ASSERT_EQ(e.code, 0) << e.err;
+    EXPECT_NE(e.out.find("map origin: NSTART words 5-7 (-3, 2, 0) x voxel"), std::string::npos) << e.out;
+    const SceneFile file = SceneFile::open(folder_ / "s.tact");
+    EXPECT_NEAR(read_meta(file).resolution_m, 8.5e-10, 1e-18);
+    EXPECT_EQ(read_meta(file).contour, 10.0);
+}
+
+TEST_F(Program, BadInputIsRefusedByNamePlaceReasonAndMend) {
+    const std::vector<char> good = sample::Mrc().bytes();
+    const std::string map = write("good.mrc", good),
+                      model = write("good.pdb", sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0)),
+                      out = folder_ / "s.tact";
+    const auto dock = [&](const std::string& m, const std::string& s) {
+        return std::vector<std::string>{"dock", m, s, "-o", out};
+    };
+    expect_refused(dock(folder_ / "absent.mrc", model), {"absent.mrc", "No such file"});
+    expect_refused(dock(map, folder_ / "absent.pdb"), {"absent.pdb", "No such file"});
+    expect_refused(dock(write("cut.mrc", std::vector<char>(good.begin(), good.end() - 9)), model),
+                   {"cut.mrc", "6 x 5 x 4", "(truncated)"});
+    std::vector<char> longer = good;
+    longer.resize(longer.size() + 100);
+    expect_refused(dock(write("long.mrc", longer), model), {"long.mrc", "(oversized)"});
+    std::vector<char> huge = good;
+    const std::int32_t n = 16000;
+    for (int w = 0; w < 3; ++w) std::memcpy(huge.data() + 4 * w, &n, 4);
+    expect_refused(dock(write("huge.mrc", huge), model), {"huge.mrc", "words 1-3", "16000 x 16000 x 16000"});
+    std::vector<char> mixed = good;  // header of one byte order, sizes of neither
+    std::memcpy(mixed.data() + 64, "\0\2\0\0", 4);
+    expect_refused(dock(write("mixed.mrc", mixed), model), {"mixed.mrc", "neither byte order"});
+    std::vector<char> nan = good;
+    std::memset(nan.data() + 1024, 0xff, nan.size() - 1024);
+    expect_refused(dock(write("nan.mrc", nan), model),
+                   {"nan.mrc", "120 of 120 voxels are not finite", "voxel (0, 0, 0)"});
+    expect_refused(dock(map, write("empty.pdb", "REMARK nothing\nEND\n")), {"empty.pdb", "no atoms"});
+    expect_refused(
+        dock(map, write("bad.pdb",
+                        sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0).replace(30, 8, "   x.xxx"))),
+        {"bad.pdb", "line 1", "x 'x.xxx'"});
+    expect_refused({"dock", map, model, "-o", folder_ / "absent" / "s.tact"}, {"absent", "does not exist"});
+    expect_refused({"dock", map, model, "-o", map}, {"good.mrc", "one of the input files"});
+    expect_refused({"dock", map, model, "-o", out, "--contour", "1e9"},
+                   {"contour", "outside of the map's values"});
+    std::vector<char> flipped;
+    {
+        ASSERT_EQ(run({"demo", "dock", "-o", folder_ / "ring.tact"}).code, 0);
+        std::ifstream in(folder_ / "ring.tact", std::ios::binary);
+        flipped.assign(std::istreambuf_iterator<char>(in), {});
+        flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
+    }
+    expect_refused({"info", write("flipped.tact", flipped)},
+                   {"flipped.tact", "section ", "at byte ", "checksum"});
+    // Wrong use of the command line is an error of the same code; it ends with the way to more help.
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
+                                                  {"dock", map},
+                                                  {"dock", map, model},
+                                                  {"demo", "dock", "-o", out, "--unknown"}}) {
+        EXPECT_EQ(run(wrong).code, 1);
+    }
+    EXPECT_EQ(run({"--help"}).code, 0);
+}
+
+TEST_F(Program, CtrlCLeavesNothingHalfWritten) {
+    // The demo takes a part of a second; on a busy machine the signal may come too late, so it is tried
+    // again.
+    bool cancelled = false;
+    for (int attempt = 0; attempt < 20 && !cancelled; ++attempt) {
+        const Ended e = run({"demo", "dock", "-o", folder_ / "ring.tact"}, true);
+        cancelled = e.code == 130;
+        if (!cancelled) {
+            ASSERT_EQ(e.code, 0) << e.err;
+            ASSERT_NO_THROW((void)SceneFile::open(folder_ / "ring.tact"));
+            fs::remove(folder_ / "ring.tact");
+        } else {
+            EXPECT_NE(e.err.find("cancelled, nothing was written"), std::string::npos) << e.err;
+        }
+        EXPECT_EQ(entries(), 0U);
+    }
+    EXPECT_TRUE(cancelled);
+}
+
+}  // namespace
+}  // namespace tact

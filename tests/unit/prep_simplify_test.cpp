@@ -1,0 +1,180 @@
+#include "prep/mesh/simplify.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "ipc/base/error.hpp"
+#include "prep/mesh/isosurface.hpp"
+#include "prep/mesh/progressive.hpp"
+#include "tests/unit/prep_mesh_fixtures.hpp"
+
+namespace tact::test {
+namespace {
+
+// A sheet of n x n squares over [0, 1]² with height f(x, y).
+template <class Height>
+TriangleMesh sheet(std::uint32_t n, Height&& f) {
+    TriangleMesh mesh;
+    for (std::uint32_t y = 0; y <= n; ++y) {
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            const float u = static_cast<float>(x) / static_cast<float>(n);
+            const float v = static_cast<float>(y) / static_cast<float>(n);
+            mesh.position_m.insert(mesh.position_m.end(), {u, v, f(u, v)});
+        }
+    }
+    for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+            mesh.triangle.insert(mesh.triangle.end(), {a, b, d, a, d, c});
+        }
+    }
+    return mesh;
+}
+
+// How far the outline reaches: the mean distance of a corner of the unit square from the nearest vertex.
+double corner_loss(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)}) {
+        double nearest = 1e9;
+        for (std::uint32_t v = 0; v < mesh.vertices(); ++v) {
+            const Vec3 p = point(mesh, v);
+            nearest = std::min(nearest, (Vec3(p.x(), p.y(), 0.0) - corner).norm());
+        }
+        sum += 0.25 * nearest;
+    }
+    return sum;
+}
+
+double flat_area(const TriangleMesh& mesh) {  // of the projection on z = 0
+    double sum = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles(); ++t) sum += 0.5 * double_area(mesh, t).z();
+    return sum;
+}
+
+void expect_sound(const TriangleMesh& mesh) {
+    const Topology t = topology(mesh);
+    EXPECT_EQ(t.tangled_edges, 0U);
+    EXPECT_EQ(t.tangled_vertices, 0U);
+    EXPECT_EQ(t.flat_triangles, 0U);
+}
+
+TEST(Simplify, APlaneLosesVerticesWithoutError) {
+    const TriangleMesh flat = sheet(20, [](float u, float v) { return 0.5F * u - 0.25F * v; });
+    const Simplified result = simplify(flat, {.vertices_min = 8});
+    EXPECT_EQ(result.mesh.vertices(), 8U);
+    expect_sound(result.mesh);
+    for (std::uint32_t v = 0; v < result.mesh.vertices(); ++v) {
+        const Vec3 p = point(result.mesh, v);
+        EXPECT_NEAR(p.z(), 0.5 * p.x() - 0.25 * p.y(), 2e-6);
+    }
+    EXPECT_LT(result.contraction.back().error_m, 1e-4F);
+    EXPECT_NEAR(flat_area(result.mesh), 1.0, 1e-3);
+}
+
+TEST(Simplify, EdgesOfACubeStayWhereTheyAre) {
+    // Six faces of 10 x 10 squares: the eight corners carry the whole shape.
+    const DensityGrid grid = sampled(24, [](const Vec3& p) { return -p.cwiseAbs().maxCoeff(); });
+    const TriangleMesh cube = isosurface(grid, -0.7);
+    const TriangleMesh coarse = simplify(cube, {.vertices_min = 60}).mesh;
+    EXPECT_EQ(coarse.vertices(), 60U);
+    EXPECT_EQ(topology(coarse).euler, 2);
+    EXPECT_NEAR(volume(coarse), volume(cube), 0.01 * volume(cube));
+}
+
+TEST(Simplify, ASphereKeepsItsVolumeAndStaysNear) {
+    const TriangleMesh fine = isosurface(sampled(33, sphere), -0.7);
+    const TriangleMesh coarse = simplify(fine, {.vertices_min = 100}).mesh;
+    EXPECT_EQ(coarse.vertices(), 100U);
+    expect_sound(coarse);
+    EXPECT_EQ(topology(coarse).euler, 2);
+    EXPECT_NEAR(volume(coarse), volume(fine), 0.005 * volume(fine));
+    // 196 triangles on a sphere: sagitta about s²/(2 sqrt(3) r) with s² = 4 area / sqrt(3), so 3 to 5 % of r.
+    for (std::uint32_t v = 0; v < coarse.vertices(); ++v) EXPECT_NEAR(point(coarse, v).norm(), 0.7, 0.035);
+}
+
+TEST(Simplify, TheBorderIsKeptByItsPlanesAndLostWithoutThem) {
+    const TriangleMesh hill =
+        sheet(24, [](float u, float v) { return 0.2F * std::sin(5.0F * u) * std::cos(4.0F * v); });
+    const auto coarse = [&](double f, std::uint32_t n) {
+        return simplify(hill, {.vertices_min = n, .boundary_weight = f}).mesh;
+    };
+    for (const double f : {SimplifySettings{}.boundary_weight, kSeedBoundaryWeight}) {
+        const TriangleMesh kept = coarse(f, 30);
+        expect_sound(kept);
+        EXPECT_EQ(topology(kept).euler, 1);
+        EXPECT_LT(corner_loss(kept), 0.05) << f;
+        EXPECT_GT(flat_area(kept), 0.97) << f;
+    }
+    const TriangleMesh lost = coarse(0.0, 30);
+    EXPECT_GT(corner_loss(lost), 2.0 * corner_loss(coarse(kSeedBoundaryWeight, 30)));
+    EXPECT_LT(flat_area(lost), flat_area(coarse(kSeedBoundaryWeight, 30)));
+}
+
+TEST(Simplify, TopologyNeverChangesHoweverFarItGoes) {
+    const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
+    const Simplified result = simplify(fine, {.vertices_min = 0});
+    expect_sound(result.mesh);
+    EXPECT_EQ(topology(result.mesh).euler, 0);
+    EXPECT_LT(result.mesh.vertices(), 40U);
+    EXPECT_GE(result.mesh.vertices(), 7U);  // no torus has fewer
+}
+
+TEST(Simplify, RepeatsExactlyAndItsErrorNeverFalls) {
+    const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
+    const Simplified a = simplify(fine, {}), b = simplify(fine, {});
+    ASSERT_EQ(a.contraction.size(), b.contraction.size());
+    float error_m = 0.0F;
+    for (std::size_t i = 0; i < a.contraction.size(); ++i) {
+        EXPECT_EQ(a.contraction[i].kept, b.contraction[i].kept);
+        EXPECT_EQ(a.contraction[i].gone, b.contraction[i].gone);
+        EXPECT_EQ(a.contraction[i].position_m, b.contraction[i].position_m);
+        EXPECT_GE(a.contraction[i].error_m, error_m);
+        error_m = a.contraction[i].error_m;
+    }
+}
+
+TEST(Simplify, AngstromSizedMeshesAreTreatedLikeMetreSizedOnes) {
+    const TriangleMesh metres = isosurface(sampled(17, torus), -0.25);
+    TriangleMesh tiny = metres;
+    for (float& x : tiny.position_m) x *= 1.1920929e-07F;  // 2^-23: exact
+    const Simplified a = simplify(metres, {.vertices_min = 50}), b = simplify(tiny, {.vertices_min = 50});
+    ASSERT_EQ(a.contraction.size(), b.contraction.size());
+    for (std::size_t i = 0; i < a.contraction.size(); ++i)
+        ASSERT_EQ(a.contraction[i].gone, b.contraction[i].gone) << i;
+}
+
+TEST(Simplify, AnyTriangleSoupIsTakenWithoutHarm) {
+    rc::check([] {
+        TriangleMesh soup;
+        const auto n = *rc::gen::inRange<std::uint32_t>(3, 30);
+        soup.position_m = *rc::gen::container<std::vector<float>>(
+            3 * n,
+            rc::gen::map(rc::gen::inRange(-4, 5), [](int i) { return 0.25F * static_cast<float>(i); }));
+        const auto t = *rc::gen::inRange<std::size_t>(0, 80);
+        soup.triangle = *rc::gen::container<std::vector<std::uint32_t>>(3 * t, rc::gen::inRange(0U, n));
+        const Simplified direct = simplify(soup, {});
+        for (const float x : direct.mesh.position_m) RC_ASSERT(std::isfinite(x));
+        if (cleaned(soup).triangles() == 0) return;
+        // The bake checks every level for triangles with equal corners.
+        const ProgressiveMesh baked(make_progressive(soup));
+        RC_ASSERT(baked.vertices() == cleaned(soup).vertices());
+    });
+}
+
+TEST(Simplify, RefusesWhatIsNoMesh) {
+    TriangleMesh bad = sheet(3, [](float, float) { return 0.0F; });
+    bad.triangle[4] = 99;
+    EXPECT_THROW(simplify(bad, {}), StartupError);
+    EXPECT_THROW(make_progressive(bad), StartupError);
+    bad = sheet(3, [](float, float) { return std::nanf(""); });
+    EXPECT_THROW(simplify(bad, {}), StartupError);
+    EXPECT_THROW(make_progressive(TriangleMesh{}), StartupError);
+}
+
+TEST(Simplify, CanBeCancelled) {
+    const TriangleMesh fine = sheet(20, [](float u, float) { return u * u; });
+    EXPECT_THROW(simplify(fine, {}, [](double, const char*) { return false; }), Cancelled);
+}
+
+}  // namespace
+}  // namespace tact::test

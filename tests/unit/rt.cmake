@@ -1,0 +1,31 @@
+# Tests of rt/safety, rt/govern, rt/loop and hal.
+find_package(rapidcheck REQUIRED)
+
+tact_test(unit/safety_state_machine_test.cpp USES base safety)
+tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
+tact_test(unit/safety_watchdogs_test.cpp USES base safety)
+tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
+tact_test(unit/hal_sim_test.cpp USES base hal)
+tact_test(unit/base_pacer_test.cpp USES base SYSTEM rapidcheck)
+tact_test(unit/loop_config_test.cpp USES base hal loop govern)
+tact_test(unit/loop_house_test.cpp USES base topics loop)
+
+tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
+
+# The whole loop in lockstep.
+tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
+
+# Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
+tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/loop/interpose.cpp
+    USES base topics assets hal force loop SYSTEM GTest::gtest GTest::gtest_main)
+set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 120)
+
+# The process: signals, refusals, system calls of the servo thread.
+tact_program(write_small_scene SOURCES support/write_small_scene.cpp USES base assets)
+set_target_properties(write_small_scene PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+find_package(Python3 COMPONENTS Interpreter REQUIRED)
+add_test(NAME rt_process_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/rt_safe/process_test.py
+    ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} $<TARGET_FILE:write_small_scene>)
+set_tests_properties(rt_process_test PROPERTIES TIMEOUT 180)

@@ -1,0 +1,81 @@
+// The watchdogs: what is counted, what is warned of, what trips.
+#include "rt/safety/watchdogs.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tact {
+namespace {
+
+using std::chrono::microseconds;
+
+WatchdogInput fine(std::int64_t now_ns = 1'000'000'000) {
+    return {.now = instant_from_ns(now_ns), .sample_taken_at = instant_from_ns(now_ns)};
+}
+
+TEST(Watchdogs, one_overrun_is_counted_three_are_warned_of_five_trip) {
+    Watchdogs dogs;
+    WatchdogInput late = fine();
+    late.overran = true;
+    for (int i = 1; i <= 4; ++i) {
+        EXPECT_EQ(dogs.look(late).reason, RunReason::none) << i;
+        EXPECT_EQ(dogs.overruns_in_a_row(), static_cast<std::uint32_t>(i));
+        EXPECT_EQ(dogs.warns(), i == 3);
+    }
+    const Trip trip = dogs.look(late);
+    EXPECT_EQ(trip.reason, RunReason::overruns);
+    EXPECT_DOUBLE_EQ(trip.measured, 5.0);
+}
+
+TEST(Watchdogs, a_good_cycle_between_forgets_the_row) {
+    Watchdogs dogs;
+    WatchdogInput late = fine();
+    late.overran = true;
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(dogs.look(i % 5 == 4 ? fine() : late).reason, RunReason::none);
+    }
+}
+
+TEST(Watchdogs, five_milliseconds_late_trips_and_no_less) {
+    Watchdogs dogs;
+    WatchdogInput in = fine();
+    in.lateness = microseconds(5000);
+    EXPECT_EQ(dogs.look(in).reason, RunReason::none);
+    in.lateness = microseconds(5001);
+    EXPECT_EQ(dogs.look(in).reason, RunReason::too_late);
+}
+
+TEST(Watchdogs, where_timing_does_not_latch_it_is_still_counted) {
+    WatchdogSettings settings;
+    settings.timing_latches = false;
+    Watchdogs dogs(settings);
+    WatchdogInput in = fine();
+    in.lateness = std::chrono::seconds(1);
+    in.overran = true;
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(dogs.look(in).reason, RunReason::none);
+    EXPECT_EQ(dogs.overruns_in_a_row(), 50U);
+}
+
+TEST(Watchdogs, a_sample_is_held_for_three_cycles_and_trips_at_the_fourth) {
+    Watchdogs dogs;
+    WatchdogInput in = fine();
+    for (int cycles = 1; cycles <= 4; ++cycles) {
+        in.now += microseconds(1000);
+        EXPECT_EQ(dogs.look(in).reason, cycles <= 3 ? RunReason::none : RunReason::sample_stale);
+    }
+}
+
+TEST(Watchdogs, a_lost_device_is_named_before_what_follows_from_it) {
+    Watchdogs dogs;
+    WatchdogInput in = fine();
+    in.device_lost = in.device_fault = true;
+    in.force_finite = false;
+    in.now += std::chrono::seconds(1);
+    EXPECT_EQ(dogs.look(in).reason, RunReason::device_lost);
+    in.device_lost = false;
+    EXPECT_EQ(dogs.look(in).reason, RunReason::device_fault);
+    in.device_fault = false;
+    EXPECT_EQ(dogs.look(in).reason, RunReason::force_not_finite);
+}
+
+}  // namespace
+}  // namespace tact
