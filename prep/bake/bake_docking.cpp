@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/codebook/neural_gas.hpp"
 #include "prep/gain/docking_gain.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_statistics.hpp"
-#include "prep/mesh/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 
 namespace tact {

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <string>
 
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 

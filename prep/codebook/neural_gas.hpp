@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "ipc/assets/structure.hpp"
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 

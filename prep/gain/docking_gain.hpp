@@ -13,7 +13,7 @@
 
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/structure.hpp"
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "ipc/assets/density_map.hpp"
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 

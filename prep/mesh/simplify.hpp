@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ipc/assets/progressive_mesh.hpp"
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 

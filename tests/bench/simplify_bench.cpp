@@ -21,8 +21,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "ipc/assets/isosurface.hpp"
 #include "ipc/assets/mesh_cut.hpp"
-#include "prep/mesh/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/support/mesh_distance.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
-#include "prep/mesh/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "ipc/assets/density_map.hpp"
+#include "ipc/assets/isosurface.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
-#include "prep/mesh/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 
 namespace tact::fake {

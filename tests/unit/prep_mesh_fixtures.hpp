@@ -1,4 +1,4 @@
-// Surfaces with known properties and the counts that tell a manifold, for the tests of prep/mesh.
+// Surfaces with known properties and the counts that tell a manifold, for the tests of meshes.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
-#include "prep/mesh/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 

@@ -1,4 +1,4 @@
-// The 256 ways in which a surface crosses a cell of eight samples, for prep/mesh/isosurface.cpp.
+// The 256 ways in which a surface crosses a cell of eight samples, for ipc/assets/isosurface.cpp.
 //
 // Corner c lies at x = c & 1, y = c >> 1 & 1, z = c >> 2. Edge e of the cell: 0-3 along x, 4-7 along y, 8-11
 // along z, each numbered by its lower corner's two other coordinates.

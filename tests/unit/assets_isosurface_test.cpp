@@ -1,4 +1,4 @@
-#include "prep/mesh/isosurface.hpp"
+#include "ipc/assets/isosurface.hpp"
 
 #include <gtest/gtest.h>
 

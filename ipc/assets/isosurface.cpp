@@ -1,14 +1,14 @@
-// Marching cubes (Lorensen, Cline 1987) over the derived case table of prep/mesh/cell_cases.cpp. Vertices are
-// welded by the edge that they lie on: ids are kept for the edges of two slices, in three planes of x, y and
-// z.
-#include "prep/mesh/isosurface.hpp"
+// Marching cubes (Lorensen, Cline 1987) over the derived case table of ipc/assets/cell_cases.cpp. Vertices
+// are welded by the edge that they lie on: ids are kept for the edges of two slices, in three planes of x, y
+// and z.
+#include "ipc/assets/isosurface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "ipc/assets/cell_cases.hpp"
 #include "ipc/base/error.hpp"
-#include "prep/mesh/cell_cases.hpp"
 
 namespace tact {
 namespace {

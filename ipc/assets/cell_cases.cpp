@@ -6,7 +6,7 @@
 // where the neighbour may put the same one: an edge with four triangles. The published tables have this
 // fault. Here the first triangulation without such a diagonal is taken, and where none exists a vertex in the
 // middle of the loop is added.
-#include "prep/mesh/cell_cases.hpp"
+#include "ipc/assets/cell_cases.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // The surface where a density map has a given level, as a welded triangle mesh.
 //
-// Inside    density above the level; triangles are counter-clockwise seen from outside. NaN counts as
-// outside. Border    the surface ends where the box of the map ends: it stays open there. Result    manifold:
-// every edge has two triangles, or one at the border of the box. No triangle is
+// Inside    density above the level; triangles are counter-clockwise seen from outside. NaN is outside.
+// Border    the surface ends where the box of the map ends: it stays open there.
+// Result    manifold: every edge has two triangles, or one at the border of the box. No triangle is
 //           degenerate: a vertex keeps 1/128 of a voxel edge away from the voxel's centre.
 // Frame     model, metres.  Memory  20 bytes per voxel of two slices besides the result.
 // Fails by  StartupError when the grid is not as long as its sizes say, the level is not finite, or the
@@ -11,7 +11,7 @@
 
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
-#include "prep/progress.hpp"
+#include "ipc/base/progress.hpp"
 
 namespace tact {
 
