@@ -30,6 +30,8 @@ enum class EventCode : std::uint16_t {
     stopping,             // a: signal number; -1: the run's time was over
     device_watchdog,      // a: ms since the cycle before; the device dropped its amplifier
     torque_slew_limited,  // a: wanted N m per cycle, b: limit
+    body_selected,        // a: id, b: points of its finest level
+    bodies_changed,       // a: bodies now, b: options (DockingOption)
 };
 
 struct EventTopic {
@@ -45,7 +47,7 @@ static_assert(std::is_trivially_copyable_v<EventTopic> && sizeof(EventTopic) == 
 
 // One servo cycle, for traces, the flight recorder and plots.
 struct TraceTopic {
-    static constexpr TopicInfo kInfo{.name = "trace", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "trace", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int32_t lateness_ns;
@@ -56,7 +58,9 @@ struct TraceTopic {
     float force_world_n[3];
     float torque_world_n_m[3];
     std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15
+    float model_error_n;   // bound of the reduced force's distance from the exact one, in this step
+    std::uint32_t items;   // points summed in this step
 };
-static_assert(std::is_trivially_copyable_v<TraceTopic> && sizeof(TraceTopic) == 72);
+static_assert(std::is_trivially_copyable_v<TraceTopic> && sizeof(TraceTopic) == 80);
 
 }  // namespace tact

@@ -112,6 +112,10 @@ const char* event_code_text(EventCode code) noexcept {
             return "stopping";
         case EventCode::device_watchdog:
             return "the device's watchdog dropped its amplifier";
+        case EventCode::body_selected:
+            return "body taken into the hand";
+        case EventCode::bodies_changed:
+            return "bodies changed";
     }
     return kUnknown;
 }
@@ -154,6 +158,22 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "set level";
         case CommandKind::set_fidelity_auto:
             return "set fidelity to automatic";
+        case CommandKind::select_body:
+            return "take a body";
+        case CommandKind::fix_body:
+            return "fix or free a body";
+        case CommandKind::place_body:
+            return "place a body";
+        case CommandKind::add_body:
+            return "add a copy";
+        case CommandKind::remove_body:
+            return "remove a body";
+        case CommandKind::set_clash:
+            return "clash force";
+        case CommandKind::set_subtraction:
+            return "subtraction";
+        case CommandKind::set_laplacian:
+            return "Laplacian";
     }
     return kUnknown;
 }
@@ -170,6 +190,8 @@ const char* command_result_text(CommandResult result) noexcept {
             return "refused: value out of range or name not known";
         case CommandResult::unknown:
             return "refused: command not known";
+        case CommandResult::refused_busy:
+            return "refused: the one before is still being prepared; ask again";
     }
     return kUnknown;
 }
@@ -226,6 +248,10 @@ std::string event_text(const EventTopic& event) {
             return event.a < 0.0 ? what + ": the time is over" : what + ": signal " + a;
         case EventCode::device_watchdog:
             return what + ": " + a + " ms without a cycle";
+        case EventCode::body_selected:
+            return what + ": body " + a + ", " + b + " points";
+        case EventCode::bodies_changed:
+            return what + ": " + a + " now";
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);
     }

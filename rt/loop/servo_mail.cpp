@@ -71,6 +71,8 @@ void Servo::obey(CycleState& c, const ServoOrder& order) noexcept {
             return answer(true);
         case CommandKind::none:  // refused by the house thread, which says why in the index
             return acknowledge(order, static_cast<CommandResult>(order.index));
+        default:  // the house thread passes on nothing else
+            break;
     }
     if (concerns_state(kind)) {
         c.order = order;

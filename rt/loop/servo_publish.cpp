@@ -77,6 +77,8 @@ void Servo::publish_tools(const CycleState& c) noexcept {
     for (std::uint32_t i = 0; i < b.count; ++i) {
         put(b.body[i].pos_model_m, bodies.T_model_body[i].p_m);
         put(b.body[i].quat_model_body_xyzw, bodies.T_model_body[i].q);
+        b.body[i].id = i + 1;
+        b.body[i].structure = static_cast<std::uint16_t>(i);
     }
     region_.bodies.publish(b);
 }
@@ -173,6 +175,8 @@ void Servo::publish_trace(const CycleState& c) noexcept {
     put(t.force_world_n, h.shown_world.force_n);
     put(t.torque_world_n_m, h.shown_world.torque_n_m);
     t.status = static_cast<std::uint32_t>(c.run.state) | static_cast<std::uint32_t>(h.step.status) << 8;
+    t.model_error_n = static_cast<float>(h.step.load.error);
+    t.items = h.step.load.items;
     region_.trace.push(t);
 }
 
