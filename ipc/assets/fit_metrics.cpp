@@ -1,6 +1,3 @@
-// The simulated map is a sum over atoms of products of three one-dimensional Gaussians, each cut 4 sigma away
-// (a box that holds all but 2e-4 of it), so an atom costs three short tables and one multiplication per
-// voxel. Positions between voxels are exact: nothing is binned.
 #include "ipc/assets/fit_metrics.hpp"
 
 #include <algorithm>
@@ -13,65 +10,13 @@ namespace tact {
 
 namespace {
 
-constexpr double kSigmaPerResolution = 0.225;
-constexpr double kCutSigmas = 4.0;
 constexpr float kRegionShare = 0.05F;
-
-// One axis of a Gaussian: its values at voxels first, first + 1, …
-struct Table {
-    std::int64_t first = 0;
-    std::vector<float> value;
-};
-
-void tabulate(double place, double sigma_voxels, std::uint32_t size, Table& table) {
-    const double reach = kCutSigmas * sigma_voxels;
-    table.value.clear();
-    if (!(place > -reach - 1.0 && place < static_cast<double>(size) + reach)) return;  // also not a number
-    table.first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(place - reach)));
-    const auto last =
-        std::min(static_cast<std::int64_t>(size) - 1, static_cast<std::int64_t>(std::floor(place + reach)));
-    for (std::int64_t i = table.first; i <= last; ++i) {
-        const double d = (static_cast<double>(i) - place) / sigma_voxels;
-        table.value.push_back(static_cast<float>(std::exp(-0.5 * d * d)));
-    }
-}
 
 Vec3 in_voxels(const DensityGrid& grid, const PlacedStructure& placed, std::size_t atom) {
     const Structure& s = *placed.structure;
     const Vec3 body(static_cast<double>(s.x_m[atom]), static_cast<double>(s.y_m[atom]),
                     static_cast<double>(s.z_m[atom]));
     return (placed.T_model_body * body - grid.origin_m).cwiseQuotient(grid.spacing_m);
-}
-
-std::vector<float> simulate(const DensityGrid& grid, std::span<const PlacedStructure> placed,
-                            double resolution_m) {
-    std::vector<float> map(grid.count(), 0.0F);
-    const Vec3 sigma = kSigmaPerResolution * resolution_m * grid.spacing_m.cwiseInverse();
-    Table x, y, z;
-    for (const PlacedStructure& p : placed) {
-        const Structure& s = *p.structure;
-        for (std::size_t i = 0; i < s.size(); ++i) {
-            const Vec3 at = in_voxels(grid, p, i);
-            tabulate(at.x(), sigma.x(), grid.size[0], x);
-            tabulate(at.y(), sigma.y(), grid.size[1], y);
-            tabulate(at.z(), sigma.z(), grid.size[2], z);
-            const bool known = i < s.element.size() && s.element[i] != 0;
-            const float weight = known
-                                     ? static_cast<float>(s.element[i])
-                                     : static_cast<float>(static_cast<double>(s.mass_fraction[i]) * s.mass_u);
-            for (std::size_t c = 0; c < z.value.size(); ++c) {
-                for (std::size_t b = 0; b < y.value.size(); ++b) {
-                    const float zy = weight * z.value[c] * y.value[b];
-                    float* const row = &map[((static_cast<std::size_t>(z.first) + c) * grid.size[1] +
-                                             static_cast<std::size_t>(y.first) + b) *
-                                                grid.size[0] +
-                                            static_cast<std::size_t>(x.first)];
-                    for (std::size_t a = 0; a < x.value.size(); ++a) row[a] += zy * x.value[a];
-                }
-            }
-        }
-    }
-    return map;
 }
 
 // Map value between eight voxels; outside the box the background.
@@ -138,7 +83,7 @@ FitMetrics fit_metrics(const DensityGrid& grid, std::span<const PlacedStructure>
         for (const float v : grid.values) squares += std::pow(static_cast<double>(v) - background, 2.0);
         sigma = std::sqrt(squares / static_cast<double>(grid.values.size()));
     }
-    correlate(grid, simulate(grid, placed, settings.resolution_m), fit);
+    correlate(grid, simulated_map(grid, placed, settings.resolution_m), fit);
     double mass = 0.0, inside = 0.0, atoms = 0.0;
     for (const PlacedStructure& p : placed) {
         for (std::size_t i = 0; i < p.structure->size(); ++i) {

@@ -12,8 +12,7 @@
 #include <span>
 #include <string>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/assets/simulated_map.hpp"
 
 namespace tact {
 
@@ -32,11 +31,6 @@ struct FitSettings {
     // itself.
     double background = 0.0;
     double sigma = 0.0;
-};
-
-struct PlacedStructure {
-    const Structure* structure;
-    Pose T_model_body;
 };
 
 FitMetrics fit_metrics(const DensityGrid& grid, std::span<const PlacedStructure> placed,
