@@ -1,0 +1,190 @@
+// Undo, redo, acceptance and snapshots against a plain model of what a person expects.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+
+#include "gui/app/fit_history.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+using Move = FitHistory::Move;
+
+// Bodies and a controller that obeys, seen once a frame.
+struct Scene {
+    std::map<std::uint32_t, double> x_a{{1, 0.0}, {2, 0.0}};
+    FitHistory::Boundary boundary{1, 0, 0};
+    FitHistory history;
+
+    Scene() { look(); }
+    void look() {
+        std::vector<Move> now;
+        for (const auto& [id, x] : x_a) now.push_back({id, {Vec3(x * kAngstromM, 0, 0), Quat::Identity()}});
+        history.observe(now, boundary);
+    }
+    void grip() {
+        ++boundary.grips;
+        look();
+    }
+    void drag(std::uint32_t id, double to_a) {
+        x_a[id] = to_a;
+        look();
+    }
+    // The hand goes on for some frames before the controller obeys, one command after the other.
+    void obey(const FitHistory::Places& moves) {
+        const auto before = x_a;
+        for (auto& [id, x] : x_a) x += 0.3;
+        look();
+        x_a = before;
+        for (const Move& m : moves) {
+            x_a[m.id] = m.T_model_body.p_m.x() / kAngstromM;
+            ++boundary.placements;
+            ++boundary.grips;
+            look();
+        }
+        look();
+    }
+};
+
+TEST(FitHistory, UndoGoesBackOneGestureAndRedoForthAgain) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.drag(1, 5.0);
+    s.grip();
+    s.drag(1, 9.0);  // under way
+    EXPECT_EQ(s.history.undoable(), 2U);
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 5.0, 1e-9);
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
+    EXPECT_EQ(s.history.undoable(), 0U);
+    EXPECT_TRUE(s.history.undo().empty());
+    s.obey(s.history.redo());
+    s.obey(s.history.redo());
+    EXPECT_NEAR(s.x_a[1], 9.0, 1e-9);
+    EXPECT_EQ(s.history.redoable(), 0U);
+}
+
+TEST(FitHistory, AGripWithoutAMoveIsNoGesture) {
+    Scene s;
+    for (int i = 0; i < 5; ++i) s.grip();
+    s.drag(1, 0.005);  // less than can be seen
+    s.grip();
+    EXPECT_EQ(s.history.undoable(), 0U);
+}
+
+TEST(FitHistory, AnotherGestureEndsWhatCouldBeRedone) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.grip();
+    s.obey(s.history.undo());
+    EXPECT_EQ(s.history.redoable(), 1U);
+    s.drag(1, 7.0);
+    s.grip();
+    EXPECT_EQ(s.history.redoable(), 0U);
+}
+
+TEST(FitHistory, RevertLeadsToWhatWasAcceptedAndCanBeUndone) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.history.accept();
+    EXPECT_EQ(s.history.undoable(), 0U);
+    s.grip();
+    s.drag(1, 5.0);
+    s.grip();
+    s.drag(2, 4.0);
+    s.obey(s.history.revert());
+    EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
+    EXPECT_NEAR(s.x_a[2], 0.0, 1e-9);
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 5.0, 1e-9);
+    EXPECT_NEAR(s.x_a[2], 4.0, 1e-9);
+}
+
+TEST(FitHistory, SnapshotsAreGoneBackToByName) {
+    Scene s;
+    s.drag(1, 3.0);
+    EXPECT_TRUE(s.history.snapshot("a"));
+    EXPECT_FALSE(s.history.snapshot("a"));
+    s.drag(1, 8.0);
+    EXPECT_TRUE(s.history.restore("b").empty());
+    s.obey(s.history.restore("a"));
+    EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
+    EXPECT_EQ(s.history.snapshots(), std::vector<std::string>{"a"});
+}
+
+TEST(FitHistory, BodiesThatCameOrWentAreLeftAlone) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.grip();
+    s.x_a.erase(2);
+    s.x_a[3] = 6.0;
+    ++s.boundary.placements;
+    s.look();
+    const auto moves = s.history.undo();
+    ASSERT_EQ(moves.size(), 1U);
+    EXPECT_EQ(moves[0].id, 1U);
+}
+
+TEST(FitHistory, AnotherControllerBeginsAnew) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.grip();
+    s.boundary = {};
+    s.look();
+    EXPECT_EQ(s.history.undoable(), 0U);
+    EXPECT_TRUE(s.history.revert().empty());
+}
+
+TEST(FitHistory, ARefusedMoveIsNotWaitedForForever) {
+    Scene s;
+    s.drag(1, 3.0);
+    s.grip();
+    static_cast<void>(s.history.undo());  // and nobody obeys
+    for (int i = 0; i < FitHistory::kPatience; ++i) s.look();
+    s.drag(1, 5.0);
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
+}
+
+TEST(FitHistory, MemoryIsBounded) {
+    Scene s;
+    for (int i = 1; i < 1000; ++i) {
+        s.drag(1, i);
+        s.grip();
+    }
+    EXPECT_EQ(s.history.undoable(), FitHistory::kGesturesMax);
+    for (int i = 0; i < 100; ++i) s.history.snapshot(std::to_string(i));
+    EXPECT_EQ(s.history.snapshots().size(), FitHistory::kSnapshotsMax);
+}
+
+RC_GTEST_PROP(FitHistory, AnySequenceIsWhatAListOfStatesDoes, ()) {
+    Scene s;
+    std::vector<double> done, undone;  // of body 1, before each gesture
+    double at = 0.0;
+    const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 3));
+    int drags = 0;
+    for (const int step : steps) {
+        if (step == 0) {
+            s.drag(1, ++drags);
+            s.grip();
+            done.push_back(at);
+            undone.clear();
+            at = drags;
+        } else if (step == 1) {
+            s.obey(s.history.undo());
+            if (!done.empty()) undone.push_back(at), at = done.back(), done.pop_back();
+        } else {
+            s.obey(s.history.redo());
+            if (!undone.empty()) done.push_back(at), at = undone.back(), undone.pop_back();
+        }
+        RC_ASSERT(std::abs(s.x_a[1] - at) < 1e-9);
+        RC_ASSERT(s.history.undoable() == done.size());
+        RC_ASSERT(s.history.redoable() == undone.size());
+    }
+}
+
+}  // namespace
+}  // namespace tact
