@@ -1,8 +1,14 @@
 // A haptic model: pose and budget in, wrench out. It knows no device, topic or clock source.
+//
+// Bodies   what the tool takes hold of: placed copies of the scene's structures. Orders change them, in
+//          constant time, at a cycle boundary.
+// Rebuild  what an order asks for and no constant time can give (another density, say) is stale() until a
+//          model made aside by rebuild() has taken over by adopt().
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "ipc/base/knob.hpp"
 #include "ipc/base/pose.hpp"
@@ -24,26 +30,77 @@ struct StepResult {
     StepStatus status = StepStatus::ok;
 };
 
-// The bodies that a model moves, for those who draw or measure them.
+// What a force may be made of besides the bodies' own field. Bits; numbered as the topics number them.
+enum ModelOption : std::uint32_t {
+    kOptionClash = 1U << 0,        // bodies push each other apart
+    kOptionSubtraction = 1U << 1,  // what the other bodies explain is taken away from the field
+    kOptionLaplacian = 1U << 2,    // the Laplacian of the field is felt
+};
+
+// The bodies of a model. An id stays with its body; its place in these lists does not, as bodies are removed.
 struct ModelBodies {
     static constexpr std::size_t kMax = 16;
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;  // as active: the hand holds none
+    static constexpr std::uint16_t kFixed = 1U << 0;     // as flag: the hand does not move it
     std::uint32_t count = 0;
-    std::uint32_t active = 0;
+    std::uint32_t active = 0;  // index of the one in the hand, or kNone
     std::array<Pose, kMax> T_model_body;
+    std::array<std::uint32_t, kMax> id{};         // from 1, never used again
+    std::array<std::uint16_t, kMax> structure{};  // index in the scene
+    std::array<std::uint16_t, kMax> flags{};
+    std::uint64_t grips = 0;          // rises whenever the tool takes hold: a gesture begins
+    std::uint64_t placements = 0;     // rises whenever an order put a body somewhere, added or removed one
+    std::uint64_t others = 0;         // rises whenever the bodies besides the active one changed
+    std::uint32_t options = 0;        // ModelOption, as felt now
+    std::uint32_t options_asked = 0;  // and as ordered; they differ while a model is built aside
+};
+
+// What a person asks of the bodies.
+struct ModelOrder {
+    enum class Kind : std::uint8_t {
+        select,  // takes the body into the hand; ModelBodies::kNone: lets go
+        fix,     // on: the hand does not move it, and feels nothing of it
+        place,   // puts it at T_model_body
+        add,     // a copy of structure `body`, at T_model_body, not in the hand
+        remove,  // never the last one
+        option,  // turns `option` on or off
+    };
+    Kind kind = Kind::select;
+    bool on = false;
+    std::uint32_t body = 0;    // an id; of add: index of a structure
+    std::uint32_t option = 0;  // one ModelOption
+    Pose T_model_body;
 };
 
 class ForceModel {  // constructed off the servo thread; construction may throw, steps may not
 public:
     virtual ~ForceModel() = default;
-    [[nodiscard]] virtual KnobSpec knob() const noexcept = 0;
+    // Of the body in the hand; start is a level that fits any budget.
+    [[nodiscard]] virtual KnobSpec knob() const noexcept TACT_RT = 0;
     // Points, blocks or vertices felt at a level; the governor publishes it.
-    [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept = 0;
+    [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
     // Slow half, own thread, tens of hertz: prepares what the next steps will need.
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
+
+    // Constant time, between steps. No order makes the force step: what was felt fades out, and what is felt
+    // from then on fades in from zero. False: refused, and nothing changed.
+    virtual bool order(const ModelOrder& /*order*/) noexcept TACT_RT { return false; }
+    // True: what is felt is not what was ordered, or no longer fits the bodies, and rebuild() makes it right.
+    [[nodiscard]] virtual bool stale() const noexcept TACT_RT { return false; }
+    // A model as ordered, for the bodies as they were. Off the servo thread, while steps and orders go on
+    // here; may throw, and may take seconds. Null: there is nothing to build.
+    [[nodiscard]] virtual std::unique_ptr<ForceModel> rebuild(const ModelBodies& /*bodies*/) const {
+        return nullptr;
+    }
+    // Before the first step of a rebuilt model: takes over the bodies, the grip and the orders since, and
+    // lets the old force fade. False: old is no model of this kind; reset() it then.
+    virtual bool adopt(const ForceModel& /*old*/) noexcept TACT_RT { return false; }
+    // rebuild() failed: takes back what was ordered, so that it is not asked for again.
+    virtual void give_up() noexcept TACT_RT {}
 };
 
 }  // namespace tact

@@ -22,7 +22,12 @@ std::size_t Governor::add(const KnobSpec& knob) noexcept {
 
 void Governor::replace(std::size_t path, const KnobSpec& knob) noexcept {
     if (path >= count_ || !possible(knob)) return;
-    paths_[path] = {.knob = knob, .level = knob.start, .wished = knob.start, .present = paths_[path].present};
+    GovernedPath& p = paths_[path];
+    const bool by_hand = settings_.law == Law::fixed && p.wished != p.knob.start;
+    p = {.knob = knob,
+         .level = knob.start,
+         .wished = by_hand ? std::max(p.wished, knob.floor) : knob.start,
+         .present = p.present};
 }
 
 bool Governor::step(double rate_hz, Duration dt) noexcept {

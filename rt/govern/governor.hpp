@@ -44,7 +44,8 @@ public:
     // Before the loop starts. The index of the path; kPathsMax where the table is full or the knob
     // impossible.
     std::size_t add(const KnobSpec& knob) noexcept;
-    // Another model on the same path, at its start level. An impossible knob leaves the old one.
+    // Another load on the same path, at its start level; what a person set is then gone to by the knob's
+    // slew. An impossible knob leaves the old one.
     void replace(std::size_t path, const KnobSpec& knob) noexcept TACT_RT;
     // True: a level or its reason changed. rate_hz of the last interval, dt its length.
     bool step(double rate_hz, Duration dt) noexcept TACT_RT;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "ipc/topics/text.hpp"
 #include "rt/govern/law.hpp"
@@ -25,12 +26,46 @@ extern "C" void on_signal(int number) {
     if (mail != nullptr) mail->stop_signal.store(number, std::memory_order_relaxed);
 }
 
+// A place that some scene may have: no model is kilometres wide. What a scene really has the model says.
+bool read_pose(const CommandTopic& command, ServoOrder& order) {
+    double square = 0.0;
+    for (const double p : command.pos_model_m)
+        if (!(std::abs(p) <= 1e3)) return false;
+    for (const double q : command.quat_model_body_xyzw) square += q * q;
+    if (!(square > 0.98 && square < 1.02)) return false;
+    std::copy(std::begin(command.pos_model_m), std::end(command.pos_model_m), order.pos_model_m);
+    for (int i = 0; i < 4; ++i)
+        order.quat_model_body_xyzw[i] = command.quat_model_body_xyzw[i] / std::sqrt(square);
+    return true;
+}
+
+// Which bodies there are only the servo knows.
+bool read_body_order(const CommandTopic& command, ServoOrder& order) {
+    order.body = command.body;
+    const bool id = command.body != 0 && command.body != kNoBody;
+    const bool yes_or_no = command.value == 0.0 || command.value == 1.0;
+    switch (static_cast<CommandKind>(command.kind)) {
+        case CommandKind::select_body:
+            return command.body != 0;
+        case CommandKind::fix_body:
+            return id && yes_or_no;
+        case CommandKind::place_body:
+            return id && read_pose(command, order);
+        case CommandKind::add_body:
+            return command.body <= 0xFFFFU && read_pose(command, order);
+        case CommandKind::remove_body:
+            return id;
+        default:  // options
+            return yes_or_no;
+    }
+}
+
 }  // namespace
 
 CheckedCommand check_command(const CommandTopic& command, std::span<const std::string> path_names) {
     CheckedCommand checked;
     checked.order = {.sequence = command.sequence, .value = command.value, .kind = command.kind, .index = 0};
-    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(CommandKind::set_fidelity_auto)) {
+    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(CommandKind::set_laplacian)) {
         checked.result = CommandResult::unknown;
         return checked;
     }
@@ -52,6 +87,8 @@ CheckedCommand check_command(const CommandTopic& command, std::span<const std::s
         checked.order.index = good ? static_cast<std::uint32_t>(found - path_names.begin()) : 0;
     } else if (kind == CommandKind::set_goal_hz) {
         if (!(command.value >= 1.0 && command.value <= 1e7)) checked.result = CommandResult::refused_value;
+    } else if (command.kind >= static_cast<std::uint16_t>(CommandKind::select_body)) {
+        if (!read_body_order(command, checked.order)) checked.result = CommandResult::refused_value;
     }
     return checked;
 }

@@ -15,12 +15,16 @@
 
 namespace tact {
 
-// A command after validation: kinds and indexes are in range, values are finite.
+// A command after validation: kinds and indexes are in range, values and poses are finite.
 struct ServoOrder {
     std::uint64_t sequence;  // of the command; 0: from the command line, not acknowledged
     double value;
-    std::uint32_t kind;   // CommandKind
-    std::uint32_t index;  // path or law
+    std::uint32_t kind;      // CommandKind
+    std::uint32_t index;     // path or law
+    std::uint32_t body = 0;  // an id, or a structure; only the model knows which there are
+    std::uint32_t reserved = 0;
+    double pos_model_m[3] = {0.0, 0.0, 0.0};
+    double quat_model_body_xyzw[4] = {0.0, 0.0, 0.0, 1.0};  // of unit length
 };
 
 struct HouseReport {

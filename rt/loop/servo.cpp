@@ -54,6 +54,8 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
         throw StartupError("the knobs of the scene", "the force model's knob is impossible",
                            "report this scene");
     governor_.set_present(kMeshIndex, false);
+    const ModelBodies bodies = c_->hand[0].model->bodies();
+    if (bodies.active < bodies.count) governed_structure_ = bodies.structure[bodies.active];
     arena_.seal();
 }
 

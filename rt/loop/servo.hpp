@@ -94,6 +94,8 @@ private:
     void take_model(CycleState& c) noexcept TACT_RT;
     void take_mail(CycleState& c) noexcept TACT_RT;
     void obey(CycleState& c, const ServoOrder& order) noexcept TACT_RT;
+    [[nodiscard]] bool order_bodies(CycleState& c, const ServoOrder& order) noexcept TACT_RT;
+    void tell_bodies(CycleState& c, const ModelBodies& before) noexcept TACT_RT;
     void acknowledge(const ServoOrder& order, CommandResult result) noexcept TACT_RT;
     void answer_state_order(CycleState& c, RunState before) noexcept TACT_RT;
     void note_fault(const CycleState& c) noexcept TACT_RT;
@@ -127,6 +129,7 @@ private:
     bool health_due_ = false;
     bool stopping_ = false, finished_ = false, dry_ = false;
     Instant health_at_{}, overrun_said_at_{};
+    std::uint16_t governed_structure_ = 0;  // whose knob the governor has
     std::uint64_t page_faults_ = 0;
     std::uint32_t schedule_flags_ = 0;
 

@@ -7,6 +7,48 @@ namespace {
 
 constexpr int kOrdersPerCycle = 4;
 
+ModelOrder model_order(const ServoOrder& order) noexcept {
+    using Kind = ModelOrder::Kind;
+    ModelOrder o;
+    o.body = order.body;
+    o.on = order.value != 0.0;
+    o.T_model_body = {Vec3(order.pos_model_m), Quat(order.quat_model_body_xyzw)};
+    o.kind = Kind::option;
+    switch (static_cast<CommandKind>(order.kind)) {
+        case CommandKind::select_body:
+            o.kind = Kind::select;
+            break;
+        case CommandKind::fix_body:
+            o.kind = Kind::fix;
+            break;
+        case CommandKind::place_body:
+            o.kind = Kind::place;
+            break;
+        case CommandKind::add_body:
+            o.kind = Kind::add;
+            break;
+        case CommandKind::remove_body:
+            o.kind = Kind::remove;
+            break;
+        case CommandKind::set_clash:
+            o.option = kOptionClash;
+            break;
+        case CommandKind::set_subtraction:
+            o.option = kOptionSubtraction;
+            break;
+        case CommandKind::set_laplacian:
+            o.option = kOptionLaplacian;
+            break;
+        default:  // no order to a model: no option, and refused
+            break;
+    }
+    return o;
+}
+
+std::uint32_t id_in_hand(const ModelBodies& b) noexcept {
+    return b.active < b.count ? b.id[b.active] : ModelBodies::kNone;
+}
+
 bool concerns_state(CommandKind kind) noexcept {
     return kind == CommandKind::arm || kind == CommandKind::disarm || kind == CommandKind::reset_fault;
 }
@@ -71,14 +113,49 @@ void Servo::obey(CycleState& c, const ServoOrder& order) noexcept {
             return answer(true);
         case CommandKind::none:  // refused by the house thread, which says why in the index
             return acknowledge(order, static_cast<CommandResult>(order.index));
-        default:  // the house thread passes on nothing else
-            break;
+        case CommandKind::select_body:
+        case CommandKind::fix_body:
+        case CommandKind::place_body:
+        case CommandKind::add_body:
+        case CommandKind::remove_body:
+        case CommandKind::set_clash:
+        case CommandKind::set_subtraction:
+        case CommandKind::set_laplacian:
+            return acknowledge(order,
+                               order_bodies(c, order) ? CommandResult::done : CommandResult::refused_value);
     }
     if (concerns_state(kind)) {
         c.order = order;
     } else {
         acknowledge(order, CommandResult::unknown);
     }
+}
+
+// The model knows which bodies there are, and refuses others. A body of another structure is another load: it
+// enters at a level that fits, and the governor goes on from there.
+bool Servo::order_bodies(CycleState& c, const ServoOrder& order) noexcept {
+    ForceModel& model = *c.hand[0].model;
+    const ModelBodies before = model.bodies();
+    if (!model.order(model_order(order))) return false;
+    tell_bodies(c, before);
+    return true;
+}
+
+// What changed is said and, where the hand holds another structure, governed anew.
+void Servo::tell_bodies(CycleState& c, const ModelBodies& before) noexcept {
+    const ForceModel& model = *c.hand[0].model;
+    const ModelBodies now = model.bodies();
+    if (now.placements != before.placements || now.options != before.options)
+        say(EventCode::bodies_changed, static_cast<double>(now.count), static_cast<double>(now.options));
+    if (id_in_hand(now) == id_in_hand(before)) return;
+    say(EventCode::body_selected, static_cast<double>(id_in_hand(now)),
+        static_cast<double>(model.items(1.0F)));
+    if (now.active < now.count && now.structure[now.active] != governed_structure_) {
+        governed_structure_ = now.structure[now.active];
+        governor_.replace(kForceIndex, model.knob());
+    }
+    ++levels_sequence_;
+    publish_levels(c);
 }
 
 // After the state machine has spoken.
@@ -100,19 +177,26 @@ void Servo::acknowledge(const ServoOrder& order, CommandResult result) noexcept 
     last_result_ = result;
 }
 
-// At a cycle boundary; the new model enters with zero force and the ramp from its beginning.
+// At a cycle boundary. A model that was rebuilt goes on where the old one was; any other enters with zero
+// force and the ramp from its beginning.
 void Servo::take_model(CycleState& c) noexcept {
     ForceModel* const fresh = mail_.model.take();
     if (fresh == nullptr) return;
     HandCycle& h = c.hand[0];
     ForceModel* const old = h.model;
+    const ModelBodies before = old->bodies();
     h.model = fresh;
-    h.model->reset(h.tool);
-    h.chain.restart();
-    governor_.replace(kForceIndex, fresh->knob());
+    if (!fresh->adopt(*old)) {
+        fresh->reset(h.tool);
+        h.chain.restart();
+        governor_.replace(kForceIndex, fresh->knob());
+        const ModelBodies now = fresh->bodies();
+        if (now.active < now.count) governed_structure_ = now.structure[now.active];
+        ++levels_sequence_;
+    }
     mail_.model.give_back(old);
-    ++levels_sequence_;
     say(EventCode::model_swapped, 0.0, 0.0);
+    tell_bodies(c, before);
 }
 
 void Servo::note_fault(const CycleState& c) noexcept {

@@ -18,6 +18,13 @@ void put(float (&to)[3], const Vec3& from) noexcept {
 void put(double (&to)[4], const Quat& from) noexcept {
     for (int i = 0; i < 4; ++i) to[i] = from.coeffs()[i];
 }
+// The topic and the model say the same things in the same numbers; neither knows the other.
+static_assert(ModelBodies::kMax == kBodiesMax && ModelBodies::kNone == kNoBody &&
+              ModelBodies::kFixed == kBodyFixed);
+static_assert(static_cast<int>(kOptionClash) == static_cast<int>(kDockingClash) &&
+              static_cast<int>(kOptionSubtraction) == static_cast<int>(kDockingSubtraction) &&
+              static_cast<int>(kOptionLaplacian) == static_cast<int>(kDockingLaplacian));
+
 std::int32_t cut_ns(Duration d) noexcept {
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(d.count(), 0, 2'000'000'000));
 }
@@ -74,11 +81,15 @@ void Servo::publish_tools(const CycleState& c) noexcept {
     b.cycle = c.cycle;
     b.count = std::min(bodies.count, static_cast<std::uint32_t>(kBodiesMax));
     b.active = bodies.active;
+    b.grips = bodies.grips;
+    b.placements = bodies.placements;
+    b.options = bodies.options;
     for (std::uint32_t i = 0; i < b.count; ++i) {
         put(b.body[i].pos_model_m, bodies.T_model_body[i].p_m);
         put(b.body[i].quat_model_body_xyzw, bodies.T_model_body[i].q);
-        b.body[i].id = i + 1;
-        b.body[i].structure = static_cast<std::uint16_t>(i);
+        b.body[i].id = bodies.id[i];
+        b.body[i].structure = bodies.structure[i];
+        b.body[i].flags = bodies.flags[i];
     }
     region_.bodies.publish(b);
 }

@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "rt/force/force_model.hpp"
 
@@ -199,6 +200,93 @@ TEST_P(ForceModelContract, PosesThatAreNotPosesGiveNoForceAndAreForgotten) {
     EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
 }
 
+TEST_P(ForceModelContract, NoOrderMakesTheForceStepAndWhatComesIntoTheHandEntersAtZero) {
+    const ModelBodies bodies = (settle(GetParam().touch), model_->bodies());
+    if (bodies.count == 0) GTEST_SKIP() << "it has no bodies";
+    using Kind = ModelOrder::Kind;
+    ModelOrder place, let_go, take, fix, free, add;
+    place.kind = Kind::place;
+    place.T_model_body = bodies.T_model_body[bodies.active];
+    fix.kind = free.kind = Kind::fix;
+    fix.on = true;
+    place.body = take.body = fix.body = free.body = bodies.id[bodies.active];
+    let_go.body = ModelBodies::kNone;
+    add = place;
+    add.kind = Kind::add;
+    add.body = bodies.structure[bodies.active];
+    StepResult before = model_->step(at(GetParam().touch), budget(1.0F));
+    for (const ModelOrder& order : {place, let_go, take, fix, free, add}) {
+        const bool obeyed = model_->order(order);
+        double least_n = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < kSettle; ++i) {
+            const StepResult now = model_->step(at(GetParam().touch), budget(1.0F));
+            ASSERT_LT(difference_n(now, before), GetParam().step_n_max) << "step " << i;
+            least_n = std::min(least_n, now.wrench_world.force_n.norm());
+            before = now;
+        }
+        if (obeyed && order.kind != Kind::add) {
+            EXPECT_LT(least_n, 1e-3) << static_cast<int>(order.kind);
+        }
+        const bool felt = order.kind != Kind::fix ? order.body != ModelBodies::kNone : !order.on;
+        if (obeyed && felt) {
+            EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
+        }
+    }
+}
+
+TEST_P(ForceModelContract, ARefusedOrderChangesNothing) {
+    (void)settle(GetParam().touch);
+    const ModelBodies before = model_->bodies();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<ModelOrder> absurd(8);
+    using Kind = ModelOrder::Kind;
+    absurd[0].kind = Kind::select, absurd[0].body = 0;
+    absurd[1].kind = Kind::select, absurd[1].body = 12345;
+    absurd[2].kind = Kind::fix, absurd[2].body = 12345;
+    absurd[3].kind = Kind::place, absurd[3].body = before.id[0], absurd[3].T_model_body.p_m.y() = nan;
+    absurd[4].kind = Kind::place, absurd[4].body = before.id[0], absurd[4].T_model_body.p_m.x() = 1e300;
+    absurd[5].kind = Kind::add, absurd[5].T_model_body.q = Quat(0.0, 0.0, 0.0, 0.0);
+    absurd[6].kind = Kind::remove, absurd[6].body = 12345;
+    absurd[7].kind = Kind::option, absurd[7].option = 1U << 31U;
+    const StepResult felt = model_->step(at(GetParam().touch), budget(1.0F));
+    for (const ModelOrder& order : absurd) EXPECT_FALSE(model_->order(order)) << static_cast<int>(order.kind);
+    const ModelBodies after = model_->bodies();
+    EXPECT_EQ(after.count, before.count);
+    EXPECT_EQ(after.active, before.active);
+    EXPECT_EQ(after.id, before.id);
+    EXPECT_EQ(after.placements, before.placements);
+    EXPECT_EQ(after.options_asked, before.options_asked);
+    EXPECT_EQ(difference_n(model_->step(at(GetParam().touch), budget(1.0F)), felt), 0.0);
+    EXPECT_FALSE(model_->stale());
+}
+
+TEST_P(ForceModelContract, ARebuiltModelGoesOnWhereTheOldOneWas) {
+    StepResult before = settle(GetParam().touch);
+    const auto rebuilt = model_->rebuild(model_->bodies());
+    if (rebuilt == nullptr) GTEST_SKIP() << "there is nothing to rebuild";
+    before = model_->step(at(GetParam().touch), budget(1.0F));  // it goes on meanwhile
+    ASSERT_TRUE(rebuilt->adopt(*model_));
+    const ModelBodies old = model_->bodies();
+    double least_n = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kSettle; ++i) {
+        const StepResult now = rebuilt->step(at(GetParam().touch), budget(1.0F));
+        ASSERT_LT(difference_n(now, before), GetParam().step_n_max) << "step " << i;
+        least_n = std::min(least_n, now.wrench_world.force_n.norm());
+        before = now;
+    }
+    EXPECT_LT(least_n, 1e-3);
+    EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
+    const ModelBodies now = rebuilt->bodies();
+    EXPECT_EQ(now.id, old.id);
+    EXPECT_EQ(now.active, old.active);
+    EXPECT_EQ(now.grips, old.grips);  // the same gesture
+    for (std::uint32_t b = 0; b < old.count; ++b) {
+        EXPECT_LT((now.T_model_body[b].p_m - old.T_model_body[b].p_m).norm(),
+                  1e-9 * (1e-9 + old.T_model_body[b].p_m.norm()));
+        EXPECT_LT(now.T_model_body[b].q.angularDistance(old.T_model_body[b].q), 1e-7);
+    }
+}
+
 TEST_P(ForceModelContract, BodiesAreCountedAndPlaced) {
     (void)settle(GetParam().touch);
     const ModelBodies bodies = model_->bodies();
@@ -206,7 +294,11 @@ TEST_P(ForceModelContract, BodiesAreCountedAndPlaced) {
     if (bodies.count > 0) {
         EXPECT_LT(bodies.active, bodies.count);
     }
-    for (std::uint32_t b = 0; b < bodies.count; ++b) EXPECT_TRUE(bodies.T_model_body[b].finite());
+    for (std::uint32_t b = 0; b < bodies.count; ++b) {
+        EXPECT_TRUE(bodies.T_model_body[b].finite());
+        EXPECT_GT(bodies.id[b], 0U);
+        for (std::uint32_t other = 0; other < b; ++other) EXPECT_NE(bodies.id[b], bodies.id[other]);
+    }
 }
 
 }  // namespace tact

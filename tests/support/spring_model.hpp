@@ -45,6 +45,7 @@ public:
         ModelBodies bodies;
         bodies.count = 1;
         bodies.T_model_body[0] = place_;
+        bodies.id[0] = 1;
         return bodies;
     }
 

@@ -19,6 +19,7 @@ FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "ipc/asse
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
     r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::bodies\(\) const$"
+    r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up)\(\)( const)?$|::items\(float\) const$"
     r"|::read\(tact::DeviceSample&, .*\)$|::write\(tact::DeviceCommand const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("
     r"|^tact::density_sum_\w+\(")

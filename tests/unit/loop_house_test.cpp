@@ -51,17 +51,69 @@ TEST(House, refuses_what_cannot_be_meant) {
     EXPECT_EQ(check_command(endless, kPaths).result, CommandResult::refused_value);
 }
 
+TEST(House, passes_orders_to_bodies_whose_places_are_possible) {
+    CommandTopic place = command(CommandKind::place_body);
+    place.body = 3;
+    place.pos_model_m[1] = 2e-9;
+    place.quat_model_body_xyzw[3] = 1.003;
+    const CheckedCommand checked = check_command(place, kPaths);
+    ASSERT_EQ(checked.result, CommandResult::none);
+    EXPECT_EQ(checked.order.body, 3U);
+    EXPECT_EQ(checked.order.pos_model_m[1], 2e-9);
+    EXPECT_DOUBLE_EQ(checked.order.quat_model_body_xyzw[3], 1.0);  // made a unit quaternion
+    CommandTopic select = command(CommandKind::select_body);
+    select.body = kNoBody;
+    EXPECT_EQ(check_command(select, kPaths).result, CommandResult::none);
+    CommandTopic add = place;
+    add.kind = static_cast<std::uint16_t>(CommandKind::add_body);
+    add.body = 0;
+    EXPECT_EQ(check_command(add, kPaths).result, CommandResult::none);
+    for (const CommandKind kind :
+         {CommandKind::set_clash, CommandKind::set_subtraction, CommandKind::set_laplacian})
+        EXPECT_EQ(check_command(command(kind, 1.0), kPaths).result, CommandResult::none);
+}
+
+TEST(House, refuses_orders_to_bodies_that_no_scene_can_have) {
+    const auto judged = [](CommandKind kind, std::uint32_t body, double value = 0.0) {
+        CommandTopic c = command(kind, value);
+        c.body = body;
+        c.quat_model_body_xyzw[3] = 1.0;
+        return check_command(c, kPaths).result;
+    };
+    EXPECT_EQ(judged(CommandKind::select_body, 0), CommandResult::refused_value);
+    for (const CommandKind kind : {CommandKind::fix_body, CommandKind::place_body, CommandKind::remove_body})
+        for (const std::uint32_t id : {0U, kNoBody})
+            EXPECT_EQ(judged(kind, id), CommandResult::refused_value);
+    EXPECT_EQ(judged(CommandKind::fix_body, 1, 0.5), CommandResult::refused_value);
+    EXPECT_EQ(judged(CommandKind::add_body, 65536), CommandResult::refused_value);
+    EXPECT_EQ(judged(CommandKind::set_laplacian, 0, -1.0), CommandResult::refused_value);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CommandTopic place = command(CommandKind::place_body);
+    place.body = 1;
+    for (const double w : {0.0, nan, 1.2, 0.9, 1e300}) {
+        place.quat_model_body_xyzw[3] = w;
+        EXPECT_EQ(check_command(place, kPaths).result, CommandResult::refused_value) << w;
+    }
+    place.quat_model_body_xyzw[3] = 1.0;
+    for (const double x : {nan, HUGE_VAL, -1e4}) {
+        place.pos_model_m[0] = x;
+        EXPECT_EQ(check_command(place, kPaths).result, CommandResult::refused_value) << x;
+    }
+}
+
 TEST(House, garbage_of_any_bytes_is_judged_without_harm_and_what_passes_is_in_range) {
     std::mt19937_64 random(3);
     for (int i = 0; i < 20000; ++i) {
         CommandTopic c{};
         auto* const bytes = reinterpret_cast<unsigned char*>(&c);
         for (std::size_t k = 0; k < sizeof c; ++k) bytes[k] = static_cast<unsigned char>(random());
-        c.kind = static_cast<std::uint16_t>(c.kind % 12);
+        c.kind = static_cast<std::uint16_t>(c.kind % 18);
         const CheckedCommand checked = check_command(c, kPaths);
         if (checked.result == CommandResult::none) {
             ASSERT_LT(checked.order.index, 2U);
             ASSERT_TRUE(std::isfinite(checked.order.value));
+            ASSERT_TRUE(Vec3(checked.order.pos_model_m).allFinite());
+            ASSERT_NEAR(Quat(checked.order.quat_model_body_xyzw).norm(), 1.0, 1e-9);
         }
         LoadTopic load{};
         auto* const load_bytes = reinterpret_cast<unsigned char*>(&load);

@@ -4,15 +4,20 @@
 //           and torque are its derivatives, so the field is conservative at every level of the knob.
 // Grip      the tool moves the body's centre of mass, the tool's rotation turns the body about it; so the
 //           wrench at the tool's origin is force and torque about the centre of mass. The grip is taken at
-//           reset() and when the clutch (button bit 0) is released; with the clutch held the body stays and
-//           the tool moves alone.
+//           reset(), when the clutch (button bit 0) is released, and when another body, or the same one
+//           elsewhere, comes into the hand. With the clutch held the body stays and the tool moves alone; so
+//           it does with a fixed body in the hand, of which nothing is felt.
+// Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
+//           fade to zero; only then does the new one fade in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
 // Frames    wrench in world, bodies in model. SceneMeta maps one to the other.
 // Thread    constructed anywhere (may throw StartupError); then one thread, normally the servo. No
-// allocation. Fails by  out_of_range: a pose that is not finite gives no force and leaves the bodies where
-//           they are; out_of_time: the wrench is that of a smaller level.
+//           allocation. rebuild() alone may run on another thread at the same time.
+// Fails by  out_of_range: a pose that is not finite gives no force and leaves the bodies where they are;
+//           out_of_time: the wrench is that of a smaller level.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -22,7 +27,10 @@
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
-#include "rt/force/docking/point_set.hpp"
+#include "rt/force/docking/docking_bodies.hpp"
+#include "rt/force/docking/docking_parts.hpp"
+#include "rt/force/docking/error_audit.hpp"
+#include "rt/force/docking/felt_density.hpp"
 #include "rt/force/force_model.hpp"
 
 namespace tact {
@@ -42,59 +50,77 @@ public:
     DockingModel(const SceneMeta& meta, const DensityGrid& grid, const std::vector<Structure>& structures,
                  const std::vector<Codebook>& codebooks, const DockingSettings& settings);
 
-    [[nodiscard]] KnobSpec knob() const noexcept override;
-    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept override;
+    [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
-    [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_; }
+    [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_.list(); }
+    bool order(const ModelOrder& order) noexcept TACT_RT override;
+    [[nodiscard]] bool stale() const noexcept TACT_RT override;
+    [[nodiscard]] std::unique_ptr<ForceModel> rebuild(const ModelBodies& bodies) const override;
+    bool adopt(const ForceModel& old) noexcept TACT_RT override;
+    void give_up() noexcept TACT_RT override;
 
     // The wrench on the active body, were it at this place: what step() shows once its ramp is over.
     [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
     // Cost and error of a level before it is computed.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
 
-    [[nodiscard]] const DensityMap& map() const { return map_; }
-    [[nodiscard]] const SceneMeta& meta() const { return meta_; }
+    [[nodiscard]] const DensityMap& map() const { return felt_->map; }
+    [[nodiscard]] const SceneMeta& meta() const { return parts_->meta; }
     [[nodiscard]] double energy_j_per_sigma() const { return energy_j_per_sigma_; }
-    [[nodiscard]] const Pose& home() const { return bodies_home_.T_model_body[bodies_.active]; }
+    [[nodiscard]] Pose home() const { return parts_->structures[bodies_.structure()].home(); }
+    [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
     // Steps over which the force fades in after a grip, and out when the clutch is pressed.
     static constexpr int kRampSteps = 256;
 
 private:
-    struct Level {
-        PointSet points;
-        Duration cost{0};      // measured at construction
-        double error_n = 0.0;  // estimated bound of the force difference to all atoms, see calibrate()
-    };
-    struct Body {
-        std::vector<Level> levels;  // the last is all atoms
-    };
     struct Plan {  // levels to be summed for a fidelity: (1 - blend) * lower + blend * upper
         std::size_t lower, upper;
         double blend;
     };
 
-    void add_body(const Structure& structure, const Codebook& codebook);
-    void calibrate(Body& body, const Pose& home);
-    [[nodiscard]] Plan plan(const Body& body, float fidelity) const noexcept;
-    [[nodiscard]] bool sum_level(const Level& level, const Pose& T_model_body, Instant deadline,
+    DockingModel(const DockingModel& like, const ModelBodies& bodies);  // rebuilt
+
+    [[nodiscard]] double newtons_per_gradient() const noexcept {
+        return energy_j_per_sigma_ / parts_->meta.world_per_model;
+    }
+    [[nodiscard]] const std::vector<PointSet>& levels() const noexcept {
+        return parts_->levels[bodies_.structure()];
+    }
+    [[nodiscard]] const std::vector<LevelFigures>& figures() const noexcept {
+        return felt_->figures[bodies_.structure()];
+    }
+    [[nodiscard]] double error_n(std::size_t level) const noexcept;
+    [[nodiscard]] Plan plan(float fidelity) const noexcept;
+    [[nodiscard]] bool sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
                                  DensitySums& sums) const noexcept;
     [[nodiscard]] Wrench wrench(const DensitySums& sums) const noexcept;
+    [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
+    void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
+    void fade(const Wrench& shown) noexcept;
+    void let_go(const Wrench& shown) noexcept;
+    bool choose_density() noexcept;
 
-    SceneMeta meta_;
+    std::shared_ptr<const DockingParts> parts_;
     double energy_j_per_sigma_;
-    DensityMap map_;
-    std::vector<Body> parts_;
-    ModelBodies bodies_, bodies_home_;
+    // With nothing subtracted, and as ordered when this model was built: maybe the same. What is felt is one
+    // of the two, so that a step can go from one to the other.
+    std::shared_ptr<const FeltDensity> whole_, built_;
+    const FeltDensity* felt_;
+    DockingBodies bodies_;
     // The grip: translation from tool to centre of mass (world axes, it does not turn with the tool), and
     // rotation.
     Vec3 com_from_tool_world_m_ = Vec3::Zero();
     Quat q_tool_body_ = Quat::Identity();
-    int ramp_ = 0;          // 0: no force, kRampSteps: all of it
-    bool clutched_ = true;  // until the first good step, which takes the grip where the tool then is
+    int ramp_ = 0;            // 0: no force, kRampSteps: all of it
+    bool clutched_ = true;    // until the first good step, which takes the grip where the tool then is
+    Wrench shown_, leaving_;  // of the last step; of what was in the hand before, on its way to zero
+    ErrorAudit audit_;
+    std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
 };
 
 // Reads the scene's map, structures and codebooks.
