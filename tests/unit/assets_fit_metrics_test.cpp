@@ -96,6 +96,7 @@ TEST(FitMetrics, AgreesWithTheNaiveSumsWithinOnePercent) {
     EXPECT_NEAR(result.cc_zero, uv / std::sqrt(uu * vv), 0.01);
     EXPECT_NEAR(result.cc_mean, (uv - u * v / n) / std::sqrt((uu - u * u / n) * (vv - v * v / n)), 0.01);
     EXPECT_NEAR(static_cast<double>(result.region_voxels), n, 0.01 * n);
+    EXPECT_NEAR(result.overlap, uv, 0.01 * std::abs(uv));
 }
 
 TEST(FitMetrics, AMapOfTheStructureItselfCorrelatesFully) {
@@ -120,6 +121,38 @@ TEST(FitMetrics, SeveralBodiesAreSimulatedTogether) {
     EXPECT_NEAR(fit_metrics(grid, placed, settings_10a()).cc_mean, 1.0, 1e-3);
 }
 
+TEST(FitMetrics, EachBodyHasTheNumbersThatItHasAlone) {
+    const Structure s = atoms(40, 8), other = atoms(25, 9);
+    DensityGrid grid = empty_grid();
+    std::mt19937 random(10);
+    std::normal_distribution<float> noise(5.0F, 8.0F);
+    for (float& v : grid.values) v = noise(random);
+    const std::array<PlacedStructure, 3> placed{
+        PlacedStructure{&s, {Vec3(-9 * kA, 0, 0), Quat::Identity()}},
+        PlacedStructure{&other, {Vec3(9 * kA, 0, 2 * kA), Quat::Identity()}},
+        PlacedStructure{&s, {Vec3(0, 1e-6, 0), Quat::Identity()}}};  // off the map
+    FitSettings settings = settings_10a();
+    settings.contour = 5.0;
+    const FitOfBodies all = fit_of_bodies(grid, placed, settings);
+    ASSERT_EQ(all.body.size(), 3U);
+    double inside = 0.0, density = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const FitMetrics alone = fit_metrics(grid, {&placed[i], 1}, settings);
+        EXPECT_EQ(all.body[i].cc_zero, alone.cc_zero);
+        EXPECT_EQ(all.body[i].cc_mean, alone.cc_mean);
+        EXPECT_EQ(all.body[i].overlap, alone.overlap);
+        EXPECT_EQ(all.body[i].region_voxels, alone.region_voxels);
+        EXPECT_EQ(all.body[i].mean_density, alone.mean_density);
+        inside += alone.fraction_inside * static_cast<double>(alone.atoms);
+        density += alone.mean_density * static_cast<double>(alone.atoms);
+    }
+    EXPECT_EQ(all.all.atoms, 105U);
+    EXPECT_NEAR(all.all.fraction_inside, inside / 105.0, 1e-12);
+    EXPECT_NEAR(all.all.mean_density, density / 105.0, 1e-9);
+    EXPECT_EQ(all.body[2].region_voxels, 0U);
+    EXPECT_EQ(all.body[2].cc_mean, 0.0);
+}
+
 TEST(FitMetrics, MeanDensityAndFractionInsideAreThoseOfTheAtoms) {
     DensityGrid grid = empty_grid();
     for (std::uint32_t z = 0; z < grid.size[2]; ++z) {
@@ -138,10 +171,13 @@ TEST(FitMetrics, MeanDensityAndFractionInsideAreThoseOfTheAtoms) {
     settings.sigma = 2.0;
     settings.contour = 12.0;
     const FitMetrics result = fit(grid, s, Pose{}, settings);
-    EXPECT_NEAR(result.mean_density_sigma, (0.25 * 11.0 + 0.75 * 14.0 - 3.0) / 2.0, 1e-5);
+    EXPECT_NEAR(result.mean_density, 12.5, 1e-5);
+    EXPECT_NEAR(result.mean_density_sigma, (12.5 - 3.0) / 2.0, 1e-5);
+    EXPECT_EQ(result.atoms, 2U);
     EXPECT_EQ(result.fraction_inside, 0.5);
     settings.sigma = 0.0;  // then the grid's own mean 12.5 and deviation sqrt((26^2 - 1) / 12)
-    EXPECT_NEAR(fit(grid, s, Pose{}, settings).mean_density_sigma, (13.25 - 12.5) / std::sqrt(675.0 / 12.0),
+    s.x_m[0] = s.x_m[1];
+    EXPECT_NEAR(fit(grid, s, Pose{}, settings).mean_density_sigma, (14.0 - 12.5) / std::sqrt(675.0 / 12.0),
                 1e-5);
 }
 
