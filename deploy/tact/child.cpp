@@ -124,6 +124,15 @@ Child::~Child() {
     }
 }
 
+// A stopped child would never see the request. One that runs is not sent SIGCONT: that would take back a
+// SIGSTOP on its way to it, such as the one by which a debugger, or a leak checker at exit, attaches.
+void Child::wake() const {
+    siginfo_t halted{};
+    if (waitid(P_PID, static_cast<id_t>(pid_), &halted, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
+        halted.si_pid == pid_)
+        kill(pid_, SIGCONT);
+}
+
 const std::optional<Ending>& Child::poll() {
     if (ending_) return ending_;
     int status = 0;
@@ -132,7 +141,9 @@ const std::optional<Ending>& Child::poll() {
                          .number = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status),
                          .asked = stop_at_.has_value(),
                          .forced = killed_};
-    } else if (stop_at_ && !killed_ && Monotonic::now() >= *stop_at_ + grace_) {
+    } else if (stop_at_ && !killed_) {
+        wake();
+        if (Monotonic::now() < *stop_at_ + grace_) return ending_;
         killed_ = true;
         kill(-pid_, SIGKILL);
     }
@@ -143,7 +154,7 @@ void Child::stop() {
     if (poll() || stop_at_) return;
     stop_at_ = Monotonic::now();
     kill(pid_, SIGTERM);
-    kill(pid_, SIGCONT);  // a stopped child would never see the request
+    wake();
 }
 
 const std::optional<Ending>& Child::wait(Duration limit) {

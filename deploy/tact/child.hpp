@@ -3,8 +3,8 @@
 // Own group    the child is the leader of its own process group, so that a Ctrl-C at the terminal reaches
 //              tact alone, which then ends its children in order. If tact itself is killed, the kernel sends
 //              them SIGTERM.
-// Ending       stop() asks with SIGTERM; poll() follows with SIGKILL once the grace is over. A child is
-//              reaped once and its ending kept.
+// Ending       stop() asks with SIGTERM; poll() wakes a child that is halted, and follows with SIGKILL once
+//              the grace is over. A child is reaped once and its ending kept.
 // Thread       all on one thread; the program must be single-threaded when a child is started.
 #pragma once
 
@@ -49,12 +49,14 @@ public:
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] pid_t pid() const { return pid_; }
-    // The ending, once there is one. Also sends the SIGKILL that is due after stop().
+    // The ending, once there is one. Also sends the SIGCONT and the SIGKILL that are due after stop().
     const std::optional<Ending>& poll();
     void stop();                                        // SIGTERM now; again: nothing
     const std::optional<Ending>& wait(Duration limit);  // polls until ended or the time is over
 
 private:
+    void wake() const;
+
     std::string name_;
     Duration grace_;
     pid_t pid_ = -1;

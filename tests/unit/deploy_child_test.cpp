@@ -16,15 +16,42 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
+// Long, as a machine may stand still for seconds; reached only when something is wrong.
+constexpr seconds kPatience(60);
+
 ChildSettings shell(const std::string& script) {
     ChildSettings s;
     s.arguments = {"-c", script};
+    s.grace = kPatience;
     return s;
+}
+
+ChildSettings long_sleep() {
+    ChildSettings s;
+    s.arguments = {"600"};
+    s.grace = kPatience;
+    return s;
+}
+
+template <class F>
+bool wait_for(F&& happened) {
+    const Instant end = Monotonic::now() + kPatience;
+    while (!happened() && Monotonic::now() < end) usleep(2000);
+    return happened();
+}
+
+// The letter of /proc/PID/stat: T stopped, t stopped by a tracer, Z dead.
+char state_of(pid_t pid) {
+    std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+    std::string text;
+    std::getline(in, text);
+    const auto name_end = text.rfind(')');
+    return name_end == std::string::npos ? '?' : text.at(name_end + 2);
 }
 
 TEST(Child, an_exit_code_is_told_as_it_was) {
     Child child("sh", "/bin/sh", shell("exit 7"));
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_FALSE(ending->by_signal);
     EXPECT_EQ(ending->number, 7);
@@ -34,7 +61,7 @@ TEST(Child, an_exit_code_is_told_as_it_was) {
 
 TEST(Child, a_child_that_is_killed_is_told_by_its_signal) {
     Child child("sh", "/bin/sh", shell("kill -9 $$"));
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_TRUE(ending->by_signal);
     EXPECT_EQ(ending->number, SIGKILL);
@@ -43,10 +70,10 @@ TEST(Child, a_child_that_is_killed_is_told_by_its_signal) {
 }
 
 TEST(Child, stop_ends_a_child_that_would_run_on) {
-    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    Child child("sleep", "/bin/sleep", long_sleep());
     EXPECT_FALSE(child.poll());
     child.stop();
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_TRUE(ending->asked);
     EXPECT_EQ(ending->number, SIGTERM);
@@ -54,12 +81,43 @@ TEST(Child, stop_ends_a_child_that_would_run_on) {
 }
 
 TEST(Child, stop_reaches_a_child_that_was_halted) {
-    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    Child child("sleep", "/bin/sleep", long_sleep());
     kill(child.pid(), SIGSTOP);
+    ASSERT_TRUE(wait_for([&] { return state_of(child.pid()) == 'T'; }));
     child.stop();
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_EQ(ending->number, SIGTERM);
+}
+
+TEST(Child, stop_reaches_a_child_that_is_halted_only_afterwards) {
+    ScratchFolder scratch;
+    const auto mark = scratch.path() / "ready";
+    // It halts itself where it was asked to end, and ends once it is woken.
+    Child child(
+        "sh", "/bin/sh",
+        shell("trap 'kill -STOP $$; exit 5' TERM; : > " + mark.string() + "; while :; do sleep 0.01; done"));
+    ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(mark); }));
+    child.stop();
+    const auto& ending = child.wait(kPatience);
+    ASSERT_TRUE(ending);
+    EXPECT_EQ(ending->number, 5);
+    EXPECT_FALSE(ending->forced);
+}
+
+// A leak checker stops its own process at exit to look at it; SIGCONT would take that stop back.
+TEST(Child, stop_sends_nothing_but_the_request_to_a_child_that_runs) {
+    ScratchFolder scratch;
+    const auto ready = scratch.path() / "ready", woken = scratch.path() / "woken";
+    Child child("sh", "/bin/sh",
+                shell("asked=0; trap 'asked=1' TERM; trap ': > " + woken.string() + "' CONT; : > " +
+                      ready.string() + "; while [ $asked = 0 ]; do sleep 0.01; done; sleep 0.05; exit 5"));
+    ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(ready); }));
+    child.stop();
+    const auto& ending = child.wait(kPatience);
+    ASSERT_TRUE(ending);
+    EXPECT_EQ(ending->number, 5);
+    EXPECT_FALSE(std::filesystem::exists(woken));
 }
 
 TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace) {
@@ -68,10 +126,9 @@ TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace) {
     auto settings = shell("trap '' TERM; : > " + mark.string() + "; while :; do sleep 0.05; done");
     settings.grace = milliseconds(100);
     Child child("sh", "/bin/sh", settings);
-    for (int i = 0; i < 2000 && !std::filesystem::exists(mark); ++i) usleep(10000);
-    ASSERT_TRUE(std::filesystem::exists(mark));
+    ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(mark); }));
     child.stop();
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_TRUE(ending->forced);
     EXPECT_EQ(ending->number, SIGKILL);
@@ -95,15 +152,15 @@ TEST(Child, gets_the_environment_it_was_given_and_loses_what_is_emptied) {
     auto settings = shell("echo \"$TACT_TEST_NEW/${TACT_TEST_GONE-none}\" > " + out.string());
     settings.environment = {{"TACT_TEST_NEW", "here"}, {"TACT_TEST_GONE", ""}};
     Child child("sh", "/bin/sh", settings);
-    ASSERT_TRUE(child.wait(seconds(20)));
+    ASSERT_TRUE(child.wait(kPatience));
     EXPECT_EQ(read_small(out), "here/none\n");
 }
 
 TEST(Child, does_not_inherit_the_signals_that_tact_blocks) {
     const Signals blocked;
-    Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+    Child child("sleep", "/bin/sleep", long_sleep());
     kill(child.pid(), SIGINT);
-    const auto& ending = child.wait(seconds(20));
+    const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
     EXPECT_EQ(ending->number, SIGINT);
 }
@@ -111,7 +168,7 @@ TEST(Child, does_not_inherit_the_signals_that_tact_blocks) {
 TEST(Child, is_gone_when_its_object_is) {
     pid_t pid = 0;
     {
-        Child child("sleep", "/bin/sleep", {.arguments = {"600"}, .environment = {}, .cores = {}});
+        Child child("sleep", "/bin/sleep", long_sleep());
         pid = child.pid();
     }
     EXPECT_EQ(kill(pid, 0), -1);
@@ -120,7 +177,7 @@ TEST(Child, is_gone_when_its_object_is) {
 TEST(Signals, a_request_to_end_is_taken_and_a_dead_child_only_wakes) {
     Signals signals;
     Child child("true", "/bin/true", {});
-    ASSERT_TRUE(child.wait(seconds(20)));
+    ASSERT_TRUE(child.wait(kPatience));
     EXPECT_EQ(signals.wait(0), 0);
     kill(getpid(), SIGTERM);
     EXPECT_EQ(signals.wait(1000), SIGTERM);
