@@ -22,6 +22,7 @@ public:
         return !region_.empty();
     }  // there is a region to read, of now or of before
     [[nodiscard]] bool attached() const { return link_.attached(); }
+    [[nodiscard]] bool reached() const { return link_.reached(); }  // somebody serves the session
     [[nodiscard]] const RtRegion& region() const { return *region_; }
     [[nodiscard]] std::uint64_t generation() const { return region_.generation(); }
     [[nodiscard]] std::string status_text() const;  // what it waits for, or why a region was refused

@@ -18,14 +18,12 @@
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
 #include "ipc/base/error.hpp"
-#include "ipc/shm/session_path.hpp"
 
 namespace tact::launch {
 namespace {
 
-constexpr auto kAttachLimit = std::chrono::seconds(30);     // loading a large map takes seconds
-constexpr auto kWindowPatience = std::chrono::seconds(20);  // start of a window under software drawing
-constexpr auto kAnswerLimit = std::chrono::milliseconds(400);
+constexpr auto kAttachLimit = std::chrono::seconds(60);     // loading a large map takes seconds
+constexpr auto kWindowPatience = std::chrono::seconds(60);  // start of a window under software drawing
 constexpr auto kSampleEvery = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(1);
 constexpr int kHeaderEvery = 20;
@@ -63,14 +61,9 @@ public:
 
 private:
     void refuse_second() {
-        if (!std::filesystem::exists(session_paths(options_.session).socket)) return;
-        // Somebody left the socket, or serves it: a controller answers within some milliseconds.
-        const Instant end = Monotonic::now() + kAnswerLimit;
-        while (!observer_.attached() && Monotonic::now() < end) {
-            observer_.poll();
-            signals_.wait(10);
-        }
-        if (observer_.attached())
+        // Nobody accepts on a socket that a dead controller left; a living one need not have answered yet.
+        observer_.poll();
+        if (observer_.reached())
             throw StartupError("starting a run in session " + options_.session,
                                "a controller runs in it already",
                                "end that one, or give this run another name with --session");
@@ -82,6 +75,7 @@ private:
         rt.arguments = {facts_.scene.string(), "--session", options_.session,
                         options_.gui ? "--arm-with-gui" : "--arm"};
         rt.arguments.insert(rt.arguments.end(), options_.controller.begin(), options_.controller.end());
+        rt.grace = options_.grace;
         rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
         if (options_.gui) {
             ChildSettings gui;
@@ -92,7 +86,7 @@ private:
             if (options_.seconds > 0.0)
                 gui.arguments.insert(gui.arguments.end(), {"--seconds", std::to_string(options_.seconds)});
             gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
-            gui.grace = std::chrono::seconds(5);  // it may be writing the picture
+            gui.grace = options_.grace;
             gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
         }
         started_ = Monotonic::now();

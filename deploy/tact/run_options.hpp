@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "ipc/base/clock.hpp"
+
 namespace tact::launch {
 
 struct RunOptions {
@@ -16,9 +18,11 @@ struct RunOptions {
     std::filesystem::path json;
     std::filesystem::path out;  // folder for run.json, run.csv and run.png
     std::string session = "default";
-    std::string size = "1280x800";        // of the window
-    std::filesystem::path programs;       // folder of tact-rt and tact-gui; empty: beside tact
-    bool quiet = false;                   // no table
+    std::string size = "1280x800";   // of the window
+    std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: beside tact
+    bool quiet = false;              // no table
+    // From the request to end to SIGKILL; the window may be writing the picture.
+    Duration grace = std::chrono::seconds(10);
     std::vector<std::string> controller;  // options of tact-rt, in order
     std::vector<std::string> visual;      // options of tact-gui
 

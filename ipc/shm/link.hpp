@@ -61,6 +61,7 @@ public:
     };
     News poll();  // never blocks; retries a missing controller at most ten times a second
     [[nodiscard]] bool attached() const;
+    [[nodiscard]] bool reached() const;  // attached, or connected and the answer has not come yet
     [[nodiscard]] const std::string& status_text() const;  // "waiting for the controller of session ..."
 
 private:

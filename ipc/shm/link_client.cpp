@@ -139,6 +139,8 @@ LinkClient::News LinkClient::poll() {
 
 bool LinkClient::attached() const { return state_->step == State::Step::attached; }
 
+bool LinkClient::reached() const { return state_->step != State::Step::apart; }
+
 const std::string& LinkClient::status_text() const { return state_->status; }
 
 }  // namespace tact
