@@ -224,7 +224,7 @@ private:
 
 TEST(KillCampaign, whoever_dies_the_other_goes_on_and_a_new_controller_has_no_force_until_a_person_arms_it) {
     const char* const longer = std::getenv("TACT_CAMPAIGN_S");
-    const int seconds = longer != nullptr ? std::atoi(longer) : 10;
+    const int seconds = longer != nullptr ? std::atoi(longer) : 4;
     Campaign().run(std::chrono::seconds(std::clamp(seconds, 1, 86400)), 8);
 }
 

@@ -104,6 +104,7 @@ launch::ChildSettings settings_of(const Rig& rig, const std::vector<std::string>
                    "--priority",         "0"};
     s.arguments.insert(s.arguments.end(), more.begin(), more.end());
     s.output_fd = log_fd;
+    s.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang
     return s;
 }
 
@@ -234,9 +235,12 @@ CommandResult command(Visual& visual, Watch& watch, CommandKind kind, double val
 }
 
 bool bring_to_force(Visual& visual, Watch& watch) {
-    if (command(visual, watch, CommandKind::arm) != CommandResult::done) return false;
     return until([&] {
         visual.frame();
+        // Armed anew where a machine that stood still made the controller think that the process fell silent.
+        if (watch.state() == RunState::ready &&
+            command(visual, watch, CommandKind::arm) == CommandResult::none)
+            return false;
         return watch.state() == RunState::active && watch.force_n() > 0.01;
     });
 }
