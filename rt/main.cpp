@@ -202,12 +202,15 @@ int run(const Options& o, const Overrides& overrides) {
                                   .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
                                   .seed = o.seed};
     std::unique_ptr<ForceModel> model = load_docking_model(scene, docking);
+    // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
+    // ends the run in order. Static, as a signal may come after run() too.
+    static ServoMail mail;
+    House::catch_signals(mail);
     const std::unique_ptr<HapticDevice> device = driver.make(device_settings_from(config));
     const DeviceInfo info = device->open();
     ServoSettings settings = settings_from(config, driver);
     const HandParts hand{device.get(), model.get(), info};
 
-    ServoMail mail;
     ServoClock clock(duration_us(config.servo.spin_us));
     Servo servo({.clock = clock, .hands = {&hand, 1}, .region = *region, .mail = mail}, settings);
     // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
@@ -236,7 +239,6 @@ int run(const Options& o, const Overrides& overrides) {
                         .limit_processor_time = sleeps},
                        platform,
                        mail};
-    House::catch_signals(mail);
     prepare_process(thread.wish, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
