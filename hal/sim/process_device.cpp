@@ -25,6 +25,7 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(1);
 constexpr Duration kLostAfter = std::chrono::milliseconds(100);
+constexpr Duration kStartMax = std::chrono::seconds(30);    // of a busy machine
 constexpr Duration kOrphanLives = std::chrono::seconds(1);  // long enough for its watchdog to be seen
 
 // Plain words of sample and command, for Latest.
@@ -127,9 +128,10 @@ DeviceInfo ProcessDevice::open() {
     if (child_ == 0) live(settings_);
     // The first sample says that it lives.
     SampleWords first{};
-    for (int i = 0; i < 2000 && !shared_->sample.read(first); ++i) usleep(1000);
+    const Instant end = Monotonic::now() + kStartMax;
+    while (!shared_->sample.read(first) && Monotonic::now() < end) usleep(1000);
     if (first.sequence == 0) {
-        throw StartupError("starting the emulated device's process", "it gave no sample within 2 s",
+        throw StartupError("starting the emulated device's process", "it gave no sample within 30 s",
                            "free the processor");
     }
     return info;
