@@ -183,7 +183,7 @@ private:
     int finish() {
         if (x_) {
             x_->child().stop();
-            x_->child().wait(std::chrono::seconds(5));
+            x_->child().wait(std::chrono::seconds(10));
         }
         note("tact-rt", *rt_->poll());
         if (gui_) note("tact-gui", *gui_->poll());

@@ -110,6 +110,7 @@ XServer::XServer(const std::filesystem::path& scratch, int width, int height)
                               "GLX"};
         settings.output_fd = log_fd;
         settings.keep_fd = number[1];
+        settings.grace = std::chrono::seconds(10);
         child_.emplace("Xvfb", program, settings);
         close(log_fd);
         close(number[1]);

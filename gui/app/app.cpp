@@ -70,8 +70,10 @@ public:
         const Instant begun = Monotonic::now();
         for (bool last = false; !last;) {
             const Instant now = Monotonic::now();
+            // A picture is asked for to see the scene, so the time is not over before it is there.
+            const bool picture_waits = !options_.screenshot.empty() && loading_.valid();
             last = stop_signal != 0 || window_.close_wanted() ||
-                   (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds);
+                   (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
             frame(now, last && !options_.screenshot.empty());
             if (!last) clock_.pace(fps_max_);
         }

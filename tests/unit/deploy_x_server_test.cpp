@@ -17,7 +17,7 @@ TEST(XServer, several_start_at_once_each_with_a_number_of_its_own) {
         EXPECT_FALSE(x->child().poll());
         EXPECT_TRUE(std::filesystem::exists("/tmp/.X11-unix/X" + x->display().substr(1)));
         x->child().stop();
-        const auto& ending = x->child().wait(std::chrono::seconds(20));
+        const auto& ending = x->child().wait(std::chrono::seconds(60));
         ASSERT_TRUE(ending);
         EXPECT_FALSE(ending->forced);
     }

@@ -9,9 +9,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <thread>
 
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/x_server.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {
@@ -21,7 +22,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Long, as a loaded machine under sanitizers draws slowly; reached only when something is wrong.
-constexpr seconds kPatience(60);
+constexpr seconds kPatience(120);
 
 template <class F>
 bool wait_for(F&& happened) {
@@ -31,13 +32,6 @@ bool wait_for(F&& happened) {
         std::this_thread::sleep_for(milliseconds(2));
     }
     return false;
-}
-
-std::string in_path(const char* program) {
-    std::stringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
-    for (std::string folder; std::getline(folders, folder, ':');)
-        if (access((folder + "/" + program).c_str(), X_OK) == 0) return folder + "/" + program;
-    return {};
 }
 
 class Process {
@@ -81,28 +75,17 @@ private:
 class GuiWindow : public testing::Test {
 protected:
     void SetUp() override {
-        const std::string xvfb = in_path("Xvfb");
-        if (xvfb.empty()) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        if (launch::find_in_path("Xvfb").empty())
+            GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
         char name[] = "/tmp/tact-gui-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        unsetenv("WAYLAND_DISPLAY");
         // Graphics drivers and X libraries keep memory to the end on purpose.
         setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
-        int ends[2];
-        ASSERT_EQ(pipe(ends), 0);
-        x_server_ = std::make_unique<Process>(
-            std::vector<std::string>{xvfb, "-displayfd", std::to_string(ends[1]), "-screen", "0",
-                                     "800x600x24", "-nolisten", "tcp"},
-            folder_ + "/xvfb.log");
-        close(ends[1]);
-        std::string number;
-        char c = '\0';
-        while (read(ends[0], &c, 1) == 1 && c != '\n') number += c;
-        close(ends[0]);
-        if (number.empty()) GTEST_SKIP() << "Xvfb does not start: " << log("xvfb.log");
-        setenv("DISPLAY", (":" + number).c_str(), 1);
+        x_server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
+        for (const auto& [key, value] : x_server_->environment())
+            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
     }
     void TearDown() override {
         x_server_.reset();
@@ -144,7 +127,7 @@ protected:
     }
 
     std::string folder_;
-    std::unique_ptr<Process> x_server_;
+    std::unique_ptr<launch::XServer> x_server_;
     std::uint64_t checksum_ = 0;
     std::uint32_t vertices_ = 0;
 };
