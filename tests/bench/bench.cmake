@@ -11,7 +11,7 @@ function(tact_bench source)
         SYSTEM ${arg_SYSTEM} benchmark::benchmark benchmark::benchmark_main)
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
     add_test(NAME ${name} COMMAND ${name} --benchmark_min_time=0.001 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 120 LABELS bench)
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300 LABELS bench)
 endfunction()
 
 # One list per area, so that areas grow without touching each other.

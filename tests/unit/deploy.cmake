@@ -10,6 +10,6 @@ add_test(NAME deploy_run_script_test COMMAND tests/unit/deploy_run_script_test.s
 tact_test(unit/deploy_eval_test.cpp USES launch force bench_docking)
 if(TACT_GUI AND NOT TACT_FUZZ)
     add_test(NAME deploy_e2e_test COMMAND tests/unit/deploy_e2e_test.sh $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-    set_tests_properties(deploy_e2e_test PROPERTIES LABELS e2e TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+    set_tests_properties(deploy_e2e_test PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 endif()
 tact_test(unit/deploy_reproduce_test.cpp USES launch)

@@ -20,7 +20,7 @@ tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/r
     USES base topics assets hal force loop SYSTEM GTest::gtest GTest::gtest_main)
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 120)
+set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)
 
 # The process: signals, refusals, system calls of the servo thread.
 tact_program(write_small_scene SOURCES support/write_small_scene.cpp USES base assets)
@@ -28,4 +28,4 @@ set_target_properties(write_small_scene PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CM
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME rt_process_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/rt_safe/process_test.py
     ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} $<TARGET_FILE:write_small_scene>)
-set_tests_properties(rt_process_test PROPERTIES TIMEOUT 180)
+set_tests_properties(rt_process_test PROPERTIES TIMEOUT 600)
