@@ -22,6 +22,7 @@
 #include "hal/registry.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
+#include "ipc/assets/structure.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/base/units.hpp"
@@ -33,6 +34,7 @@
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
 #include "rt/loop/thread_setup.hpp"
+#include "rt/start_bodies.hpp"
 
 namespace {
 
@@ -44,6 +46,8 @@ struct Options {
     bool arm = false, arm_with_gui = false, check = false;
     double start_offset_a = 0.0, start_rotation_deg = 0.0;
     std::uint64_t seed = 1;
+    std::uint32_t copies = 1;
+    std::string poses;
     std::vector<std::string> levels;
 };
 
@@ -74,10 +78,22 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
     app.add_option("--core", v.core, "core of the servo thread; -1: chosen, -2: not pinned");
     app.add_option("--priority", v.priority, "FIFO priority; 0: ordinary scheduling")
         ->check(CLI::Range(0, 94));
-    app.add_option("--start-offset-a", o.start_offset_a, "body 0 starts so many angstroms from home")
-        ->check(CLI::Range(0.0, 1e4));
-    app.add_option("--start-rotation-deg", o.start_rotation_deg, "and turned by so many degrees")
-        ->check(CLI::Range(0.0, 180.0));
+    auto* offset = app.add_option("--start-offset-a", o.start_offset_a,
+                                  "the first body starts so many angstroms from home")
+                       ->check(CLI::Range(0.0, 1e4));
+    auto* rotation =
+        app.add_option("--start-rotation-deg", o.start_rotation_deg, "and turned by so many degrees")
+            ->check(CLI::Range(0.0, 180.0));
+    auto* copies =
+        app.add_option(
+               "--copies", o.copies,
+               "so many bodies of the first structure; those behind the first stand free about the map")
+            ->check(CLI::Range(1, static_cast<int>(ModelBodies::kMax)));
+    app.add_option("--poses", o.poses,
+                   "start with the bodies in this JSON file, as the report of a run lists them")
+        ->excludes(offset)
+        ->excludes(rotation)
+        ->excludes(copies);
     app.add_option("--seed", o.seed, "of that direction, and of the emulated hand");
     app.add_option("--force-scale", v.force_scale, "times the scene's own gain")->check(CLI::Range(0.0, 1e6));
     app.add_flag("--check", o.check, "read and check everything, then exit");
@@ -102,6 +118,20 @@ RtConfig configure(const Options& o, const Overrides& v) {
     c.device.hand_seed = static_cast<std::int64_t>(o.seed);
     check_config(c, "command line and configuration");
     return c;
+}
+
+DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
+    DockingSettings s{.start_offset_m = o.start_offset_a * kAngstromM,
+                      .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
+                      .seed = o.seed};
+    if (!o.poses.empty()) {
+        std::vector<std::string> names;
+        const SceneMeta meta = read_meta(scene);
+        for (std::uint32_t i = 0; i < meta.body_count; ++i) names.push_back(read_structure(scene, i).name);
+        s.bodies = read_start_bodies(o.poses, names);
+    }
+    if (o.copies > 1) s.more_bodies = copies_about(read_grid(scene), o.copies);
+    return s;
 }
 
 struct LevelWish {
@@ -198,10 +228,7 @@ int run(const Options& o, const Overrides& overrides) {
     std::optional<LinkServer> link;
     if (!o.check) link.emplace(o.session, region.fd());
 
-    const DockingSettings docking{.start_offset_m = o.start_offset_a * kAngstromM,
-                                  .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
-                                  .seed = o.seed};
-    std::unique_ptr<ForceModel> model = load_docking_model(scene, docking);
+    std::unique_ptr<ForceModel> model = load_docking_model(scene, docking_settings(o, scene));
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;

@@ -103,7 +103,11 @@ bool plausible(const LoadTopic& load) {
 }
 
 House::House(HouseSettings settings, OwnedRegion<RtRegion>& region, ServoMail& mail, LinkServer& link)
-    : settings_(std::move(settings)), region_(region), mail_(mail), link_(link) {
+    : settings_(std::move(settings)),
+      region_(region),
+      mail_(mail),
+      link_(link),
+      builder_(mail, settings_.servo_thread_id) {
     report_.gui_heartbeat_ns = -1;
 }
 
@@ -127,6 +131,7 @@ void House::run() {
         attend_link();
         attend_gui();
         attend_events();
+        builder_.attend();
         mail_.model.collect().reset();
         const Instant now = Monotonic::now();
         if (now - reported_at >= std::chrono::milliseconds(100)) {

@@ -1,7 +1,7 @@
 // The house thread: everything of tact-rt that may wait, allocate or speak.
 //
 // Does      serves the link, maps the GUI's region, checks its commands and loads and passes them on to the
-//           servo, prints events, collects old models, ends the run after its time
+//           servo, prints events, has models built, collects old ones, ends the run after its time
 // Runs on   the main thread, ordinary scheduling; never on the servo's core by choice
 // Hostile   what the GUI's region holds is checked field by field; what is wrong is counted and dropped
 #pragma once
@@ -18,6 +18,7 @@
 #include "ipc/shm/region.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/loop/mail.hpp"
+#include "rt/loop/model_builder.hpp"
 
 namespace tact {
 
@@ -60,6 +61,7 @@ private:
     OwnedRegion<RtRegion>& region_;
     ServoMail& mail_;
     LinkServer& link_;
+    ModelBuilder builder_;
     MappedRegion<GuiRegion> gui_;
     RingCursor commands_;
     RingCursor events_;

@@ -1,7 +1,7 @@
 // What the servo thread and the house thread tell each other, inside tact-rt. Neither ever waits.
 //
 // house -> servo   orders (validated commands), what the GUI reported, a new force model, the stop signal
-// servo -> house   the old force model, a snapshot at a fault, that it has ended
+// servo -> house   the old force model, a request to build another, a snapshot at a fault, that it has ended
 #pragma once
 
 #include <atomic>
@@ -57,7 +57,13 @@ struct FaultSnapshot {
 // One model on its way in, one on its way out.
 class ModelHandover {
 public:
-    ~ModelHandover() { collect(); }
+    ModelHandover() = default;
+    ModelHandover(const ModelHandover&) = delete;
+    ModelHandover& operator=(const ModelHandover&) = delete;
+    ~ModelHandover() {
+        collect();
+        const std::unique_ptr<ForceModel> never_taken(incoming_.exchange(nullptr));
+    }
 
     // House. False: the one before has not been taken yet; the model stays with the caller.
     bool offer(std::unique_ptr<ForceModel>& model) {
@@ -86,11 +92,47 @@ private:
     std::atomic<ForceModel*> outgoing_{nullptr};
 };
 
+// One request at a time for a model that is built aside. The model itself comes back through ModelHandover.
+// While one is under way nothing else is offered there, so the model that it is built like stays in use.
+class BuildRequest {
+public:
+    // Servo. False: the one before is not settled.
+    bool ask(const ForceModel& like, const ModelBodies& bodies) noexcept TACT_RT {
+        if (state_.load(std::memory_order_relaxed) != State::none) return false;
+        like_ = &like;
+        bodies_ = bodies;
+        state_.store(State::asked, std::memory_order_release);  // pairs with take()
+        return true;
+    }
+    // Servo. Nothing could be built.
+    [[nodiscard]] bool refused() const noexcept TACT_RT {
+        return state_.load(std::memory_order_acquire) == State::refused;
+    }
+    // Servo: the model was taken, or the refusal seen.
+    void settle() noexcept TACT_RT { state_.store(State::none, std::memory_order_relaxed); }
+
+    // House. True once for each request; like() and bodies() are its own until it answers.
+    bool take() {
+        State expected = State::asked;
+        return state_.compare_exchange_strong(expected, State::taken, std::memory_order_acquire);
+    }
+    [[nodiscard]] const ForceModel& like() const { return *like_; }
+    [[nodiscard]] const ModelBodies& bodies() const { return bodies_; }
+    void refuse() { state_.store(State::refused, std::memory_order_release); }  // pairs with refused()
+
+private:
+    enum class State : std::uint32_t { none, asked, taken, refused };
+    std::atomic<State> state_{State::none};
+    const ForceModel* like_ = nullptr;
+    ModelBodies bodies_;
+};
+
 struct ServoMail {
     Ring<ServoOrder, 64> orders{};
     Latest<HouseReport> house{};
     Latest<FaultSnapshot> fault{};
     ModelHandover model;
+    BuildRequest build;
     std::atomic<int> stop_signal{0};  // signal number, or -1: the run's time is over
     std::atomic<bool> ended{false};
 };

@@ -146,6 +146,7 @@ void Servo::pose(CycleState& c) noexcept {
 
 void Servo::model(CycleState& c) noexcept {
     take_model(c);
+    ask_for_model(c);
     const Instant begin = clock_.now();
     const Budget budget{.fidelity = governor_.level(kForceIndex),
                         .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max()};

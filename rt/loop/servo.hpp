@@ -92,6 +92,7 @@ private:
 
     // Parts of stages: mail in and out (servo_mail.cpp), topics out (servo_publish.cpp).
     void take_model(CycleState& c) noexcept TACT_RT;
+    void ask_for_model(CycleState& c) noexcept TACT_RT;
     void take_mail(CycleState& c) noexcept TACT_RT;
     void obey(CycleState& c, const ServoOrder& order) noexcept TACT_RT;
     [[nodiscard]] bool order_bodies(CycleState& c, const ServoOrder& order) noexcept TACT_RT;
@@ -129,6 +130,7 @@ private:
     bool health_due_ = false;
     bool stopping_ = false, finished_ = false, dry_ = false;
     Instant health_at_{}, overrun_said_at_{};
+    bool building_ = false;                 // a model is being built aside
     std::uint16_t governed_structure_ = 0;  // whose knob the governor has
     std::uint64_t page_faults_ = 0;
     std::uint32_t schedule_flags_ = 0;

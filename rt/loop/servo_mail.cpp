@@ -195,8 +195,23 @@ void Servo::take_model(CycleState& c) noexcept {
         ++levels_sequence_;
     }
     mail_.model.give_back(old);
+    if (building_) mail_.build.settle();
+    building_ = false;
     say(EventCode::model_swapped, 0.0, 0.0);
     tell_bodies(c, before);
+}
+
+// One at a time: what is ordered while a model is being built is asked for after it has come.
+void Servo::ask_for_model(CycleState& c) noexcept {
+    ForceModel& model = *c.hand[0].model;
+    if (building_ && mail_.build.refused()) {
+        const ModelBodies before = model.bodies();
+        model.give_up();
+        mail_.build.settle();
+        building_ = false;
+        tell_bodies(c, before);
+    }
+    if (!building_ && !dry_ && model.stale()) building_ = mail_.build.ask(model, model.bodies());
 }
 
 void Servo::note_fault(const CycleState& c) noexcept {

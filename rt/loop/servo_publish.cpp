@@ -84,6 +84,7 @@ void Servo::publish_tools(const CycleState& c) noexcept {
     b.grips = bodies.grips;
     b.placements = bodies.placements;
     b.options = bodies.options;
+    b.building = building_ ? 1 : 0;
     for (std::uint32_t i = 0; i < b.count; ++i) {
         put(b.body[i].pos_model_m, bodies.T_model_body[i].p_m);
         put(b.body[i].quat_model_body_xyzw, bodies.T_model_body[i].q);

@@ -180,6 +180,26 @@ void prepare_thread(const ScheduleWish& wish, Platform& platform) {
     touch_stack();
 }
 
+void prepare_builder_thread(int servo_thread_id) {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    pthread_setname_np(pthread_self(), "builder");
+    // On Linux niceness belongs to the thread. What is refused here costs no more than some fairness.
+    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10));
+    cpu_set_t servo, own;
+    CPU_ZERO(&servo);
+    CPU_ZERO(&own);
+    if (sched_getaffinity(servo_thread_id, sizeof servo, &servo) != 0 || CPU_COUNT(&servo) != 1) return;
+    if (sched_getaffinity(0, sizeof own, &own) != 0) return;
+    cpu_set_t rest;
+    CPU_ZERO(&rest);
+    for (std::size_t i = 0; i < CPU_SETSIZE; ++i) {
+        if (CPU_ISSET(i, &own) && !CPU_ISSET(i, &servo)) CPU_SET(i, &rest);
+    }
+    if (CPU_COUNT(&rest) > 0) static_cast<void>(sched_setaffinity(0, sizeof rest, &rest));
+}
+
 void release_process(Platform& platform) {
     if (platform.dma_latency_fd >= 0) ::close(platform.dma_latency_fd);
     platform.dma_latency_fd = -1;

@@ -2,7 +2,7 @@
 //
 // Refused  every step that is refused is a finding: what was tried, why it failed, the command that mends it,
 //          and how the run goes on. Nothing here is fatal; what was reached is shown in the health topic.
-// Thread   prepare_process() at start-up on the main thread, prepare_thread() on the servo's before its loop
+// Thread   prepare_process() at start-up on the main thread, the others on the thread that they prepare
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,9 @@ struct ScheduleWish {
 void prepare_process(const ScheduleWish& wish, Platform& platform);
 // Scheduling class, core, signal mask, touched stack. No allocation afterwards on this thread.
 void prepare_thread(const ScheduleWish& wish, Platform& platform);
+// A thread that may take its time: below ordinary priority, off the core that the servo is pinned to where
+// there is another, no signals.
+void prepare_builder_thread(int servo_thread_id);
 void release_process(Platform& platform);
 
 // Minor and major faults of the calling thread so far: a system call, so not within cycles.

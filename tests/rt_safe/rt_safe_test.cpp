@@ -117,12 +117,29 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     device.inject(SimFault::hand_off);
     cycles(100);
     device.inject(SimFault::none);
-    for (int kind = 0; kind < 12; ++kind) {
+    for (int kind = 0; kind < 22; ++kind) {
         for (const double value : {0.5, -1.0, 800.0}) {
             order(static_cast<CommandKind>(kind), value, 1);
             cycles(3);
         }
     }
+    // Copies come, change hands a hundred times, are put elsewhere, fixed and removed; wrong ids between
+    // them.
+    const auto order_body = [&](CommandKind kind, std::uint32_t body, double value = 0.0) {
+        ServoOrder o{++sequence, value, static_cast<std::uint32_t>(kind), 0, body};
+        for (double& p : o.pos_model_m) p = 27e-10;
+        mail.orders.push(o);
+        cycles(4);
+    };
+    for (int i = 0; i < 20; ++i) order_body(CommandKind::add_body, 0);
+    for (std::uint32_t i = 0; i < 100; ++i) {
+        order_body(CommandKind::select_body, 1 + i * 7 % 20);
+        cycles(static_cast<int>(i % 30));
+        order_body(CommandKind::place_body, 1 + i * 3 % 20);
+        order_body(CommandKind::fix_body, 1 + i * 5 % 20, i % 2);
+    }
+    for (std::uint32_t i = 1; i < 20; ++i) order_body(CommandKind::remove_body, i);
+    order_body(CommandKind::select_body, kNoBody);
     HouseReport gui{};
     gui.gui_attached = 1;
     gui.gui_heartbeat_ns = to_ns(clock.now());

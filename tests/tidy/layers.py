@@ -40,7 +40,7 @@ WRAPPED = [
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
     (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "tests"]),
-    (r"nlohmann/", ["deploy", "prep", "gui", "rt/main", "tests"]),
+    (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

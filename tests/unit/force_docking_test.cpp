@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include "ipc/base/error.hpp"
 #include "rt/force/docking/docking_model.hpp"
@@ -263,6 +264,75 @@ TEST(Docking, TheErrorItReportsHoldsNearHome) {
     EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
     EXPECT_EQ(model->predict(1.0F).error, 0.0);
     EXPECT_GT(model->predict(0.0F).error, 0.0);
+}
+
+TEST(Docking, TheAuditMeasuresTheDistanceFromAllAtomsAndTheBoundIsNeverBelowWhatItFound) {
+    const auto model = make_model();
+    const double n_per_gradient = scene().meta.energy_j_per_sigma / scene().meta.world_per_model;
+    model->reset(tool_at(kGrip));
+    for (int i = 0; i < 400; ++i) (void)model->step(tool_at(kGrip), at(0.3F));  // one pose, so one answer
+    const Pose held = model->bodies().T_model_body[0];
+    const double off_n = (model->evaluate(held, at(0.3F)).wrench_world.force_n -
+                          model->evaluate(held, at(1.0F)).wrench_world.force_n)
+                             .norm();
+    ASSERT_GT(model->audit().done(), 0U);
+    EXPECT_NEAR(n_per_gradient * model->audit().off(), off_n, 1e-4);
+    SeededRandom random(9);
+    std::size_t done = model->audit().done();
+    Pose hand = kGrip;
+    for (int i = 0; i < 20000; ++i) {
+        if (i % 40 == 0) hand.p_m = kGrip.p_m + 0.03 * random.uniform() * random.direction();
+        const double error_n = model->step(tool_at(hand), at(0.3F)).load.error;
+        if (model->audit().done() == done) continue;
+        done = model->audit().done();
+        EXPECT_LE(n_per_gradient * model->audit().off(), model->predict(0.3F).error * (1.0 + 1e-6));
+        EXPECT_LE(error_n, model->predict(0.3F).error);  // it never falls
+    }
+    EXPECT_GT(done, 100U);
+}
+
+TEST(Docking, AModelIsRebuiltWhileItIsSteppedAndOrderedAbout) {
+    const auto model = make_model();
+    model->reset(tool_at(kGrip));
+    const ModelBodies then = model->bodies();
+    std::unique_ptr<ForceModel> rebuilt;
+    std::thread builder([&] { rebuilt = model->rebuild(then); });
+    ModelOrder add, select;
+    add.kind = ModelOrder::Kind::add;
+    add.T_model_body = model->home();
+    EXPECT_TRUE(model->order(add));
+    select.body = 2;
+    EXPECT_TRUE(model->order(select));
+    for (int i = 0; i < 500; ++i) (void)model->step(tool_at(kGrip), at(0.5F));
+    builder.join();
+    ASSERT_NE(rebuilt, nullptr);
+    ASSERT_TRUE(rebuilt->adopt(*model));
+    EXPECT_EQ(rebuilt->bodies().count, 2U);  // what was ordered meanwhile
+    EXPECT_EQ(rebuilt->bodies().active, 1U);
+    EXPECT_TRUE(rebuilt->order(add));
+    EXPECT_EQ(rebuilt->bodies().id[2], 3U);
+    EXPECT_FALSE(make_model()->adopt(*model));  // of another scene
+}
+
+TEST(Docking, StartsWithTheBodiesThatItIsGiven) {
+    DockingSettings settings;
+    const Pose place = start_pose(Pose{Vec3::Constant(kCentre), Quat::Identity()}, 9.0 * kA, 0.3, 2);
+    settings.bodies = {{.structure = 0, .T_model_body = place, .fixed = true},
+                       {.structure = 0, .T_model_body = place, .in_hand = true}};
+    settings.more_bodies = {{}};
+    settings.more_bodies[0].T_model_body = place;
+    const ModelBodies bodies = make_model(settings)->bodies();
+    ASSERT_EQ(bodies.count, 3U);
+    EXPECT_EQ(bodies.active, 1U);
+    EXPECT_EQ(bodies.flags[0], ModelBodies::kFixed);
+    EXPECT_EQ(bodies.T_model_body[0].p_m, place.p_m);
+    settings.bodies[0].structure = 1;
+    EXPECT_THROW(make_model(settings), StartupError);
+    settings.bodies[0].structure = 0;
+    settings.bodies[0].T_model_body.p_m.x() = 1.0;  // a metre off, in the model
+    EXPECT_THROW(make_model(settings), StartupError);
+    settings.bodies.resize(16);
+    EXPECT_THROW(make_model(settings), StartupError);
 }
 
 TEST(Docking, CostIsPredictedInOrderOfSize) {

@@ -9,11 +9,13 @@ tact_test(unit/hal_sim_test.cpp USES base hal)
 tact_test(unit/base_pacer_test.cpp USES base SYSTEM rapidcheck)
 tact_test(unit/loop_config_test.cpp USES base hal loop govern)
 tact_test(unit/loop_house_test.cpp USES base topics loop)
+tact_test(unit/rt_start_bodies_test.cpp USES base assets force start)
 
 tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
+tact_test(scenario/bodies_scenario_test.cpp USES base topics assets hal force loop)
 
 # Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/loop/interpose.cpp

@@ -1,10 +1,15 @@
 #include "rt/force/docking/docking_bodies.hpp"
 
+#include <algorithm>
+
 namespace tact {
 
 DockingBodies::DockingBodies(const std::vector<StartBody>& start, std::uint32_t structures) noexcept
     : structures_(structures) {
     for (const StartBody& body : start) add(body.structure, body.T_model_body, body.fixed);
+    const auto in_hand =
+        std::find_if(start.begin(), start.end(), [](const StartBody& b) { return b.in_hand; });
+    if (in_hand != start.end()) list_.active = static_cast<std::uint32_t>(in_hand - start.begin());
 }
 
 std::uint32_t DockingBodies::index_of(std::uint32_t id) const noexcept {

@@ -17,6 +17,7 @@ struct StartBody {
     std::uint32_t structure = 0;
     Pose T_model_body;
     bool fixed = false;
+    bool in_hand = false;  // the first that is; the first of all where none is
 };
 
 class DockingBodies {
@@ -29,7 +30,7 @@ public:
         taken,   // another one is in the hand, or none
     };
 
-    // The first is in the hand. At most ModelBodies::kMax; poses and structures are the caller's care.
+    // At most ModelBodies::kMax; poses and structures are the caller's care.
     DockingBodies(const std::vector<StartBody>& start, std::uint32_t structures) noexcept;
 
     // All kinds but option. The pose of place and add has to be checked by the caller.

@@ -60,18 +60,35 @@ double checked_gain(const SceneMeta& meta, const DockingSettings& settings) {
     return meta.energy_j_per_sigma * settings.force_scale;
 }
 
-std::vector<StartBody> start_bodies(const DockingParts& parts, const DockingSettings& settings) {
-    std::vector<StartBody> start;
-    for (std::uint32_t s = 0; s < parts.structures.size(); ++s)
-        start.push_back({.structure = s, .T_model_body = parts.structures[s].home()});
-    start[0].T_model_body = start_pose(start[0].T_model_body, settings.start_offset_m,
-                                       settings.start_rotation_rad, settings.seed);
-    return start;
-}
-
 bool is_pose(const Pose& pose) {
     const double turn = pose.q.norm();
     return pose.finite() && turn > 0.9 && turn < 1.1;
+}
+
+// Within a hand's reach of the scene's centre.
+bool is_placeable(const SceneMeta& meta, const Pose& T_model_body) {
+    return is_pose(T_model_body) && meta.to_world(T_model_body.p_m).norm() <= kToolRangeM;
+}
+
+std::vector<StartBody> start_bodies(const DockingParts& parts, const DockingSettings& settings) {
+    std::vector<StartBody> start = settings.bodies;
+    if (start.empty()) {
+        for (std::uint32_t s = 0; s < parts.structures.size(); ++s)
+            start.push_back({.structure = s, .T_model_body = parts.structures[s].home()});
+        start[0].T_model_body = start_pose(start[0].T_model_body, settings.start_offset_m,
+                                           settings.start_rotation_rad, settings.seed);
+    }
+    start.insert(start.end(), settings.more_bodies.begin(), settings.more_bodies.end());
+    if (start.size() > ModelBodies::kMax)
+        throw StartupError("setting up docking", "there are " + std::to_string(start.size()) + " bodies",
+                           "start with at most " + std::to_string(ModelBodies::kMax));
+    for (const StartBody& body : start) {
+        if (body.structure >= parts.structures.size() || !is_placeable(parts.meta, body.T_model_body))
+            throw StartupError("setting up docking",
+                               "a body is of no structure of the scene, or too far from its map",
+                               "give places of this scene");
+    }
+    return start;
 }
 
 StepResult out_of_range() {
@@ -340,8 +357,7 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
     }
     ModelOrder checked = order;
     if (order.kind == ModelOrder::Kind::place || order.kind == ModelOrder::Kind::add) {
-        if (!is_pose(order.T_model_body)) return false;
-        if (parts_->meta.to_world(order.T_model_body.p_m).norm() > kToolRangeM) return false;
+        if (!is_placeable(parts_->meta, order.T_model_body)) return false;
         checked.T_model_body.q.normalize();
     }
     switch (bodies_.order(checked)) {
@@ -354,8 +370,10 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
             let_go(shown_);
             static_cast<void>(choose_density());
             break;
-        case DockingBodies::Change::none:
         case DockingBodies::Change::others:
+            if ((bodies_.list().options & kOptionClash) != 0) fade(shown_);
+            break;
+        case DockingBodies::Change::none:
             break;
     }
     return true;

@@ -36,12 +36,16 @@
 namespace tact {
 
 struct DockingSettings {
-    // Where body 0 starts, away from its home: a distance in a random direction, an angle about a random
-    // axis.
+    // Where the first body starts, away from its home: a distance in a random direction, an angle about a
+    // random axis.
     double start_offset_m = 0.0;
     double start_rotation_rad = 0.0;
     std::uint64_t seed = 1;
     double force_scale = 1.0;  // times the scene's gain
+    // In place of one body of each structure at home; the offset and rotation above are then not used.
+    std::vector<StartBody> bodies{};
+    // Behind the others.
+    std::vector<StartBody> more_bodies{};
 };
 
 class DockingModel final : public ForceModel {

@@ -43,12 +43,14 @@ public:
         next_ += n;
         running_ = next_ < atoms.size();
         if (running_) return false;
+        off_ = (exact_ - reduced_).norm();
+        off_bound_ = bound_;
         ++done_;
         return true;
     }
     // Of the last complete measurement.
-    [[nodiscard]] double off() const noexcept { return (exact_ - reduced_).norm(); }
-    [[nodiscard]] double bound() const noexcept { return bound_; }
+    [[nodiscard]] double off() const noexcept { return off_; }
+    [[nodiscard]] double bound() const noexcept { return off_bound_; }
     [[nodiscard]] std::size_t done() const noexcept { return done_; }
 
 private:
@@ -59,6 +61,7 @@ private:
     Pose pose_;
     Vec3 reduced_ = Vec3::Zero(), exact_ = Vec3::Zero();
     double bound_ = 0.0;
+    double off_ = 0.0, off_bound_ = 0.0;
 };
 
 }  // namespace tact
