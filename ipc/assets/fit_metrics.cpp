@@ -158,6 +158,9 @@ FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructu
     divide_by_atoms(fit.all, background, sigma);
     if (placed.size() == 1) fit.all = fit.body.front();
     if (placed.size() > 1) correlate(grid, together, sum, fit.all);
+    const ClashCounts clashes = count_clashes(placed);
+    fit.all.clashes = clashes.pairs;
+    for (std::size_t b = 0; b < placed.size(); ++b) fit.body[b].clashes = clashes.pairs_of[b];
     return fit;
 }
 

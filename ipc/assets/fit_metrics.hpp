@@ -8,6 +8,7 @@
 //   overlap           <u,v>, the sum of u v over the region; map unit times Z
 //   mean_density      mean over atoms of the map between the voxels (trilinear; background outside the box)
 //   fraction_inside   atoms where that is above the contour
+//   clashes           pairs of atoms of two bodies in each other's way (ipc/assets/clashes.hpp)
 //
 // For one body v is its own density alone, so its region is its own. For all together v is the sum. Each of
 // these goes up when a structure explains its part of the map better; only cc_mean is blind to the offset of
@@ -22,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/assets/clashes.hpp"
 #include "ipc/assets/simulated_map.hpp"
 
 namespace tact {
@@ -35,6 +37,7 @@ struct FitMetrics {
     double fraction_inside = 0.0;
     std::uint64_t region_voxels = 0;
     std::uint64_t atoms = 0;
+    std::uint64_t clashes = 0;  // of one body: with all others
 };
 
 struct FitOfBodies {

@@ -153,6 +153,23 @@ TEST(FitMetrics, EachBodyHasTheNumbersThatItHasAlone) {
     EXPECT_EQ(all.body[2].cc_mean, 0.0);
 }
 
+TEST(FitMetrics, BodiesInEachOthersWayAreCounted) {
+    Structure s = atoms(2, 11);
+    s.x_m = {0.0F, static_cast<float>(20.0 * kA)};
+    s.y_m = s.z_m = {0.0F, 0.0F};
+    s.element = {6, 6};
+    const auto placed = [&](double x_a) {
+        return PlacedStructure{&s, {Vec3(x_a * kA, 0, 0), Quat::Identity()}};
+    };
+    // Carbons, 1.7 A each: both pairs 2 A apart clash, those 3 A apart do not.
+    const std::array<PlacedStructure, 3> three{placed(0.0), placed(2.0), placed(5.0)};
+    const FitOfBodies fit = fit_of_bodies(empty_grid(), three, settings_10a());
+    EXPECT_EQ(fit.all.clashes, 2U);
+    EXPECT_EQ(fit.body[0].clashes, 2U);
+    EXPECT_EQ(fit.body[1].clashes, 2U);
+    EXPECT_EQ(fit.body[2].clashes, 0U);
+}
+
 TEST(FitMetrics, MeanDensityAndFractionInsideAreThoseOfTheAtoms) {
     DensityGrid grid = empty_grid();
     for (std::uint32_t z = 0; z < grid.size[2]; ++z) {
