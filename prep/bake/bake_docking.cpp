@@ -8,7 +8,7 @@
 #include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
-#include "prep/codebook/neural_gas.hpp"
+#include "prep/codebook/best_codebook.hpp"
 #include "prep/gain/docking_gain.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_statistics.hpp"
@@ -116,6 +116,19 @@ BakedBody describe(const Structure& s, const Codebook& codebook, const DensityMa
     return body;
 }
 
+void say_codebook(std::size_t body, const BestCodebook& best, std::string& note) {
+    for (std::size_t l = 0; l < best.quality.size(); ++l) {
+        const LevelQuality& q = best.quality[l];
+        const Codebook::Level& level = best.codebook.levels[l];
+        note += printed("codebook of body %zu: %zu vectors, %zu edges, quantization error %.3f Å rms", body,
+                        level.size(), level.edges.size(), q.rms_error_m / kAngstromM);
+        if (best.restarts > 1)
+            note += printed(", best of %u restarts: mean %.3f, standard deviation %.4f", best.restarts,
+                            q.rms_error_mean_m / kAngstromM, q.rms_error_sd_m / kAngstromM);
+        note += '\n';
+    }
+}
+
 }  // namespace
 
 double world_per_model_for(double extent_m) {
@@ -209,7 +222,9 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     const double share = 0.3 / static_cast<double>(input.structures.size());
     for (std::size_t i = 0; i < input.structures.size(); ++i) {
         const double from = 0.5 + share * static_cast<double>(i);
-        codebooks.push_back(build_codebook(input.structures[i], {}, part(progress, from, from + share)));
+        BestCodebook best = best_codebook(input.structures[i], {}, part(progress, from, from + share));
+        say_codebook(i, best, note);
+        codebooks.push_back(std::move(best.codebook));
     }
     report(progress, 0.8, "preparing the map");
     const DensityMap map(grid, statistics.background, statistics.sigma);
