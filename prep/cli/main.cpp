@@ -11,7 +11,9 @@
 #include "ipc/base/units.hpp"
 #include "prep/bake/bake_docking.hpp"
 #include "prep/cli/console.hpp"
+#include "prep/cli/export_command.hpp"
 #include "prep/cli/scene_report.hpp"
+#include "prep/input/read_file.hpp"
 #include "prep/map/import_map.hpp"
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"
@@ -90,7 +92,8 @@ DockingInput from_files(const Options& o, const Progress& progress) {
     for (const std::string& path : o.models) {
         report(progress, 0.0, "reading structures");
         ImportedStructure model = import_structure(path);
-        input.note.push_back("structure: " + plain(path));
+        input.note.push_back("structure: " + plain(fs::absolute(path).string()));
+        input.note.push_back("structure check: " + file_mark(path));
         input.note.push_back("structure content: " + plain(model.summary));
         input.title += join + model.structure.name;
         join = ", ";
@@ -188,6 +191,7 @@ int run(int argc, char** argv) {
     CLI::App* const show = app.add_subcommand("info", "what a scene holds; checks all of it");
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");
+    add_export(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -195,7 +199,7 @@ int run(int argc, char** argv) {
     }
     if (show->parsed()) {
         info(o);
-    } else {
+    } else if (dock->parsed() || demo->parsed()) {
         bake(o, demo->parsed());
     }
     return 0;

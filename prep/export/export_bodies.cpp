@@ -1,0 +1,312 @@
+#include "prep/export/export_bodies.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "ipc/assets/fit_metrics.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/error.hpp"
+#include "prep/export/write_structure_file.hpp"
+#include "prep/input/read_file.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kFileBytesMax = std::uint64_t{1} << 30;
+constexpr char kAttempt[] = "saving the placed structures";
+
+struct Source {
+    fs::path path;
+    std::string text;
+    bool mmcif = false;
+    std::string stem;  // "1oel" of 1oel.pdb.gz
+};
+
+template <class... Values>
+std::string printed(const char* format, Values... values) {
+    char text[512];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+std::string stem_of(const fs::path& path) {
+    fs::path name = path.filename();
+    if (name.extension() == ".gz" || name.extension() == ".GZ") name = name.stem();
+    return name.stem().string();
+}
+
+// As the note of the scene has them, in the order of the structures.
+std::vector<Source> sources_of(const SceneFile& scene, std::uint32_t structures) {
+    std::vector<std::pair<std::string, std::string>> named;  // path and mark
+    std::istringstream lines(read_note(scene));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("structure: ")) named.emplace_back(line.substr(11), "");
+        if (line.starts_with("structure check: ") && !named.empty()) named.back().second = line.substr(17);
+    }
+    std::vector<Source> sources;
+    if (named.size() != structures || named.front().second.empty())
+        throw StartupError(kAttempt,
+                           scene.name() +
+                               " does not say from which files its structures came; it was made in "
+                               "code, or baked by an older tact-prep",
+                           "bake it from files: tact-prep dock MAP MODEL -o SCENE");
+    for (const auto& [path, mark] : named) {
+        std::error_code ignored;
+        if (!fs::exists(path, ignored))
+            throw StartupError(kAttempt,
+                               "the file " + path + ", which the scene was baked from, is not there",
+                               "put it back, or bake the scene again from where it is now");
+        if (const std::string now = file_mark(path); now != mark)
+            throw StartupError(kAttempt,
+                               "the file " + path + " has changed since the scene was baked: it had " + mark +
+                                   ", and has " + now,
+                               "bake the scene again, or put the file back");
+        Source s;
+        s.path = path;
+        const std::string ending = format_ending(path);
+        s.mmcif = ending == ".cif" || ending == ".mmcif";
+        s.stem = stem_of(path);
+        const std::vector<char> bytes = read_whole_file(path, kFileBytesMax);
+        s.text.assign(bytes.begin(), bytes.end());
+        sources.push_back(std::move(s));
+    }
+    return sources;
+}
+
+Eigen::AngleAxisd axis_of(const AtomMove& move) { return Eigen::AngleAxisd(Quat(move.turn).normalized()); }
+
+std::string matrix_row(const AtomMove& move, int row) {
+    return printed("%.12f %.12f %.12f %.6f", move.turn(row, 0), move.turn(row, 1), move.turn(row, 2),
+                   move.shift_a[row]);
+}
+
+struct Fit {
+    std::optional<FitOfBodies> numbers;  // nothing where the resolution is not known
+    double resolution_a = 0.0;
+};
+
+Fit fit_of(const SceneFile& scene, const std::vector<Structure>& structures,
+           const std::vector<PlacedBody>& bodies) {
+    const SceneMeta meta = read_meta(scene);
+    Fit fit;
+    fit.resolution_a = meta.resolution_m / kAngstromM;
+    if (!(meta.resolution_m > 0.0)) return fit;
+    std::vector<PlacedStructure> placed;
+    for (const PlacedBody& b : bodies) placed.push_back({&structures[b.structure], b.T_model_body});
+    fit.numbers = fit_of_bodies(read_grid(scene), placed,
+                                {.resolution_m = meta.resolution_m,
+                                 .contour = meta.contour,
+                                 .background = meta.map_background,
+                                 .sigma = meta.map_sigma});
+    return fit;
+}
+
+void remark_fit(const FitMetrics& m, const std::string& prefix, Remarks& remarks) {
+    remarks.emplace_back(prefix + "correlation_about_zero", printed("%.4f", m.cc_zero));
+    remarks.emplace_back(prefix + "correlation_about_mean", printed("%.4f", m.cc_mean));
+    remarks.emplace_back(prefix + "overlap", printed("%.6g", m.overlap));
+    remarks.emplace_back(prefix + "mean_density", printed("%.6g", m.mean_density));
+    remarks.emplace_back(prefix + "mean_density_sigma", printed("%.4f", m.mean_density_sigma));
+    remarks.emplace_back(prefix + "fraction_inside_contour", printed("%.4f", m.fraction_inside));
+    remarks.emplace_back(prefix + "clashes", std::to_string(m.clashes));
+}
+
+Remarks remarks_of(const SceneMeta& meta, const Fit& fit, std::size_t index, std::size_t count,
+                   const PlacedBody* body, const AtomMove* move) {
+    Remarks remarks;
+    remarks.emplace_back("scene", meta.title);
+    if (body != nullptr) {
+        remarks.emplace_back("body", std::to_string(body->id));
+        for (int row = 0; row < 3; ++row)
+            remarks.emplace_back("matrix_row_" + std::to_string(row + 1), matrix_row(*move, row));
+        const Eigen::AngleAxisd turn = axis_of(*move);
+        remarks.emplace_back("axis",
+                             printed("%.9f %.9f %.9f", turn.axis().x(), turn.axis().y(), turn.axis().z()));
+        remarks.emplace_back("angle_deg", printed("%.6f", turn.angle() / kDegreeRad));
+    }
+    if (!fit.numbers) return remarks;
+    remarks.emplace_back("resolution_a", printed("%.4g", fit.resolution_a));
+    remarks.emplace_back("region", kFitRegion);
+    remarks.emplace_back("contour", printed("%.6g", meta.contour));
+    if (body != nullptr) remark_fit(fit.numbers->body[index], "", remarks);
+    if (body == nullptr || count > 1) remark_fit(fit.numbers->all, "all_bodies_", remarks);
+    return remarks;
+}
+
+std::string matrix_text(const PlacedBody& body, const std::string& name, const AtomMove& move) {
+    const Eigen::AngleAxisd turn = axis_of(move);
+    std::string text = "# body " + std::to_string(body.id) + ", " + name +
+                       "\n# place = matrix * (x, y, z, 1) of the original file; angstrom\n" +
+                       printed("# axis %.9f %.9f %.9f\n# angle_deg %.6f\n", turn.axis().x(), turn.axis().y(),
+                               turn.axis().z(), turn.angle() / kDegreeRad);
+    for (int row = 0; row < 3; ++row) text += matrix_row(move, row) + '\n';
+    return text;
+}
+
+std::string csv_text(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + '"';
+}
+
+constexpr char kCsvHead[] =
+    "id,structure,name,file,m11,m12,m13,m14_a,m21,m22,m23,m24_a,m31,m32,m33,m34_a,axis_x,axis_y,axis_z,"
+    "angle_deg,com_x_a,com_y_a,com_z_a,resolution_a,cc_zero,cc_mean,overlap,mean_density,mean_density_sigma,"
+    "fraction_inside,region_voxels,atoms,clashes\n";
+
+std::string csv_row(const PlacedBody& body, const std::string& name, const std::string& file,
+                    const AtomMove& move, const Fit& fit, std::size_t index) {
+    std::string row = printed("%u,%u,", body.id, body.structure) + csv_text(name) + ',' + csv_text(file);
+    for (int r = 0; r < 3; ++r)
+        row += printed(",%.12f,%.12f,%.12f,%.6f", move.turn(r, 0), move.turn(r, 1), move.turn(r, 2),
+                       move.shift_a[r]);
+    const Eigen::AngleAxisd turn = axis_of(move);
+    const Vec3 com_a = body.T_model_body.p_m / kAngstromM;
+    row += printed(",%.9f,%.9f,%.9f,%.6f,%.4f,%.4f,%.4f", turn.axis().x(), turn.axis().y(), turn.axis().z(),
+                   turn.angle() / kDegreeRad, com_a.x(), com_a.y(), com_a.z());
+    if (!fit.numbers) return row + ",,,,,,,,,,\n";
+    const FitMetrics& m = fit.numbers->body[index];
+    return row + printed(",%.4g,%.6f,%.6f,%.8g,%.8g,%.6f,%.6f,%llu,%llu,%llu\n", fit.resolution_a, m.cc_zero,
+                         m.cc_mean, m.overlap, m.mean_density, m.mean_density_sigma, m.fraction_inside,
+                         static_cast<unsigned long long>(m.region_voxels),
+                         static_cast<unsigned long long>(m.atoms),
+                         static_cast<unsigned long long>(m.clashes));
+}
+
+// A, B, … Z, a … z, 0 … 9, then AA, AB, … which only mmCIF has room for.
+std::string chain_id(std::size_t n) {
+    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+    if (n < kLetters.size()) return std::string(1, kLetters[n]);
+    n -= kLetters.size();
+    return {kLetters[(n / 26) % 26], kLetters[n % 26]};
+}
+
+// The first model of every body, in the order of the bodies.
+std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::vector<PlacedBody>& bodies,
+                                const std::vector<AtomMove>& moves, Remarks& remarks) {
+    std::vector<FileAtom> all;
+    std::size_t chains = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const Source& s = sources[bodies[i].structure];
+        std::vector<FileAtom> atoms =
+            s.mmcif ? mmcif_atoms(s.text, s.path.string()) : pdb_atoms(s.text, s.path.string());
+        std::map<std::string, std::string> renamed;
+        std::string listed;
+        const int model = atoms.empty() ? 1 : atoms.front().model;
+        for (FileAtom& a : atoms) {
+            if (a.model != model) break;
+            const auto [at, fresh] = renamed.try_emplace(a.chain, "");
+            if (fresh) {
+                at->second = chain_id(chains++);
+                listed += (listed.empty() ? "" : " ") + at->second;
+            }
+            a.chain = at->second;
+            a.model = 1;
+            a.place_a = moves[i] * a.place_a;
+            if (a.adp_u) a.adp_u = moves[i].turned(*a.adp_u);
+            all.push_back(std::move(a));
+        }
+        remarks.emplace_back("chains_of_body_" + std::to_string(bodies[i].id), listed + " of " + s.stem);
+    }
+    return all;
+}
+
+// Beside the target first, so that it is whole or absent.
+void write_whole(const fs::path& path, const std::string& text) {
+    const fs::path part = path.string() + ".part";
+    {
+        std::ofstream out(part, std::ios::binary | std::ios::trunc);
+        out << text << std::flush;
+        if (!out)
+            throw StartupError(kAttempt, part.string() + " cannot be written",
+                               "check the space and the permissions of the folder");
+    }
+    std::error_code failed;
+    fs::rename(part, path, failed);
+    if (failed) throw StartupError(kAttempt, path.string() + ": " + failed.message(), "check the folder");
+}
+
+void check_targets(const std::vector<std::pair<fs::path, std::string>>& files,
+                   const std::vector<Source>& sources, bool force) {
+    for (const auto& [path, text] : files) {
+        std::error_code ignored;
+        for (const Source& s : sources)
+            if (fs::equivalent(path, s.path, ignored))
+                throw StartupError(kAttempt, path.string() + " is the file that the scene was baked from",
+                                   "give another folder with -o");
+        if (!force && (fs::exists(path, ignored) || fs::is_symlink(path, ignored)))
+            throw StartupError(kAttempt, path.string() + " is there already",
+                               "give another folder with -o, or --force to write over it");
+    }
+}
+
+}  // namespace
+
+std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<PlacedBody>& bodies,
+                                    const ExportOptions& options) {
+    const SceneMeta meta = read_meta(scene);
+    const std::vector<Source> sources = sources_of(scene, meta.body_count);
+    std::vector<Structure> structures;
+    for (std::uint32_t i = 0; i < meta.body_count; ++i) structures.push_back(read_structure(scene, i));
+    const Fit fit = fit_of(scene, structures, bodies);
+    std::vector<std::pair<fs::path, std::string>> files;
+    std::vector<AtomMove> moves;
+    std::string table = kCsvHead;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const PlacedBody& body = bodies[i];
+        const Source& source = sources.at(body.structure);
+        const Structure& s = structures[body.structure];
+        moves.push_back(AtomMove::of(body.T_model_body, s.home_com_model_m));
+        const AtomMove& move = moves.back();
+        const Remarks remarks = remarks_of(meta, fit, i, bodies.size(), &body, &move);
+        // Ids are of their own, and so the names are, also where two structures have the same.
+        const std::string stem = source.stem + "-body" + std::to_string(body.id);
+        std::string name = stem + ".cif", text;
+        if (source.mmcif) {
+            text = moved_mmcif(source.text, source.path.string(), move, remarks);
+        } else if (auto pdb = moved_pdb(source.text, source.path.string(), move, remarks)) {
+            name = stem + ".pdb";
+            text = std::move(*pdb);
+        } else {  // too far out for its columns
+            std::vector<FileAtom> atoms = pdb_atoms(source.text, source.path.string());
+            for (FileAtom& a : atoms) {
+                a.place_a = move * a.place_a;
+                if (a.adp_u) a.adp_u = move.turned(*a.adp_u);
+            }
+            text = new_mmcif(atoms, stem, remarks);
+        }
+        table += csv_row(body, s.name, name, move, fit, i);
+        files.emplace_back(options.folder / name, std::move(text));
+        files.emplace_back(options.folder / (stem + ".matrix.txt"), matrix_text(body, s.name, move));
+    }
+    files.emplace_back(options.folder / "bodies.csv", table);
+    if (options.combined) {
+        Remarks remarks = remarks_of(meta, fit, 0, bodies.size(), nullptr, nullptr);
+        const std::vector<FileAtom> atoms = all_atoms(sources, bodies, moves, remarks);
+        const bool mmcif =
+            std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.mmcif; });
+        auto pdb = mmcif ? std::nullopt : new_pdb(atoms, remarks);
+        const char* const name = pdb ? "combined.pdb" : "combined.cif";
+        files.emplace_back(options.folder / name, pdb ? *pdb : new_mmcif(atoms, "combined", remarks));
+    }
+    check_targets(files, sources, options.force);
+    std::error_code failed;
+    fs::create_directories(options.folder, failed);
+    if (failed)
+        throw StartupError(kAttempt, "the folder " + options.folder.string() + ": " + failed.message(),
+                           "give another with -o");
+    std::vector<fs::path> paths;
+    for (const auto& [path, text] : files) {
+        write_whole(path, text);
+        paths.push_back(path);
+    }
+    return paths;
+}
+
+}  // namespace tact

@@ -1,0 +1,166 @@
+#include "prep/export/file_atoms.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <gemmi/cif.hpp>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kLargest = 1e5;
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+        text.remove_suffix(1);
+    return text;
+}
+
+std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {  // from 1, as in PDB
+    return line.size() < first ? std::string_view() : line.substr(first - 1, last - first + 1);
+}
+
+double number_or(std::string_view text, double otherwise) {
+    text = trimmed(text);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole =
+        error == std::errc() && end == text.data() + text.size() && std::abs(value) <= kLargest;
+    return whole ? value : otherwise;
+}
+
+}  // namespace
+
+double file_number(std::string_view text, const char* what, const std::string& name,
+                   const std::string& where) {
+    text = trimmed(text);
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    const double value = number_or(text, HUGE_VAL);
+    if (std::abs(value) <= kLargest) return value;
+    std::string shown(text.substr(0, 16));
+    for (char& c : shown)
+        if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+    throw StartupError("read structure " + name,
+                       where + ": " + what + " '" + shown + "' is not a number from -100000 to 100000",
+                       "repair the file, or fetch it again from its source");
+}
+
+std::vector<FileAtom> pdb_atoms(std::string_view text, const std::string& name) {
+    std::vector<FileAtom> atoms;
+    int model = 1;
+    std::size_t line_number = 0;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        const std::string where = "line " + std::to_string(++line_number);
+        if (line.starts_with("MODEL ") && !atoms.empty()) ++model;
+        if (line.starts_with("TER") && !atoms.empty()) atoms.back().ends_chain = true;
+        if (line.starts_with("ANISOU") && !atoms.empty()) {
+            Adp u{};
+            for (std::size_t k = 0; k < 6; ++k)
+                u[k] = 1e-4 * file_number(columns(line, 29 + 7 * k, 35 + 7 * k), "U", name, where);
+            atoms.back().adp_u = u;
+        }
+        if (!line.starts_with("ATOM  ") && !line.starts_with("HETATM")) continue;
+        FileAtom a;
+        a.het = line.starts_with("HETATM");
+        a.model = model;
+        a.name = trimmed(columns(line, 13, 16));
+        if (line.size() > 16) a.alternate = line[16];
+        a.residue_name = trimmed(columns(line, 18, 20));
+        a.chain = trimmed(columns(line, 21, 22));
+        a.residue = trimmed(columns(line, 23, 26));
+        if (line.size() > 26) a.insertion = line[26];
+        a.place_a = Vec3(file_number(columns(line, 31, 38), "x", name, where),
+                         file_number(columns(line, 39, 46), "y", name, where),
+                         file_number(columns(line, 47, 54), "z", name, where));
+        a.occupancy = number_or(columns(line, 55, 60), 1.0);
+        a.b_iso = number_or(columns(line, 61, 66), 0.0);
+        a.element = trimmed(columns(line, 77, 78));
+        a.charge = trimmed(columns(line, 79, 80));
+        atoms.push_back(std::move(a));
+    }
+    return atoms;
+}
+
+std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name) {
+    gemmi::cif::Document document;
+    try {
+        document = gemmi::cif::read_memory(text.data(), text.size(), name.c_str());
+    } catch (const std::exception&) {
+        throw StartupError("read structure " + name, "it is not mmCIF", "fetch the file again");
+    }
+    std::vector<FileAtom> atoms;
+    for (gemmi::cif::Block& block : document.blocks) {
+        gemmi::cif::Table table = block.find("_atom_site.", {"Cartn_x",
+                                                             "Cartn_y",
+                                                             "Cartn_z",
+                                                             "?group_PDB",
+                                                             "?type_symbol",
+                                                             "?auth_atom_id",
+                                                             "?label_atom_id",
+                                                             "?auth_comp_id",
+                                                             "?label_comp_id",
+                                                             "?auth_asym_id",
+                                                             "?label_asym_id",
+                                                             "?auth_seq_id",
+                                                             "?label_seq_id",
+                                                             "?pdbx_PDB_ins_code",
+                                                             "?label_alt_id",
+                                                             "?occupancy",
+                                                             "?B_iso_or_equiv",
+                                                             "?pdbx_formal_charge",
+                                                             "?pdbx_PDB_model_num",
+                                                             "?id"});
+        if (table.length() == 0) continue;
+        std::vector<std::pair<std::string, std::size_t>> ids;
+        std::size_t row_number = 0;
+        for (gemmi::cif::Table::Row r : table) {
+            const std::string where = "atom_site row " + std::to_string(++row_number);
+            const auto one = [&](int column) {
+                return r.has2(static_cast<std::size_t>(column)) ? gemmi::cif::as_string(r[column])
+                                                                : std::string();
+            };
+            const auto either = [&](int column) {
+                const std::string value = one(column);
+                return value.empty() ? one(column + 1) : value;
+            };
+            FileAtom a;
+            a.place_a =
+                Vec3(file_number(r[0], "Cartn_x", name, where), file_number(r[1], "Cartn_y", name, where),
+                     file_number(r[2], "Cartn_z", name, where));
+            a.het = one(3) == "HETATM";
+            a.element = one(4);
+            a.name = either(5);
+            a.residue_name = either(7);
+            a.chain = either(9);
+            a.residue = either(11);
+            if (const std::string s = one(13); !s.empty()) a.insertion = s.front();
+            if (const std::string s = one(14); !s.empty()) a.alternate = s.front();
+            a.occupancy = number_or(one(15), 1.0);
+            a.b_iso = number_or(one(16), 0.0);
+            a.charge = one(17);
+            a.model = static_cast<int>(number_or(one(18), 1.0));
+            ids.emplace_back(one(19), atoms.size());
+            atoms.push_back(std::move(a));
+        }
+        gemmi::cif::Table adp = block.find("_atom_site_anisotrop.", {"id", "U[1][1]", "U[2][2]", "U[3][3]",
+                                                                     "U[1][2]", "U[1][3]", "U[2][3]"});
+        std::size_t next = 0;  // both tables are in the same order
+        for (gemmi::cif::Table::Row r : adp) {
+            while (next < ids.size() && ids[next].first != r[0]) ++next;
+            if (next == ids.size()) break;
+            Adp u{};
+            for (int k = 0; k < 6; ++k)
+                u[static_cast<std::size_t>(k)] = file_number(r[k + 1], "U", name, "atom_site_anisotrop");
+            atoms[ids[next].second].adp_u = u;
+        }
+        break;
+    }
+    return atoms;
+}
+
+}  // namespace tact

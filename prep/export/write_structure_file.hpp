@@ -1,0 +1,33 @@
+// A structure file again, with its atoms moved: as its own text with other coordinates, or written anew.
+//
+// Kept      everything that stays true: names, sequence, secondary structure, waters, hydrogens, all models.
+// Left out  what holds only where the file had the atoms: cell, symmetry, origin and scale matrices,
+//           assemblies; of PDB files also MASTER, whose counts would be wrong, and the fit of an earlier
+//           save.
+// Precision three digits of an ångström; ADPs four digits of an ångström squared.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "prep/export/atom_move.hpp"
+#include "prep/export/file_atoms.hpp"
+
+namespace tact {
+
+using Remarks = std::vector<std::pair<std::string, std::string>>;  // key (of _tact_fit. in mmCIF) and value
+
+// Nothing where a coordinate does not fit the columns of PDB.
+std::optional<std::string> moved_pdb(std::string_view text, const std::string& name, const AtomMove& move,
+                                     const Remarks& remarks);
+std::string moved_mmcif(std::string_view text, const std::string& name, const AtomMove& move,
+                        const Remarks& remarks);
+
+// Nothing where the atoms are too many (99999 with the TER lines), a chain has no letter or a place no room.
+std::optional<std::string> new_pdb(const std::vector<FileAtom>& atoms, const Remarks& remarks);
+std::string new_mmcif(const std::vector<FileAtom>& atoms, const std::string& name, const Remarks& remarks);
+
+}  // namespace tact

@@ -1,0 +1,410 @@
+// Saving placed structures: out of a scene and back in, numbers by theory, and what must not be written.
+#include "prep/export/export_bodies.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <gemmi/cif.hpp>
+#include <gemmi/pdb.hpp>
+#include <set>
+#include <sstream>
+
+#include "ipc/base/random.hpp"
+#include "ipc/base/units.hpp"
+#include "prep/export/write_structure_file.hpp"
+#include "prep/input/read_file.hpp"
+#include "prep/structure/import_structure.hpp"
+#include "tests/unit/assets_samples.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+using sample::error_of;
+
+constexpr double kA = kAngstromM;
+
+// Hydrogen, water, alternate locations, ADPs, a ligand, what holds only in the crystal, and two models.
+const std::string kPdb =
+    "HEADER    TEST                                    01-JAN-00   1ABC              \n"
+    "TITLE     A SMALL FILE                                                          \n"
+    "REMARK 290 SMTRY1   1  1.000000  0.000000  0.000000        0.00000              \n"
+    "REMARK 350 BIOMT1   1  1.000000  0.000000  0.000000        0.00000              \n"
+    "HELIX    1   1 GLY A    1  ALA A    2  1                                   2    \n"
+    "CRYST1   50.000   60.000   70.000  90.00  95.00  90.00 P 1 21 1      2          \n"
+    "SCALE1      0.020000  0.000000  0.001750        0.00000                         \n"
+    "MODEL        1                                                                  \n"
+    "ATOM      1  N   GLY A   1      11.104   6.134  -6.504  1.00 12.50           N  \n"
+    "ANISOU    1  N   GLY A   1     2406   1892   1614    198    519   -328       N  \n"
+    "ATOM      2  CA  GLY A   1      11.639   6.071  -5.147  1.00 11.00           C  \n"
+    "ATOM      3  HA  GLY A   1      12.000   7.000  -5.000  1.00 11.00           H  \n"
+    "ATOM      4  CB AALA A   2A     14.100   8.200  -3.100  0.60 10.00           C  \n"
+    "ATOM      5  CB BALA A   2A     14.900   8.900  -3.300  0.40 10.00           C  \n"
+    "TER       6      ALA A   2A                                                     \n"
+    "ATOM      7  P     G B  -3      20.000 -10.000   4.000  1.00 30.00           P  \n"
+    "HETATM    8 ZN    ZN B 301       5.500   4.500   3.500  1.00 20.00          ZN2+\n"
+    "HETATM    9  O   HOH B 401       1.000   2.000   3.000  1.00 25.00           O  \n"
+    "ENDMDL                                                                          \n"
+    "MODEL        2                                                                  \n"
+    "ATOM      1  N   GLY A   1      12.104   7.134  -7.504  1.00 12.50           N  \n"
+    "ENDMDL                                                                          \n"
+    "CONECT    1    2                                                                \n"
+    "MASTER        0    0    0    0    0    0    0    0    9    0    0    0          \n"
+    "END                                                                             \n";
+
+const std::string kCif =
+    "data_TEST\n_entry.id TEST\n_cell.length_a 50.0\n_struct.title 'a small file'\n"
+    "loop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n"
+    "_atom_site.label_alt_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.auth_asym_id\n"
+    "_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n"
+    "_atom_site.occupancy\n_atom_site.B_iso_or_equiv\n_atom_site.fract_x\n"
+    "ATOM 1 N N . GLY A LONG 1 11.104 6.134 -6.504 1.00 12.5 0.2\n"
+    "ATOM 2 C CA . GLY A LONG 1 11.639 6.071 -5.147 1.00 11.0 0.2\n"
+    "HETATM 3 O \"O5'\" . G B B . -20.5 14.25 9.125 1.00 11.0 0.2\n"
+    "loop_\n_atom_site_anisotrop.id\n_atom_site_anisotrop.U[1][1]\n_atom_site_anisotrop.U[2][2]\n"
+    "_atom_site_anisotrop.U[3][3]\n_atom_site_anisotrop.U[1][2]\n_atom_site_anisotrop.U[1][3]\n"
+    "_atom_site_anisotrop.U[2][3]\n2 0.2406 0.1892 0.1614 0.0198 0.0519 -0.0328\n"
+    "loop_\n_atom_type.symbol\nC\nN\nO\n";
+
+class Export : public ::testing::Test {
+protected:
+    Export() {
+        std::string name = (fs::temp_directory_path() / "tact-export-XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+    }
+    ~Export() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+        return folder_ / name;
+    }
+    static std::string read(const fs::path& path) {
+        std::ostringstream all;
+        all << std::ifstream(path, std::ios::binary).rdbuf();
+        return all.str();
+    }
+    // A scene of these files, in a map that has something in it.
+    SceneFile scene(const std::vector<fs::path>& files) const {
+        SceneMeta meta = sample::meta();
+        meta.body_count = static_cast<std::uint32_t>(files.size());
+        DensityGrid grid;
+        grid.size = {24, 24, 24};
+        grid.origin_m = Vec3::Constant(-36.0 * kA);
+        grid.spacing_m = Vec3::Constant(3.0 * kA);
+        for (std::size_t i = 0; i < grid.count(); ++i)
+            grid.values.push_back(std::sin(0.01F * static_cast<float>(i)));
+        std::string note = "map: sample\n";
+        SceneWriter out;
+        for (std::uint32_t i = 0; i < files.size(); ++i) {
+            write_structure(out, i, import_structure(files[i]).structure);
+            write_codebook(out, i, {});
+            note += "structure: " + files[i].string() + "\nstructure check: " + file_mark(files[i]) + "\n";
+        }
+        write_meta(out, meta, note);
+        write_grid(out, grid);
+        out.write(folder_ / "scene.tact");
+        return SceneFile::open(folder_ / "scene.tact");
+    }
+    [[nodiscard]] fs::path out() const { return folder_ / "out"; }
+
+    fs::path folder_;
+};
+
+Pose tilted() { return {Vec3(3.0, -4.0, 5.0) * kA, quat_from_rotation_vector(Vec3(0.7, -0.4, 1.1))}; }
+
+void expect_same_place(const Structure& saved, const Structure& original, const Pose& pose) {
+    ASSERT_EQ(saved.size(), original.size());
+    for (std::size_t i = 0; i < saved.size(); ++i) {
+        const auto point = [i](const Structure& s) {
+            return Vec3(static_cast<double>(s.x_m[i]), static_cast<double>(s.y_m[i]),
+                        static_cast<double>(s.z_m[i]));
+        };
+        const Vec3 apart = saved.home() * point(saved) - pose * point(original);
+        EXPECT_LT(apart.cwiseAbs().maxCoeff(), 0.001 * kA);
+        EXPECT_EQ(saved.element[i], original.element[i]);
+        EXPECT_EQ(saved.residue[i], original.residue[i]);
+        EXPECT_EQ(saved.chain_names[saved.chain[i]], original.chain_names[original.chain[i]]);
+    }
+}
+
+TEST(AtomMove, TurnsAdpsAsTheoryHasIt) {
+    // A quarter turn about z takes x to y and y to -x.
+    AtomMove quarter;
+    quarter.turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    const Adp u{0.1, 0.2, 0.3, 0.01, 0.02, 0.03};
+    const Adp expected{0.2, 0.1, 0.3, -0.01, -0.03, 0.02};
+    const Adp turned = quarter.turned(u);
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(turned[k], expected[k], 1e-12);
+    // The mean square displacement along a direction that turns along stays: n^T U n.
+    SeededRandom random(5);
+    for (int trial = 0; trial < 20; ++trial) {
+        AtomMove move;
+        move.turn = random.rotation().toRotationMatrix();
+        const Adp v = move.turned(u);
+        const auto along = [](const Adp& a, const Vec3& n) {
+            return a[0] * n.x() * n.x() + a[1] * n.y() * n.y() + a[2] * n.z() * n.z() +
+                   2.0 * (a[3] * n.x() * n.y() + a[4] * n.x() * n.z() + a[5] * n.y() * n.z());
+        };
+        for (int i = 0; i < 5; ++i) {
+            const Vec3 n = random.direction();
+            EXPECT_NEAR(along(v, move.turn * n), along(u, n), 1e-12);
+        }
+    }
+}
+
+TEST_F(Export, APdbComesBackWhereTheBodyWas) {
+    const fs::path file = write("small.pdb", kPdb);
+    const SceneFile scene = this->scene({file});
+    const auto written = export_bodies(scene, {{7, 0, tilted()}}, {.folder = out()});
+    EXPECT_EQ(written, (std::vector<fs::path>{out() / "small-body7.pdb", out() / "small-body7.matrix.txt",
+                                              out() / "bodies.csv"}));
+    expect_same_place(import_structure(written[0]).structure, import_structure(file).structure, tilted());
+    EXPECT_EQ(read(file), kPdb);
+
+    // gemmi reads all of it, and finds every atom where the matrix puts it.
+    const gemmi::Structure before = gemmi::read_pdb_string(kPdb, "before");
+    const gemmi::Structure after = gemmi::read_pdb_string(read(written[0]), "after");
+    const AtomMove move = AtomMove::of(tilted(), import_structure(file).structure.home_com_model_m);
+    ASSERT_EQ(after.models.size(), 2U);
+    std::size_t atoms = 0;
+    for (std::size_t m = 0; m < 2; ++m) {
+        ASSERT_EQ(after.models[m].chains.size(), before.models[m].chains.size());
+        for (std::size_t c = 0; c < after.models[m].chains.size(); ++c) {
+            const gemmi::Chain &a = after.models[m].chains[c], &b = before.models[m].chains[c];
+            ASSERT_EQ(a.residues.size(), b.residues.size());
+            for (std::size_t r = 0; r < a.residues.size(); ++r) {
+                EXPECT_EQ(a.residues[r].name, b.residues[r].name);
+                for (std::size_t i = 0; i < a.residues[r].atoms.size(); ++i, ++atoms) {
+                    const gemmi::Atom &x = a.residues[r].atoms[i], &y = b.residues[r].atoms[i];
+                    EXPECT_EQ(x.name, y.name);
+                    EXPECT_EQ(x.altloc, y.altloc);
+                    EXPECT_EQ(x.charge, y.charge);
+                    EXPECT_EQ(x.b_iso, y.b_iso);
+                    const Vec3 there = move * Vec3(y.pos.x, y.pos.y, y.pos.z);
+                    EXPECT_LT((Vec3(x.pos.x, x.pos.y, x.pos.z) - there).cwiseAbs().maxCoeff(), 0.00051);
+                    EXPECT_EQ(x.aniso.nonzero(), y.aniso.nonzero());
+                    const Adp u = move.turned(
+                        {y.aniso.u11, y.aniso.u22, y.aniso.u33, y.aniso.u12, y.aniso.u13, y.aniso.u23});
+                    EXPECT_NEAR(x.aniso.u11, u[0], 6e-5);
+                    EXPECT_NEAR(x.aniso.u13, u[4], 6e-5);
+                    EXPECT_NEAR(x.aniso.u23, u[5], 6e-5);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(atoms, 9U);
+
+    const std::string text = read(written[0]);
+    for (const char* gone : {"BIOMT1", "SMTRY1", "SCALE1", "MASTER", "50.000   60.000"})
+        EXPECT_EQ(text.find(gone), std::string::npos) << gone;
+    for (const char* kept : {"HELIX ", "CONECT", "A SMALL FILE", "HOH B 401", "correlation_about_zero",
+                             "CRYST1    1.000", "angle_deg"})
+        EXPECT_NE(text.find(kept), std::string::npos) << kept;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U);
+}
+
+TEST_F(Export, AnMmcifComesBackWhereTheBodyWas) {
+    const fs::path file = write("small.cif", kCif);
+    const SceneFile scene = this->scene({file});
+    const auto written = export_bodies(scene, {{1, 0, tilted()}}, {.folder = out()});
+    ASSERT_EQ(written[0].filename(), "small-body1.cif");
+    expect_same_place(import_structure(written[0]).structure, import_structure(file).structure, tilted());
+    const std::string text = read(written[0]);
+    gemmi::cif::Document document = gemmi::cif::read_string(text);
+    gemmi::cif::Block& block = document.sole_block();
+    EXPECT_EQ(block.find_value("_cell.length_a"), nullptr);
+    ASSERT_NE(block.find_value("_struct.title"), nullptr);
+    ASSERT_NE(block.find_value("_tact_fit.correlation_about_mean"), nullptr);
+    EXPECT_EQ(block.find_values("_atom_site.fract_x")[0], "?");
+    const std::vector<FileAtom> before = mmcif_atoms(kCif, "before"), after = mmcif_atoms(text, "after");
+    const AtomMove move = AtomMove::of(tilted(), import_structure(file).structure.home_com_model_m);
+    ASSERT_TRUE(after[1].adp_u);
+    const Adp u = move.turned(*before[1].adp_u);
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR((*after[1].adp_u)[k], u[k], 6e-5);
+    EXPECT_FALSE(after[0].adp_u);
+    // A second save says one fit, not two.
+    const auto again = export_bodies(this->scene({written[0]}), {{1, 0, tilted()}}, {.folder = out() / "b"});
+    const std::string second = read(again[0]);
+    EXPECT_EQ(second.find("_tact_fit.body"), second.rfind("_tact_fit.body"));
+}
+
+TEST_F(Export, SavedFilesMakeANewSceneThatHasTheBodiesThere) {
+    const SceneFile scene = this->scene({write("small.pdb", kPdb), write("other.cif", kCif)});
+    std::vector<PlacedBody> bodies{{1, 0, tilted()}, {2, 1, tilted().inverse()}, {5, 0, Pose{}}};
+    const auto written = export_bodies(scene, bodies, {.folder = out()});
+    ASSERT_EQ(written.size(), 7U);
+    const SceneFile fresh = this->scene({written[0], written[2], written[4]});
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const Structure before = read_structure(scene, bodies[i].structure), after = read_structure(fresh, i);
+        expect_same_place(after, before, bodies[i].T_model_body);
+        EXPECT_LT((after.home_com_model_m - bodies[i].T_model_body.p_m).norm(), 0.001 * kA);
+    }
+}
+
+TEST_F(Export, TheMatrixAxisAndAngleAreThoseOfThePose) {
+    const fs::path file = write("small.pdb", kPdb);
+    const auto written = export_bodies(scene({file}), {{3, 0, tilted()}}, {.folder = out()});
+    std::istringstream text(read(written[1]));
+    std::vector<double> m;
+    Vec3 axis = Vec3::Zero();
+    double angle_deg = 0.0;
+    for (std::string line; std::getline(text, line);) {
+        std::istringstream words(line);
+        std::string first;
+        if (line.starts_with("# axis")) words >> first >> first >> axis[0] >> axis[1] >> axis[2];
+        if (line.starts_with("# angle_deg")) words >> first >> first >> angle_deg;
+        if (line.starts_with("#")) continue;
+        for (double v = 0.0; words >> v;) m.push_back(v);
+    }
+    ASSERT_EQ(m.size(), 12U);
+    const Vec3 r(0.7, -0.4, 1.1);
+    EXPECT_NEAR(angle_deg, r.norm() / kDegreeRad, 1e-5);
+    EXPECT_LT((axis - r.normalized()).norm(), 1e-8);
+    const Vec3 atom(11.104, 6.134, -6.504);
+    const Structure s = import_structure(file).structure;
+    const Vec3 there_a = (tilted() * (atom * kA - s.home_com_model_m)) / kA;
+    for (std::size_t row = 0; row < 3; ++row)
+        EXPECT_NEAR(
+            m[4 * row] * atom.x() + m[4 * row + 1] * atom.y() + m[4 * row + 2] * atom.z() + m[4 * row + 3],
+            there_a[static_cast<int>(row)], 1e-5);
+    const std::string csv = read(written[2]);
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+    const std::string row = csv.substr(csv.find('\n') + 1);
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(csv.begin(), csv.end(), ',') / 2);
+    EXPECT_TRUE(row.starts_with("3,0,\"small.pdb\",\"small-body3.pdb\","));
+}
+
+TEST_F(Export, WhatDoesNotFitThePdbBecomesMmcif) {
+    const fs::path file = write("small.pdb", kPdb);
+    const Pose far{Vec3(-5000.0, 0.0, 0.0) * kA, tilted().q};
+    const auto written = export_bodies(scene({file}), {{1, 0, far}}, {.folder = out()});
+    ASSERT_EQ(written[0].filename(), "small-body1.cif");
+    expect_same_place(import_structure(written[0]).structure, import_structure(file).structure, far);
+    const std::vector<FileAtom> atoms = mmcif_atoms(read(written[0]), "far");
+    ASSERT_EQ(atoms.size(), 9U);
+    EXPECT_TRUE(atoms[0].adp_u);
+    EXPECT_EQ(atoms[8].model, 2);
+}
+
+TEST_F(Export, CopiesCombineWithAChainIdForEach) {
+    const SceneFile scene = this->scene({write("small.pdb", kPdb)});
+    std::vector<PlacedBody> bodies;
+    for (std::uint32_t i = 0; i < 6; ++i)
+        bodies.push_back({10 + i, 0, {Vec3(20.0 * i, 0.0, 0.0) * kA, tilted().q}});
+    auto written = export_bodies(scene, bodies, {.folder = out(), .combined = true});
+    ASSERT_EQ(written.size(), 14U);
+    EXPECT_EQ(std::set<fs::path>(written.begin(), written.end()).size(), 14U);
+    ASSERT_EQ(written.back().filename(), "combined.pdb");
+    const Structure all = import_structure(written.back()).structure;
+    EXPECT_EQ(all.chain_names.size(), 12U);
+    EXPECT_EQ(all.size(), 6 * import_structure(folder_ / "small.pdb").structure.size());
+    // Sixty-two letters are not enough for 40 copies of two chains.
+    while (bodies.size() < 40)
+        bodies.push_back({static_cast<std::uint32_t>(100 + bodies.size()), 0, tilted()});
+    written = export_bodies(scene, bodies, {.folder = out() / "many", .combined = true});
+    ASSERT_EQ(written.back().filename(), "combined.cif");
+    const Structure many = import_structure(written.back()).structure;
+    EXPECT_EQ(many.chain_names.size(), 80U);
+}
+
+TEST_F(Export, NothingIsOverwrittenAndInputsNever) {
+    const fs::path file = write("small.pdb", kPdb);
+    const SceneFile scene = this->scene({file});
+    const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
+    const auto written = export_bodies(scene, bodies, {.folder = out()});
+    const std::string first = read(written[0]);
+    EXPECT_NE(error_of([&] {
+                  export_bodies(scene, {{1, 0, Pose{}}}, {.folder = out()});
+              }).find("--force"),
+              std::string::npos);
+    EXPECT_EQ(read(written[0]), first);
+    export_bodies(scene, {{1, 0, Pose{}}}, {.folder = out(), .force = true});
+    EXPECT_NE(read(written[0]), first);
+    // A target that is the input by another name.
+    fs::create_directory(folder_ / "trap");
+    fs::create_symlink(file, folder_ / "trap" / "small-body1.pdb");
+    EXPECT_NE(error_of([&] {
+                  export_bodies(scene, bodies, {.folder = folder_ / "trap", .force = true});
+              }).find("baked from"),
+              std::string::npos);
+    EXPECT_EQ(read(file), kPdb);
+    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = file / "x"}); }), "");
+}
+
+TEST_F(Export, ASourceThatIsGoneOrChangedIsSaid) {
+    const fs::path file = write("small.pdb", kPdb);
+    const SceneFile scene = this->scene({file});
+    const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
+    std::string other = kPdb;
+    other[other.find("11.104")] = '2';
+    write("small.pdb", other);
+    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("has changed"),
+              std::string::npos);
+    fs::remove(file);
+    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("is not there"),
+              std::string::npos);
+    EXPECT_FALSE(fs::exists(out()));
+    sample::scene().write(folder_ / "made.tact");
+    EXPECT_NE(error_of([&] {
+                  export_bodies(SceneFile::open(folder_ / "made.tact"), bodies, {.folder = out()});
+              }).find("made in code"),
+              std::string::npos);
+}
+
+TEST(PosesFile, ReadsWhatARunWritesAndPassesOverTheRest) {
+    const auto bodies = read_poses(
+        R"({"seconds": 3, "bodies": [{"id": 4, "structure": 1, "name": "x", "flags": 1, "pos_model_a": [1, -2.5, 3],
+            "quat_model_body_xyzw": [0, 0, 1, 0]}]})",
+        "run.json", 2);
+    ASSERT_EQ(bodies.size(), 1U);
+    EXPECT_EQ(bodies[0].id, 4U);
+    EXPECT_EQ(bodies[0].structure, 1U);
+    EXPECT_NEAR(bodies[0].T_model_body.p_m.y(), -2.5e-10, 1e-20);
+    EXPECT_EQ(bodies[0].T_model_body.q.z(), 1.0);
+}
+
+TEST(PosesFile, WhatCannotBeIsRefused) {
+    const auto refused = [](const std::string& text) {
+        return !error_of([&] { read_poses(text, "x", 2); }).empty();
+    };
+    const std::string good =
+        R"({"id":1,"structure":0,"pos_model_a":[0,0,0],"quat_model_body_xyzw":[0,0,0,1]})";
+    const auto list = [](const std::string& body) { return "{\"bodies\":[" + body + "]}"; };
+    EXPECT_FALSE(refused(list(good)));
+    EXPECT_TRUE(refused(list(good + "," + good)));  // an id twice
+    for (const char* bad :
+         {"", "[]", "{}", "{\"bodies\":3}", "{\"bodies\":[]}", "{\"bodies\":[3]}", "nonsense"})
+        EXPECT_TRUE(refused(bad)) << bad;
+    const std::pair<const char*, const char*> changes[] = {{"\"id\":1", "\"id\":-1"},
+                                                           {"\"id\":1", "\"id\":1.5"},
+                                                           {"\"id\":1", "\"id\":1e300"},
+                                                           {"\"id\":1", "\"id\":\"1\""},
+                                                           {"\"structure\":0", "\"structure\":2"},
+                                                           {"\"structure\":0", "\"other\":0"},
+                                                           {"[0,0,0]", "[0,0]"},
+                                                           {"[0,0,0]", "[0,0,\"a\"]"},
+                                                           {"[0,0,0]", "[0,0,1e9]"},
+                                                           {"[0,0,0]", "[0,0,1e400]"},
+                                                           {"[0,0,0,1]", "[0,0,0,0]"},
+                                                           {"[0,0,0,1]", "[0,0,0,2]"},
+                                                           {"[0,0,0,1]", "[0,0,0,null]"}};
+    for (const auto& [from, to] : changes) {
+        std::string body = good;
+        body.replace(body.find(from), std::string(from).size(), to);
+        EXPECT_TRUE(refused(list(body))) << body;
+    }
+}
+
+TEST_F(Export, DamagedFilesAreRefusedInWords) {
+    for (const char* bad : {"ATOM      1  N   GLY A   1      11.1x4   6.134  -6.504\n",
+                            "ATOM      1  N   GLY A   1      11.104   6.134\n",
+                            "ATOM      1  N   GLY A   1         nan   6.134  -6.504\n"})
+        EXPECT_FALSE(error_of([&] { (void)moved_pdb(bad, "bad.pdb", {}, {}); }).empty()) << bad;
+    EXPECT_FALSE(error_of([&] { (void)moved_mmcif("loop_ _a", "bad.cif", {}, {}); }).empty());
+}
+
+}  // namespace
+}  // namespace tact
