@@ -15,6 +15,7 @@
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/run_report.hpp"
+#include "deploy/tact/save_fit.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
 #include "ipc/base/error.hpp"
@@ -46,6 +47,7 @@ public:
           observer_(options_.session) {
         facts_.scene = std::filesystem::absolute(scene);
         facts_.session = options_.session;
+        if (!options_.save.empty()) check_save(file_, options_.save);  // not after an hour of work
     }
 
     int go() {
@@ -209,7 +211,19 @@ private:
                 std::fprintf(stderr, "there is no picture %s: the window went before its time\n",
                              options_.screenshot.c_str());
         }
+        if (!options_.save.empty()) save(region);
         return facts_.intended ? 0 : 1;
+    }
+
+    // Where the controller left the bodies, however it ended.
+    void save(const RtRegion* region) {
+        const auto bodies = region != nullptr ? newest(region->bodies) : std::nullopt;
+        const nlohmann::json poses =
+            bodies ? poses_json(*bodies, places_.structures()) : nlohmann::json::object();
+        if (!poses.contains("bodies") || poses["bodies"].empty())
+            throw StartupError("saving into " + options_.save.string(),
+                               "the controller never said where the bodies are", "see what it said above");
+        save_fit(facts_.scene, poses, options_.save, options_.programs);
     }
 
     void note(const std::string& name, const Ending& e) {

@@ -46,6 +46,7 @@ void RunOptions::settle() {
                            "--screenshot needs the visual process, and --no-gui leaves it out",
                            "leave one of the two away; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
+    if (!save.empty()) save = std::filesystem::absolute(save);
     if (!screenshot.empty()) {
         screenshot = std::filesystem::absolute(screenshot);
         std::error_code failed;
@@ -68,6 +69,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
         ->type_name("FILE.png");
     app.add_option("--json", options.json, "what was measured in the run")->type_name("FILE");
     app.add_option("--out", options.out, "folder for run.json, run.csv (ten rows a second) and run.png")
+        ->type_name("DIR");
+    app.add_option("--save", options.save,
+                   "new folder for the placed structures, their matrices and a table, at the end of the run")
         ->type_name("DIR");
     app.add_option("--session", options.session, "name under which the processes find each other")
         ->type_name("NAME")

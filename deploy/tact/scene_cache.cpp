@@ -21,7 +21,8 @@ std::filesystem::path path_for(const BakeRequest& request, const std::filesystem
     hash.add_file(prep);  // another tact-prep may bake otherwise
     for (const auto& file : request.inputs) {
         hash.add_file(file);
-        hash.add(file.filename().string());  // becomes the structure's name
+        // The structure's name, and where saving reads it again.
+        hash.add(std::filesystem::absolute(file).string());
     }
     if (request.inputs.empty())
         for (const auto& w : request.words) hash.add(w);

@@ -73,7 +73,8 @@ void fill(RtRegion& region, std::uint64_t cycle) {
     BodiesTopic bodies{};
     bodies.count = 1;
     const Vec3 home = sample::structure().home_com_model_m;
-    bodies.body[0] = {{home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}};
+    bodies.body[0] = {
+        {home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, 6, 0, 0};
     region.bodies.publish(bodies);
 }
 
@@ -122,13 +123,21 @@ int window(int argc, char** argv) {
     return 0;
 }
 
+// Leaves what it was asked in the folder that it should write to.
+int prep(int argc, char** argv) {
+    if (misbehaviour() == "prep") return 5;
+    std::ofstream said(value_of(argc, argv, "-o") + "/asked.txt");
+    for (int i = 1; i < argc; ++i) said << argv[i] << '\n';
+    return 0;
+}
+
 class DeployRun : public testing::Test {
 protected:
     void SetUp() override {
         setenv("TACT_RUNTIME_DIR", scratch_.path().c_str(), 1);
         setenv("DISPLAY", ":0", 0);  // the stand-in opens no window
         const auto self = std::filesystem::read_symlink("/proc/self/exe");
-        for (const char* const name : {"tact-rt", "tact-gui"})
+        for (const char* const name : {"tact-rt", "tact-gui", "tact-prep"})
             std::filesystem::create_symlink(self, scratch_.path() / name);
         scene_ = scratch_.path() / "sample.tact";
         sample::scene().write(scene_);
@@ -163,6 +172,19 @@ protected:
         return code;
     }
 
+    // The same for a run with --save, which ends with an error where the controller was not seen.
+    std::string error_once_seen() {
+        std::string error;
+        for (const double seconds : {0.3, 10.0, 60.0}) {
+            options_.seconds = seconds;
+            testing::internal::CaptureStdout();
+            error = sample::error_of([&] { run_scene(scene_, options_); });
+            (void)testing::internal::GetCapturedStdout();
+            if (error.find("never said where") == std::string::npos) break;
+        }
+        return error;
+    }
+
     template <class F>
     static bool within_a_minute(F&& wanted) {
         const Instant end = Monotonic::now() + std::chrono::minutes(1);
@@ -182,6 +204,55 @@ protected:
     std::string said_;
     nlohmann::json report_;
 };
+
+// A scene that says which files its structures came from.
+void write_scene_of_files(const std::filesystem::path& path) {
+    sample::scene(sample::meta(), sample::structure(), sample::codebook(), sample::grid(),
+                  "map: sample\nstructure: /a.pdb\nstructure check: 1 bytes, crc32 00000000\n")
+        .write(path);
+}
+
+TEST_F(DeployRun, at_the_end_tact_prep_is_asked_to_save_the_last_places) {
+    write_scene_of_files(scene_);
+    options_.gui = false;
+    options_.save = scratch_.path() / "fit";
+    ASSERT_EQ(error_once_seen(), "");
+    const auto poses = nlohmann::json::parse(read_small(options_.save / "poses.json"))["bodies"];
+    ASSERT_EQ(poses.size(), 1U);
+    EXPECT_EQ(poses[0]["id"], 6);
+    EXPECT_EQ(poses[0]["structure"], 0);
+    EXPECT_EQ(poses[0]["name"], sample::structure().name);
+    const Vec3 home_a = sample::structure().home_com_model_m * 1e10;
+    EXPECT_NEAR(poses[0]["pos_model_a"][0].get<double>(), home_a.x() + 3.0, 1e-9);
+    EXPECT_NEAR(poses[0]["pos_model_a"][2].get<double>(), home_a.z(), 1e-9);
+    EXPECT_NEAR(poses[0]["quat_model_body_xyzw"][2].get<double>(), std::sqrt(0.5), 1e-12);
+    EXPECT_EQ(read_small(options_.save / "asked.txt"), "export\n" + scene_.string() + "\n--poses\n" +
+                                                           (options_.save / "poses.json").string() +
+                                                           "\n-o\n" + options_.save.string() + "\n");
+}
+
+TEST_F(DeployRun, what_could_not_be_saved_is_said_before_the_run) {
+    options_.gui = false;
+    options_.save = scratch_.path() / "fit";
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("made in code"), std::string::npos);
+    write_scene_of_files(scene_);
+    std::filesystem::create_directory(options_.save);
+    std::ofstream(options_.save / "mine") << "x";
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("never overwritten"),
+              std::string::npos);
+    options_.save = options_.save / "mine";
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("no folder"), std::string::npos);
+}
+
+TEST_F(DeployRun, a_save_that_fails_is_said_and_keeps_the_places) {
+    misbehave("prep");
+    write_scene_of_files(scene_);
+    options_.gui = false;
+    options_.save = scratch_.path() / "fit";
+    const std::string error = error_once_seen();
+    EXPECT_NE(error.find("exit code 5"), std::string::npos) << error;
+    EXPECT_TRUE(std::filesystem::exists(options_.save / "poses.json"));
+}
 
 TEST_F(DeployRun, the_json_holds_what_the_controller_published) {
     options_.gui = false;
@@ -348,6 +419,7 @@ int main(int argc, char** argv) {
     const std::string name = std::filesystem::path(argv[0]).filename();
     if (name == "tact-rt") return tact::launch::controller(argc, argv);
     if (name == "tact-gui") return tact::launch::window(argc, argv);
+    if (name == "tact-prep") return tact::launch::prep(argc, argv);
     testing::InitGoogleTest(&argc, argv);
     return RUN_ALL_TESTS();
 }

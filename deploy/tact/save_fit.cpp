@@ -1,0 +1,75 @@
+#include "deploy/tact/save_fit.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/run_report.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact::launch {
+namespace {
+
+// Writing some hundred thousand atoms for each of sixteen bodies takes seconds.
+constexpr auto kExportLimit = std::chrono::minutes(10);
+
+}  // namespace
+
+void check_save(const SceneFile& scene, const std::filesystem::path& folder) {
+    const std::string attempt = "saving into " + folder.string();
+    std::error_code ignored;
+    if (std::filesystem::exists(folder, ignored)) {
+        if (!std::filesystem::is_directory(folder, ignored))
+            throw StartupError(attempt, "it is no folder", "give another name to --save");
+        if (!std::filesystem::is_empty(folder, ignored))
+            throw StartupError(attempt, "it holds something already, which is never overwritten",
+                               "give another name to --save, or empty the folder");
+    }
+    if (read_note(scene).find("\nstructure check: ") == std::string::npos)
+        throw StartupError(attempt,
+                           "the scene " + scene.name() +
+                               " does not say from which files its structures came: it was made in code, or "
+                               "baked by an older tact-prep",
+                           "run it without --save, or dock files: tact dock MAP MODEL --save DIR");
+}
+
+nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures) {
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < std::min<std::size_t>(bodies.count, kBodiesMax); ++i) {
+        const BodyPlace& b = bodies.body[i];
+        const double* const p = b.pos_model_m;
+        const double* const q = b.quat_model_body_xyzw;
+        const bool sound = b.structure < structures.size() && Vec3(p).allFinite() &&
+                           std::abs(Quat(q[3], q[0], q[1], q[2]).norm() - 1.0) < 1e-3;
+        if (!sound) continue;
+        list.push_back({{"id", b.id},
+                        {"structure", b.structure},
+                        {"name", structures[b.structure].name},
+                        {"pos_model_a", {p[0] / kAngstromM, p[1] / kAngstromM, p[2] / kAngstromM}},
+                        {"quat_model_body_xyzw", {q[0], q[1], q[2], q[3]}}});
+    }
+    return {{"bodies", list}};
+}
+
+void save_fit(const std::filesystem::path& scene, const nlohmann::json& poses,
+              const std::filesystem::path& folder, const std::filesystem::path& programs) {
+    const auto file = folder / "poses.json";
+    write_whole(file, report_text(poses));
+    std::printf("wrote %s\n", file.c_str());
+    std::fflush(stdout);
+    ChildSettings settings;
+    settings.arguments = {"export", scene.string(), "--poses", file.string(), "-o", folder.string()};
+    Child child("tact-prep", find_program("tact-prep", programs), settings);
+    const auto& ending = child.wait(kExportLimit);
+    if (!ending || !ending->clean())
+        throw StartupError("saving into " + folder.string(),
+                           "tact-prep " + (ending ? ending->text() : std::string("did not end")),
+                           "see what it said above; the places are in " + file.string() +
+                               ", and tact-prep export writes them from there");
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,26 @@
+// --save DIR: what the hand placed, written by tact-prep export when the run is over.
+//
+// Fails by  StartupError: before the run where it could not be saved anyway (DIR holds something, the scene
+//           was made in code), after it where tact-prep fails.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "deploy/tact/place.hpp"
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/topics/bodies.hpp"
+
+namespace tact::launch {
+
+// Throws where saving into the folder could not succeed.
+void check_save(const SceneFile& scene, const std::filesystem::path& folder);
+
+// The places as tact-prep export and a run's --poses read them; bodies that make no sense are left out.
+nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures);
+
+// Writes DIR/poses.json, runs tact-prep, which says on standard output what it wrote.
+void save_fit(const std::filesystem::path& scene, const nlohmann::json& poses,
+              const std::filesystem::path& folder, const std::filesystem::path& programs);
+
+}  // namespace tact::launch
