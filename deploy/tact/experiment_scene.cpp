@@ -149,10 +149,10 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     std::erase_if(coarse.levels, [](const Codebook::Level& l) { return l.size() >= 200; });
     if (coarse.levels.size() > 1) coarse.levels.erase(coarse.levels.begin(), coarse.levels.end() - 1);
     write_codebook(out, 0, coarse);
-    const ProgressiveMesh mesh = read_mesh(fine, 0);
-    write_mesh(out, 0, mesh.data());
+    const ProgressiveMeshData mesh = read_mesh_data(fine, 0);
+    write_mesh(out, 0, mesh);
     out.write(made.path);
-    made.vertices = mesh.vertices();
+    made.vertices = static_cast<std::uint32_t>(mesh.vertex.size());
     made.points_felt = heavy.size();
     return made;
 }

@@ -203,7 +203,8 @@ private:
     void use_scene() {
         if (!programs_) programs_ = std::make_unique<Programs>();
         view_ = std::make_unique<SceneView>(content_, *programs_);
-        view_->set_vertices(view_->vertices_max());
+        vertices_wanted_ = view_->vertices_max();
+        view_->approach_vertices(vertices_wanted_, 1e9);  // at once: nothing is drawn yet
         camera_.frame(view_->radius_a());
         fit_.reset();
         outcome_ = FitOutcome{};
@@ -243,8 +244,10 @@ private:
                                           ? find_path(controller_.levels, kMeshPath)
                                           : nullptr;
         // Without a controller the surface stays as it was last told; at first that is all of it.
-        if (path == nullptr) return;
-        view_->set_vertices(vertices_for(*path, content_->mesh->vertices_min(), content_->mesh->vertices()));
+        if (path != nullptr)
+            vertices_wanted_ =
+                vertices_for(*path, content_->mesh->vertices_min(), content_->mesh->vertices());
+        view_->approach_vertices(vertices_wanted_, adapt_budget_s(clock_.frame_s()));
         state_.scene.mesh_error_m = view_->error_m();
     }
 
@@ -412,6 +415,7 @@ private:
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
+    std::uint32_t vertices_wanted_ = 0;
     std::unique_ptr<FitWorker> fit_;
     FitOutcome outcome_;
     ViewOptions view_options_;

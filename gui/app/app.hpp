@@ -1,6 +1,6 @@
 // The visual process: one frame after the other until it is closed, its time is over or a signal comes.
 //
-// A frame   adapt    read the controller's topics, obey the level of "gui.mesh"
+// A frame   adapt    read the controller's topics, go towards the level of "gui.mesh"
 //           upload   what of the surface changed
 //           scene    the 3D view
 //           panels   the dashboard

@@ -1,4 +1,4 @@
-// The knob of the surface: from the governor's level to a number of vertices.
+// The knob of the surface: from the governor's level to a number of vertices, and how fast to go there.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +20,13 @@ namespace tact {
         wanted = std::round(static_cast<double>(path.level) * vertices_max);
     return static_cast<std::uint32_t>(
         std::clamp(wanted, static_cast<double>(vertices_min), static_cast<double>(vertices_max)));
+}
+
+// What adapting and uploading the surface may take of a frame: a quarter of a frame as long as the last one,
+// since a picture that is late anyway had better reach its new level soon; never less than 2 ms. A rebuild of
+// a surface of 100,000 vertices fits that. In a slow or interrupted frame the budget stays below 50 ms.
+[[nodiscard]] inline double adapt_budget_s(double frame_s) noexcept {
+    return frame_s > 0.008 ? std::min(0.25 * frame_s, 0.05) : 0.002;
 }
 
 }  // namespace tact

@@ -18,9 +18,12 @@ struct Box {
 
 void find_extent(SceneContent& content) {
     Box box;
+    const auto original = [&](std::uint32_t i) {
+        const auto& p = content.mesh->vertex(i).position_m;
+        return Vec3(p[0], p[1], p[2]);
+    };
     if (content.mesh) {
-        for (const MeshVertex& v : content.mesh->data().vertex)
-            box.add(Vec3(v.position_m[0], v.position_m[1], v.position_m[2]));
+        for (std::uint32_t i = 0; i < content.mesh->vertices(); ++i) box.add(original(i));
     }
     for (const Structure& s : content.bodies)
         for (std::size_t i = 0; i < s.size(); ++i)
@@ -33,8 +36,7 @@ void find_extent(SceneContent& content) {
     double most = 1e-10;  // one ångström at least
     const auto reach = [&](const Vec3& p) { most = std::max(most, (p - content.centre_model_m).norm()); };
     if (content.mesh) {
-        for (const MeshVertex& v : content.mesh->data().vertex)
-            reach(Vec3(v.position_m[0], v.position_m[1], v.position_m[2]));
+        for (std::uint32_t i = 0; i < content.mesh->vertices(); ++i) reach(original(i));
     }
     for (const Structure& s : content.bodies)
         for (std::size_t i = 0; i < s.size(); ++i)

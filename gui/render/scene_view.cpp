@@ -117,8 +117,8 @@ SceneView::Points SceneView::make_points(const Codebook::Level& level) {
     return points;
 }
 
-void SceneView::set_vertices(std::uint32_t wanted) noexcept {
-    if (surface_) surface_->set_vertices(wanted);
+void SceneView::approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
+    if (surface_) surface_->approach(wanted, budget_s);
 }
 
 std::size_t SceneView::upload() { return surface_ ? surface_->upload() : 0; }

@@ -40,7 +40,8 @@ public:
     SceneView(std::shared_ptr<const SceneContent> content, Programs& programs);
 
     [[nodiscard]] const SceneContent& content() const { return *content_; }
-    void set_vertices(std::uint32_t wanted) noexcept;
+    // Of the surface; as far as `budget_s` of this frame allows, see Surface.
+    void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
     std::size_t upload();
     void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
 

@@ -16,7 +16,14 @@ Surface::Surface(const ProgressiveMesh& mesh) : cut_(mesh) {
     glBindVertexArray(0);
 }
 
+void Surface::approach(std::uint32_t wanted, double budget_s) noexcept {
+    const Instant begin = Monotonic::now();
+    cut_.approach(wanted, pace_.budget_ns(budget_s));
+    moving_ = Monotonic::now() - begin;
+}
+
 std::size_t Surface::upload() {
+    const Instant begin = Monotonic::now();
     const MeshChanges changes = cut_.changes();
     if (changes.vertex.empty() && changes.index.empty()) return 0;
     std::size_t sent = 0;
@@ -34,13 +41,23 @@ std::size_t Surface::upload() {
     send(vertices_.get(), changes.vertex, cut_.vertex().data(), sizeof(MeshVertex));
     send(indices_.get(), changes.index, cut_.index().data(), sizeof(std::uint32_t));
     glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    if (drawn_) pace_.took(cut_.cost_ns(), to_s(moving_ + (Monotonic::now() - begin)));
+    drawn_ = true;
     return sent;
 }
 
 void Surface::draw() {
     glBindVertexArray(array_.get());
     glVertexAttrib4f(2, 0.66F, 0.80F, 0.95F, 1.0F);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * cut_.triangles()), GL_UNSIGNED_INT, nullptr);
+    draw_count_.clear();
+    draw_first_.clear();
+    for (const MeshRange& range : cut_.draws()) {
+        if (range.count == 0) continue;
+        draw_count_.push_back(static_cast<GLsizei>(range.count));
+        draw_first_.push_back(reinterpret_cast<const void*>(sizeof(std::uint32_t) * range.first));
+    }
+    glMultiDrawElements(GL_TRIANGLES, draw_count_.data(), GL_UNSIGNED_INT, draw_first_.data(),
+                        static_cast<GLsizei>(draw_count_.size()));
     glBindVertexArray(0);
 }
 

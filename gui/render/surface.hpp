@@ -5,9 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "gui/render/gl.hpp"
+#include "gui/render/mesh_pace.hpp"
 #include "ipc/assets/mesh_cut.hpp"
+#include "ipc/base/clock.hpp"
 
 namespace tact {
 
@@ -15,7 +18,8 @@ class Surface {
 public:
     explicit Surface(const ProgressiveMesh& mesh);  // mesh must outlive this
 
-    void set_vertices(std::uint32_t wanted) noexcept { cut_.set_vertices(wanted); }
+    // Towards it as far as `budget_s` allows for this and the next upload(). Call it every frame.
+    void approach(std::uint32_t wanted, double budget_s) noexcept;
     // Bytes sent.
     std::size_t upload();
     void draw();  // with a program in use
@@ -23,6 +27,11 @@ public:
 
 private:
     MeshCut cut_;
+    MeshPace pace_;
+    bool drawn_ = false;  // the first upload is all of it and no measure
+    Duration moving_{};   // of the last approach(), until its changes are sent
+    std::vector<GLsizei> draw_count_;
+    std::vector<const void*> draw_first_;
     GlVertexArray array_;
     GlBuffer vertices_, indices_;
 };

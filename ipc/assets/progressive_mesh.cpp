@@ -35,86 +35,87 @@ bool sane(const MeshVertex& vertex) {
            vertex.normal[3] == 0;
 }
 
-}  // namespace
-
-ProgressiveMesh::ProgressiveMesh(ProgressiveMeshData data) : data_(std::move(data)) {
-    check_counts();
-    check_content();
-    derive_vertices();
-    derive_corners();
-}
-
-void ProgressiveMesh::check_counts() const {
-    const std::size_t n = data_.vertex.size();
-    const std::size_t t = data_.triangle.size() / 3;
+void check_counts(const ProgressiveMeshData& data) {
+    const std::size_t n = data.vertex.size();
+    const std::size_t t = data.triangle.size() / 3;
     if (n > kCountMax || t > kCountMax)
         refuse("it has more than " + std::to_string(kCountMax) + " vertices or triangles");
-    if (data_.base_vertices < 1 || data_.base_vertices > n)
-        refuse("its base has " + std::to_string(data_.base_vertices) + " of " + std::to_string(n) +
+    if (data.base_vertices < 1 || data.base_vertices > n)
+        refuse("its base has " + std::to_string(data.base_vertices) + " of " + std::to_string(n) +
                " vertices");
-    const std::size_t contractions = n - data_.base_vertices;
-    if (data_.triangle.size() % 3 != 0 || data_.parent.size() != contractions ||
-        data_.merged.size() != contractions || data_.error_m.size() != contractions + 1 ||
-        data_.triangle_count.size() != contractions + 1)
+    const std::size_t contractions = n - data.base_vertices;
+    if (data.triangle.size() % 3 != 0 || data.parent.size() != contractions ||
+        data.merged.size() != contractions || data.error_m.size() != contractions + 1 ||
+        data.triangle_count.size() != contractions + 1)
         refuse("its tables do not have the lengths that its counts ask for");
-    if (data_.triangle_count.back() != t) refuse("its finest level does not have all triangles");
+    if (data.triangle_count.back() != t) refuse("its finest level does not have all triangles");
 }
 
-void ProgressiveMesh::check_content() const {
-    const auto n = static_cast<std::uint32_t>(data_.vertex.size());
-    for (std::size_t k = 0; k < data_.parent.size(); ++k) {
-        const std::size_t vertex = data_.base_vertices + k;
-        if (data_.parent[k] >= vertex)
+void check_content(const ProgressiveMeshData& data) {
+    const auto n = static_cast<std::uint32_t>(data.vertex.size());
+    for (std::size_t k = 0; k < data.parent.size(); ++k) {
+        const std::size_t vertex = data.base_vertices + k;
+        if (data.parent[k] >= vertex)
             refuse("vertex " + std::to_string(vertex) + " goes into vertex " +
-                   std::to_string(data_.parent[k]));
-        if (data_.triangle_count[k] > data_.triangle_count[k + 1])
+                   std::to_string(data.parent[k]));
+        if (data.triangle_count[k] > data.triangle_count[k + 1])
             refuse("level " + std::to_string(vertex) + " has more triangles than the next finer one");
-        if (!(data_.error_m[k] >= data_.error_m[k + 1]) || !std::isfinite(data_.error_m[k]))
+        if (!(data.error_m[k] >= data.error_m[k + 1]) || !std::isfinite(data.error_m[k]))
             refuse("the error of level " + std::to_string(vertex) + " is below that of the next finer one");
     }
-    if (!(data_.error_m.back() >= 0.0F) || !std::isfinite(data_.error_m.back()))
+    if (!(data.error_m.back() >= 0.0F) || !std::isfinite(data.error_m.back()))
         refuse("the error of the finest level is negative");
-    for (std::size_t c = 0; c < data_.triangle.size(); ++c) {
-        if (data_.triangle[c] >= n)
-            refuse("triangle " + std::to_string(c / 3) + " names vertex " +
-                   std::to_string(data_.triangle[c]) + " of " + std::to_string(n));
+    for (std::size_t c = 0; c < data.triangle.size(); ++c) {
+        if (data.triangle[c] >= n)
+            refuse("triangle " + std::to_string(c / 3) + " names vertex " + std::to_string(data.triangle[c]) +
+                   " of " + std::to_string(n));
     }
-    if (!std::all_of(data_.vertex.begin(), data_.vertex.end(), sane) ||
-        !std::all_of(data_.merged.begin(), data_.merged.end(), sane))
+    if (!std::all_of(data.vertex.begin(), data.vertex.end(), sane) ||
+        !std::all_of(data.merged.begin(), data.merged.end(), sane))
         refuse("a vertex is not finite, is further out than 1e6 m or has a damaged normal");
 }
 
-void ProgressiveMesh::derive_vertices() {
-    const std::uint32_t base = data_.base_vertices;
-    std::vector<MeshVertex> now = data_.vertex;
-    before_.resize(data_.parent.size());
-    child_.resize(data_.parent.size());
-    coarser_.resize(data_.parent.size());
-    finer_.resize(data_.parent.size());
-    std::vector<std::uint32_t> last(data_.vertex.size(), UINT32_MAX);
-    for (std::size_t k = data_.parent.size(); k-- > 0;) {
-        const std::uint32_t parent = data_.parent[k];
-        child_[k] = now[base + k];
-        before_[k] = now[parent];
-        now[parent] = data_.merged[k];
-        finer_[k] = last[parent];
-        coarser_[k] = parent;
-        if (last[parent] != UINT32_MAX) coarser_[last[parent] - base] = base + static_cast<std::uint32_t>(k);
-        last[parent] = base + static_cast<std::uint32_t>(k);
+}  // namespace
+
+ProgressiveMesh::ProgressiveMesh(ProgressiveMeshData data) {
+    check_counts(data);
+    check_content(data);
+    base_ = data.base_vertices;
+    order_versions(data);
+    derive_corners(data);
+    parent_ = std::move(data.parent);
+    error_m_ = std::move(data.error_m);
+    triangle_count_ = std::move(data.triangle_count);
+}
+
+void ProgressiveMesh::order_versions(const ProgressiveMeshData& data) {
+    const std::size_t n = data.vertex.size();
+    version_first_.assign(n + 1, 0);
+    for (const std::uint32_t parent : data.parent) ++version_first_[parent + 1];
+    for (std::size_t v = 0; v < n; ++v) version_first_[v + 1] += version_first_[v] + 1;
+    version_.resize(version_first_[n]);
+    version_level_.assign(version_.size() + 1, UINT32_MAX);
+    version_merged_.resize(data.parent.size());
+    std::vector<std::uint32_t> next(version_first_.begin(), version_first_.end() - 1);
+    for (std::size_t v = 0; v < n; ++v) version_[next[v]++] = data.vertex[v];
+    for (std::size_t k = data.parent.size(); k-- > 0;) {
+        const std::uint32_t to = next[data.parent[k]]++;
+        version_[to] = data.merged[k];
+        version_level_[to] = base_ + static_cast<std::uint32_t>(k);
+        version_merged_[k] = to;
     }
 }
 
-void ProgressiveMesh::derive_corners() {
-    const std::uint32_t base = data_.base_vertices;
-    const std::size_t contractions = data_.parent.size();
-    const std::uint64_t changes_max = kChangesPerItem * (contractions + data_.triangle.size() / 3) + 1024;
-    birth_ = data_.triangle;
+void ProgressiveMesh::derive_corners(const ProgressiveMeshData& data) {
+    const std::uint32_t base = base_;
+    const std::size_t contractions = data.parent.size();
+    const std::uint64_t changes_max = kChangesPerItem * (contractions + data.triangle.size() / 3) + 1024;
     change_first_.assign(contractions + 1, 0);
 
-    // visit(contraction, place in the index list) for every corner that a contraction moves.
+    // visit(contraction, triangle, corner) for every corner that a contraction moves.
     const auto lift = [&](std::size_t t, std::uint32_t born, auto&& visit) {
-        std::array<std::uint32_t, 3> v{data_.triangle[3 * t], data_.triangle[3 * t + 1],
-                                       data_.triangle[3 * t + 2]};
+        std::array<std::uint32_t, 3> v{data.triangle[3 * t], data.triangle[3 * t + 1],
+                                       data.triangle[3 * t + 2]};
         for (;;) {
             if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
                 refuse("triangle " + std::to_string(t) + " has two equal corners at a level that draws it");
@@ -122,40 +123,66 @@ void ProgressiveMesh::derive_corners() {
                 static_cast<std::size_t>(std::max_element(v.begin(), v.end()) - v.begin());
             if (v[corner] < born) return v;
             const std::uint32_t k = v[corner] - base;
-            visit(k, static_cast<std::uint32_t>(3 * t + corner));
-            v[corner] = data_.parent[k];
+            visit(k, t, corner);
+            v[corner] = data.parent[k];
         }
     };
     const auto all = [&](auto&& visit, auto&& done) {
         std::size_t t = 0;
         for (std::size_t k = 0; k <= contractions; ++k) {
-            for (; t < data_.triangle_count[k]; ++t)
-                done(t, lift(t, base + static_cast<std::uint32_t>(k), visit));
+            for (; t < data.triangle_count[k]; ++t)
+                done(t, k, lift(t, base + static_cast<std::uint32_t>(k), visit));
         }
     };
     std::uint64_t changes = 0;
     all(
-        [&](std::uint32_t k, std::uint32_t) {
+        [&](std::uint32_t k, std::size_t, std::size_t) {
             if (++changes > changes_max)
                 refuse("its contractions move far more corners than those of a surface");
             ++change_first_[k + 1];
         },
-        [&](std::size_t t, const std::array<std::uint32_t, 3>& v) {
-            std::copy(v.begin(), v.end(), birth_.begin() + static_cast<std::ptrdiff_t>(3 * t));
+        [&](std::size_t t, std::size_t k, const std::array<std::uint32_t, 3>& v) {
+            if (k == 0) return;
+            const std::uint32_t child = base + static_cast<std::uint32_t>(k) - 1;
+            if (std::find(v.begin(), v.end(), child) == v.end() ||
+                std::find(v.begin(), v.end(), data.parent[k - 1]) == v.end())
+                refuse("triangle " + std::to_string(t) + " disappears before two of its corners meet");
         });
     if (changes > std::uint64_t{UINT32_MAX}) refuse("it has more corner changes than 32 bits count");
     for (std::size_t k = 0; k < contractions; ++k) change_first_[k + 1] += change_first_[k];
+
+    PatchedMesh patched = make_patches(data, changes_max);
+    patches_ = std::move(patched.patches);
     change_.resize(changes);
+    birth_.resize(data.triangle.size() / 3 - data.triangle_count[0]);
     std::vector<std::uint32_t> next(change_first_.begin(), change_first_.end() - 1);
-    all([&](std::uint32_t k, std::uint32_t place) { change_[next[k]++] = place; },
-        [](std::size_t, const std::array<std::uint32_t, 3>&) {});
+    all(
+        [&](std::uint32_t k, std::size_t t, std::size_t corner) {
+            change_[next[k]++] = patched.number[t] << 2 | static_cast<std::uint32_t>(corner);
+        },
+        [&](std::size_t t, std::size_t k, const std::array<std::uint32_t, 3>& v) {
+            if (k > 0)
+                birth_[t - data.triangle_count[0]] =
+                    birth(patched.number[t], v, base + static_cast<std::uint32_t>(k) - 1, data.parent[k - 1]);
+        });
+}
+
+ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t number,
+                                              const std::array<std::uint32_t, 3>& corners,
+                                              std::uint32_t child, std::uint32_t parent) {
+    const auto at = [&](std::uint32_t v) {
+        return static_cast<std::uint32_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+    };
+    const std::uint32_t c = at(child), p = at(parent), other = 3 - c - p;
+    const std::uint32_t mirrored = p == (c + 1) % 3 ? 0 : 1;
+    return {number, corners[other] | (2 * c + mirrored) << 29};
 }
 
 std::size_t ProgressiveMesh::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return bytes(data_.vertex) + bytes(data_.parent) + bytes(data_.merged) + bytes(data_.error_m) +
-           bytes(data_.triangle) + bytes(data_.triangle_count) + bytes(before_) + bytes(child_) +
-           bytes(coarser_) + bytes(finer_) + bytes(birth_) + bytes(change_first_) + bytes(change_);
+    return bytes(parent_) + bytes(error_m_) + bytes(triangle_count_) + bytes(version_) +
+           bytes(version_level_) + bytes(version_first_) + bytes(version_merged_) + patches_.memory_bytes() +
+           bytes(birth_) + bytes(change_first_) + bytes(change_);
 }
 
 void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData& data) {
@@ -171,7 +198,7 @@ void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData
     out.add(kTag, kVersion, index, bytes.take());
 }
 
-ProgressiveMesh read_mesh(const SceneFile& file, std::uint32_t index) {
+ProgressiveMeshData read_mesh_data(const SceneFile& file, std::uint32_t index) {
     BytesIn in(file.section(kTag, kVersion, index), file.name() + ", section MESH " + std::to_string(index));
     const auto header = in.get<MeshHeader>("header");
     if (header.reserved != 0) in.fail("a reserved field is not zero");
@@ -188,12 +215,19 @@ ProgressiveMesh read_mesh(const SceneFile& file, std::uint32_t index) {
     data.triangle = in.get_all<std::uint32_t>(std::uint64_t{3} * header.triangles, "triangles");
     data.triangle_count = in.get_all<std::uint32_t>(contractions + 1, "triangle counts");
     in.finish();
+    return data;
+}
+
+ProgressiveMesh read_mesh(const SceneFile& file, std::uint32_t index) {
+    ProgressiveMeshData data = read_mesh_data(file, index);
     try {
         return ProgressiveMesh(std::move(data));
     } catch (const StartupError& error) {
         // Name the file too; the first line of the cause says what is wrong.
         const std::string why = error.what();
-        in.fail(why.substr(0, why.find('\n')));
+        throw StartupError("read scene " + file.name() + ", section MESH " + std::to_string(index),
+                           why.substr(0, why.find('\n')),
+                           "bake the scene again with this version of tact-prep");
     }
 }
 

@@ -2,7 +2,9 @@
 //
 // Vertices are numbered so that level n consists of vertices 0 … n-1: contraction i (level i+1 -> i) removes
 // vertex i into parent(i) < i, which moves. Triangles are ordered by how long they live, so those of a level
-// are a prefix too. Built by prep/mesh/progressive.hpp, walked by ipc/assets/mesh_cut.hpp. Section MESH.
+// are a prefix too; one disappears where two of its corners meet, not earlier. Nothing else is asked of a
+// contraction: the two need not share an edge, and the surface may be of any kind.
+// Built by prep/mesh/progressive.hpp, walked by ipc/assets/mesh_cut.hpp. Section MESH.
 //
 // Frame    model, metres.  Thread   immutable after construction.
 // Fails by StartupError: every count and index is checked here, so that walking needs no check.
@@ -13,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "ipc/assets/mesh_patches.hpp"
 #include "ipc/assets/scene_file.hpp"
 
 namespace tact {
@@ -48,38 +51,48 @@ class ProgressiveMesh {
 public:
     explicit ProgressiveMesh(ProgressiveMeshData data);
 
-    [[nodiscard]] std::uint32_t vertices() const { return static_cast<std::uint32_t>(data_.vertex.size()); }
-    [[nodiscard]] std::uint32_t vertices_min() const { return data_.base_vertices; }
-    [[nodiscard]] std::uint32_t triangles() const { return data_.triangle_count.back(); }
-    // Of a level n in [vertices_min, vertices].
-    [[nodiscard]] std::uint32_t triangles(std::uint32_t n) const {
-        return data_.triangle_count[n - data_.base_vertices];
+    [[nodiscard]] std::uint32_t vertices() const {
+        return base_ + static_cast<std::uint32_t>(parent_.size());
     }
-    [[nodiscard]] float error_m(std::uint32_t n) const { return data_.error_m[n - data_.base_vertices]; }
-    [[nodiscard]] const ProgressiveMeshData& data() const { return data_; }
+    [[nodiscard]] std::uint32_t vertices_min() const { return base_; }
+    [[nodiscard]] std::uint32_t triangles() const { return triangle_count_.back(); }
+    // Of a level n in [vertices_min, vertices].
+    [[nodiscard]] std::uint32_t triangles(std::uint32_t n) const { return triangle_count_[n - base_]; }
+    [[nodiscard]] float error_m(std::uint32_t n) const { return error_m_[n - base_]; }
+    // Of the original mesh.
+    [[nodiscard]] const MeshVertex& vertex(std::uint32_t v) const { return version_[version_first_[v]]; }
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     friend class MeshCut;
-    void check_counts() const;
-    void check_content() const;
-    void derive_vertices();
-    void derive_corners();
+    // A triangle that contraction k brings back: its corners are vertex B+k, the parent and another one.
+    struct Birth {
+        std::uint32_t number;          // as PatchedMesh has it
+        std::uint32_t other_and_turn;  // the other vertex; from bit 29 on which corner is which, see birth()
+    };
+    void order_versions(const ProgressiveMeshData& data);
+    void derive_corners(const ProgressiveMeshData& data);
+    [[nodiscard]] static Birth birth(std::uint32_t number, const std::array<std::uint32_t, 3>& corners,
+                                     std::uint32_t child, std::uint32_t parent);
 
-    ProgressiveMeshData data_;
-    // Derived, so that a step reads memory in order.
-    std::vector<MeshVertex> before_;  // N-B: the parent before vertex B+k goes into it
-    std::vector<MeshVertex> child_;   // N-B: vertex B+k when it goes
-    // N-B: the vertex that goes into the same parent next, or the parent itself; the one that went before, or
-    // UINT32_MAX. Contraction B+k shows at level n when coarser_[k] < n <= B+k.
-    std::vector<std::uint32_t> coarser_, finer_;
-    std::vector<std::uint32_t> birth_;  // 3 T: corners of a triangle at the lowest level that has it
-    std::vector<std::uint32_t>
-        change_first_;                   // N-B+1: [k] where the corners that contraction B+k moves begin
-    std::vector<std::uint32_t> change_;  // those corners, as places in the index list
+    std::uint32_t base_;
+    std::vector<std::uint32_t> parent_;          // N-B
+    std::vector<float> error_m_;                 // N-B+1
+    std::vector<std::uint32_t> triangle_count_;  // N-B+1
+    // All that a vertex ever looks like, finest first, one vertex after the other: 2N-B versions.
+    HugeVector<MeshVertex> version_;
+    HugeVector<std::uint32_t> version_level_;  // 2N-B+1: the finest level that shows it; UINT32_MAX: original
+    std::vector<std::uint32_t> version_first_;   // N+1: [v] the original of vertex v
+    std::vector<std::uint32_t> version_merged_;  // N-B: [k] what the parent is after contraction k
+    MeshPatches patches_;
+    std::vector<Birth> birth_;                 // of all triangles that the base has not, in their order
+    std::vector<std::uint32_t> change_first_;  // N-B+1: [k] where the corners that contraction k moves begin
+    std::vector<std::uint32_t> change_;        // those corners: number of the triangle * 4 + corner
 };
 
 void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData& data);
+ProgressiveMeshData read_mesh_data(const SceneFile& file,
+                                   std::uint32_t index);  // lengths are checked, no more
 ProgressiveMesh read_mesh(const SceneFile& file, std::uint32_t index);
 
 }  // namespace tact

@@ -4,10 +4,12 @@
 #include <rapidcheck.h>
 
 #include <cstdlib>
+#include <cstring>
+#include <deque>
 #include <new>
 
 #include "ipc/assets/isosurface.hpp"
-#include "ipc/base/error.hpp"
+#include "ipc/base/random.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
@@ -56,49 +58,220 @@ Reference reference(const ProgressiveMeshData& data, std::uint32_t level) {
     return r;
 }
 
+using Triangle = std::array<std::uint32_t, 3>;
+std::vector<Triangle> triangles(std::span<const std::uint32_t> index) {
+    std::vector<Triangle> all;
+    for (std::size_t c = 0; c + 2 < index.size(); c += 3) {
+        const Triangle t{index[c], index[c + 1], index[c + 2]};
+        if (t[0] != t[1] || t[1] != t[2]) all.push_back(t);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+std::vector<std::uint32_t> drawn(const MeshCut& cut) {
+    std::vector<std::uint32_t> index;
+    for (const MeshRange r : cut.draws()) {
+        const auto part = cut.index().subspan(r.first, r.count);
+        index.insert(index.end(), part.begin(), part.end());
+    }
+    return index;
+}
+std::span<const MeshVertex> shown(const MeshCut& cut) { return cut.vertex().first(cut.vertices()); }
+
 bool same(const MeshCut& cut, const Reference& r) {
-    return std::equal(cut.vertex().begin(), cut.vertex().end(), r.vertex.begin(), r.vertex.end()) &&
-           std::equal(cut.index().begin(), cut.index().end(), r.index.begin(), r.index.end());
+    const auto vertex = shown(cut);
+    return std::equal(vertex.begin(), vertex.end(), r.vertex.begin(), r.vertex.end()) &&
+           triangles(drawn(cut)) == triangles(r.index);
+}
+bool same(const MeshCut& a, const MeshCut& b) {
+    return a.vertices() == b.vertices() &&
+           std::equal(a.draws().begin(), a.draws().end(), b.draws().begin()) &&
+           std::memcmp(a.vertex().data(), b.vertex().data(), shown(a).size_bytes()) == 0 &&
+           drawn(a) == drawn(b);
+}
+
+// What a viewer has that uploads the changes alone.
+struct Mirror {
+    explicit Mirror(const MeshCut& cut)
+        : vertex(cut.vertex().size()), index(cut.index().size(), UINT32_MAX) {}
+    void upload(MeshCut& cut) {
+        const MeshChanges changes = cut.changes();
+        for (const MeshRange r : changes.vertex)
+            std::copy_n(cut.vertex().begin() + r.first, r.count, vertex.begin() + r.first);
+        for (const MeshRange r : changes.index)
+            std::copy_n(cut.index().begin() + r.first, r.count, index.begin() + r.first);
+    }
+    [[nodiscard]] bool shows(const MeshCut& cut) const {
+        for (const MeshRange r : cut.draws()) {
+            if (!std::equal(cut.index().begin() + r.first, cut.index().begin() + r.first + r.count,
+                            index.begin() + r.first))
+                return false;
+        }
+        return std::equal(shown(cut).begin(), shown(cut).end(), vertex.begin());
+    }
+    std::vector<MeshVertex> vertex;
+    std::vector<std::uint32_t> index;
+};
+
+// Triangles at random and contractions of any two vertices: no surface, no edges between what is contracted.
+ProgressiveMeshData soup(std::uint32_t vertices, std::uint32_t base, std::uint32_t triangle_count,
+                         std::uint64_t seed) {
+    SeededRandom random(seed);
+    ProgressiveMeshData d;
+    d.base_vertices = base;
+    const auto vertex = [&] {
+        MeshVertex v{{}, {0, 0, 32767, 0}};
+        for (float& x : v.position_m) x = static_cast<float>(random.uniform());
+        return v;
+    };
+    for (std::uint32_t v = 0; v < vertices; ++v) d.vertex.push_back(vertex());
+    for (std::uint32_t v = base; v < vertices; ++v) {
+        d.parent.push_back(static_cast<std::uint32_t>(random.below(v)));
+        d.merged.push_back(vertex());
+        d.error_m.push_back(static_cast<float>(vertices - v));
+    }
+    d.error_m.push_back(0.0F);
+    std::vector<std::pair<std::uint32_t, Triangle>> born;
+    while (born.size() < triangle_count) {
+        Triangle t;
+        for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(random.below(vertices));
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        std::uint32_t level = vertices;
+        for (Triangle now = t; level > base; --level) {
+            for (std::uint32_t& v : now) v = v == level - 1 ? d.parent[level - 1 - base] : v;
+            if (now[0] == now[1] || now[1] == now[2] || now[2] == now[0]) break;
+        }
+        born.emplace_back(level, t);
+    }
+    std::sort(born.begin(), born.end());
+    for (const auto& [level, t] : born) d.triangle.insert(d.triangle.end(), t.begin(), t.end());
+    for (std::uint32_t level = base; level <= vertices; ++level)
+        d.triangle_count.push_back(static_cast<std::uint32_t>(
+            std::count_if(born.begin(), born.end(), [&](const auto& b) { return b.first <= level; })));
+    return d;
 }
 
 TEST(MeshCut, AnyWalkEndsInTheStateThatContractionByContractionGives) {
-    const ProgressiveMesh mesh(make_progressive(isosurface(sampled(15, torus), -0.25)));
-    rc::check([&] {
-        MeshCut cut(mesh);
-        std::vector<MeshVertex> gpu_vertex(mesh.vertices());
-        std::vector<std::uint32_t> gpu_index(3 * std::size_t{mesh.triangles()});
-        const auto levels = *rc::gen::container<std::vector<std::uint32_t>>(
-            rc::gen::inRange(mesh.vertices_min(), mesh.vertices() + 1));
-        for (const std::uint32_t level : levels) {
-            RC_ASSERT(cut.set_vertices(level) == level);
-            // A near neighbour too, so that single steps are walked.
-            RC_ASSERT(cut.set_vertices(std::max(level, mesh.vertices_min() + 5) - 5) <= level);
-            RC_ASSERT(same(cut, reference(mesh.data(), cut.vertices())));
-            // What a viewer that uploads the changes alone would draw.
-            const MeshChanges changes = cut.changes();
-            for (const MeshRange r : changes.vertex)
-                std::copy_n(cut.vertex().begin() + r.first, r.count, gpu_vertex.begin() + r.first);
-            for (const MeshRange r : changes.index)
-                std::copy_n(cut.index().begin() + r.first, r.count, gpu_index.begin() + r.first);
-            RC_ASSERT(std::equal(cut.vertex().begin(), cut.vertex().end(), gpu_vertex.begin()));
-            RC_ASSERT(std::equal(cut.index().begin(), cut.index().end(), gpu_index.begin()));
-        }
-    });
+    const ProgressiveMeshData torus_15 = make_progressive(isosurface(sampled(15, torus), -0.25));
+    const ProgressiveMeshData any = soup(300, 7, 500, 1);
+    for (const ProgressiveMeshData& data : {torus_15, any}) {
+        const ProgressiveMesh mesh(data);
+        rc::check([&] {
+            MeshCut cut(mesh);
+            Mirror mirror(cut);
+            auto levels = *rc::gen::container<std::vector<std::uint32_t>>(
+                rc::gen::inRange(mesh.vertices_min(), mesh.vertices() + 1));
+            levels.resize(std::min<std::size_t>(levels.size(), 12));  // the reference is slow
+            for (const std::uint32_t level : levels) {
+                RC_ASSERT(cut.set_vertices(level) == level);
+                // A near neighbour too, so that single steps are walked.
+                RC_ASSERT(cut.set_vertices(std::max(level, mesh.vertices_min() + 5) - 5) <= level);
+                RC_ASSERT(same(cut, reference(data, cut.vertices())));
+                mirror.upload(cut);
+                RC_ASSERT(mirror.shows(cut));
+            }
+        });
+    }
 }
 
-TEST(MeshCut, SingleStepsAndRebuildsAgreeAtEveryLevel) {
+TEST(MeshCut, SingleStepsAndRebuildsAgreeBitForBit) {
+    // Ten thousand triangles are three patches; the other has no surface.
+    for (const ProgressiveMesh& mesh :
+         {ProgressiveMesh(torus_data()), ProgressiveMesh(soup(2500, 3, 10000, 2))}) {
+        MeshCut up(mesh), down(mesh), jumps(mesh);
+        for (std::uint32_t level = mesh.vertices_min(); level <= mesh.vertices(); ++level) {
+            up.set_vertices(level);
+            if (level % 5 != 0) continue;
+            jumps.set_vertices((level * 7919U) % mesh.vertices());
+            jumps.set_vertices(level);
+            ASSERT_TRUE(same(up, jumps)) << level;
+        }
+        down.set_vertices(mesh.vertices());
+        for (std::uint32_t level = mesh.vertices(); level > mesh.vertices_min(); --level) {
+            down.set_vertices(level);
+            if (level % 7 == 0) {
+                jumps.set_vertices(level);
+                ASSERT_TRUE(same(down, jumps)) << level;
+            }
+        }
+    }
+}
+
+TEST(MeshCut, WhatIsUploadedIsWhatChanged) {
     const ProgressiveMesh& mesh = torus_mesh();
-    MeshCut steps(mesh), jumps(mesh);
-    for (std::uint32_t level = mesh.vertices_min(); level <= mesh.vertices(); ++level) {
-        steps.set_vertices(level);
-        jumps.set_vertices((level * 7919U) % mesh.vertices());
-        jumps.set_vertices(level);
-        ASSERT_TRUE(std::equal(steps.vertex().begin(), steps.vertex().end(), jumps.vertex().begin(),
-                               jumps.vertex().end()))
-            << level;
-        ASSERT_TRUE(std::equal(steps.index().begin(), steps.index().end(), jumps.index().begin(),
-                               jumps.index().end()))
-            << level;
+    MeshCut cut(mesh);
+    Mirror mirror(cut);
+    cut.set_vertices(mesh.vertices());
+    mirror.upload(cut);
+    // Longest stretch of a range that did not change: two blocks and the gap that is joined.
+    const auto longest_idle = [](const auto& before, const auto& now, std::span<const MeshRange> ranges) {
+        std::size_t longest = 0;
+        for (const MeshRange r : ranges) {
+            std::size_t idle = 0;
+            for (std::size_t i = r.first; i < r.first + r.count; ++i) {
+                idle = before[i] == now[i] ? idle + 1 : 0;
+                longest = std::max(longest, idle);
+            }
+        }
+        return longest;
+    };
+    std::size_t steps = 0;
+    while (cut.vertices() > mesh.vertices_min()) {
+        const std::vector<MeshRange> draws(cut.draws().begin(), cut.draws().end());
+        cut.set_vertices(cut.vertices() - std::min(cut.vertices() - mesh.vertices_min(), 3U));
+        const bool same_lists = std::equal(draws.begin(), draws.end(), cut.draws().begin());
+        const Mirror before = mirror;
+        const MeshChanges changes = cut.changes();
+        if (same_lists) {  // a patch that changes lists is written anew
+            ++steps;
+            ASSERT_LE(longest_idle(before.vertex, cut.vertex(), changes.vertex), 8U + 8U + 24U);
+            ASSERT_LE(longest_idle(before.index, cut.index(), changes.index), 32U + 32U + 128U);
+        }
+        for (const MeshRange r : changes.vertex)
+            std::copy_n(cut.vertex().begin() + r.first, r.count, mirror.vertex.begin() + r.first);
+        for (const MeshRange r : changes.index)
+            std::copy_n(cut.index().begin() + r.first, r.count, mirror.index.begin() + r.first);
+        ASSERT_TRUE(mirror.shows(cut));
+        const MeshChanges none = cut.changes();
+        ASSERT_TRUE(none.vertex.empty() && none.index.empty());
+    }
+    EXPECT_GT(steps, 500U);
+}
+
+TEST(MeshCut, AFarGoalIsReachedWithinTheBudgetOfEachCall) {
+    const ProgressiveMesh& mesh = torus_mesh();
+    MeshCut cut(mesh), jumps(mesh);
+    const double enough_ns = 1e12;
+    EXPECT_EQ(cut.approach(mesh.vertices(), enough_ns), mesh.vertices());
+    for (const std::uint32_t goal : {mesh.vertices_min(), mesh.vertices() - 1}) {
+        for (std::uint32_t before = cut.vertices(); before != goal; before = cut.vertices()) {
+            cut.approach(goal, 0.0);
+            const std::uint32_t moved =
+                cut.vertices() > before ? cut.vertices() - before : before - cut.vertices();
+            ASSERT_GE(moved, std::min(MeshCut::kStepsMin, goal > before ? goal - before : before - goal));
+            ASSERT_LE(moved, MeshCut::kStepsMin);
+            jumps.set_vertices(cut.vertices());
+            ASSERT_TRUE(same(cut, jumps));
+        }
+    }
+    EXPECT_EQ(cut.approach(0, enough_ns), mesh.vertices_min());
+    EXPECT_EQ(cut.approach(UINT32_MAX, std::nan("")), mesh.vertices_min() + MeshCut::kStepsMin);
+}
+
+TEST(MeshCut, FewVerticesAreTransformedTwice) {
+    const ProgressiveMesh& mesh = torus_mesh();
+    MeshCut cut(mesh);
+    for (const std::uint32_t level : {mesh.vertices(), mesh.vertices() / 2, mesh.vertices() / 4}) {
+        cut.set_vertices(level);
+        std::deque<std::uint32_t> cache;  // first in, first out
+        std::size_t transforms = 0;
+        for (const std::uint32_t v : drawn(cut)) {
+            if (std::find(cache.begin(), cache.end(), v) != cache.end()) continue;
+            ++transforms;
+            cache.push_back(v);
+            if (cache.size() > 32) cache.pop_front();
+        }
+        EXPECT_LT(static_cast<double>(transforms), 1.6 * level) << level;
     }
 }
 
@@ -112,9 +285,11 @@ TEST(MeshCut, EveryLevelIsAValidSurfaceAndTheFinestIsTheOriginal) {
     for (std::uint32_t level = mesh.vertices_min(); level <= mesh.vertices(); level += 97) {
         cut.set_vertices(level);
         TriangleMesh now;
-        for (const MeshVertex& v : cut.vertex())
+        for (const MeshVertex& v : shown(cut))
             now.position_m.insert(now.position_m.end(), v.position_m.begin(), v.position_m.end());
-        now.triangle.assign(cut.index().begin(), cut.index().end());
+        for (const Triangle& t : triangles(drawn(cut)))
+            now.triangle.insert(now.triangle.end(), t.begin(), t.end());
+        ASSERT_EQ(now.triangles(), cut.triangles());
         const Topology t = topology(now);
         ASSERT_EQ(t.tangled_edges + t.tangled_vertices + t.flat_triangles + t.border_edges, 0U) << level;
         ASSERT_EQ(t.euler, 0) << level;
@@ -124,13 +299,15 @@ TEST(MeshCut, EveryLevelIsAValidSurfaceAndTheFinestIsTheOriginal) {
     cut.set_vertices(UINT32_MAX);
     ASSERT_EQ(cut.vertices(), mesh.vertices());
     // The same triangles at the same places, in another order.
-    const auto places = [](auto&& corner, std::size_t triangles) {
+    const auto places = [](auto&& corner, std::size_t count) {
         std::multiset<std::array<std::array<float, 3>, 3>> set;
-        for (std::size_t t = 0; t < triangles; ++t)
+        for (std::size_t t = 0; t < count; ++t)
             set.insert({corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)});
         return set;
     };
-    EXPECT_EQ(places([&](std::size_t c) { return cut.vertex()[cut.index()[c]].position_m; }, cut.triangles()),
+    const std::vector<std::uint32_t> index = drawn(cut);
+    ASSERT_EQ(index.size(), 3U * cut.triangles());
+    EXPECT_EQ(places([&](std::size_t c) { return cut.vertex()[index[c]].position_m; }, cut.triangles()),
               places(
                   [&](std::size_t c) {
                       const float* p = &original.position_m[3 * std::size_t{original.triangle[c]}];
@@ -145,7 +322,7 @@ TEST(MeshCut, NormalsAreUnitVectorsThatPointOutwardAtEveryLevel) {
     for (const std::uint32_t level : {200U, 1000U, mesh.vertices()}) {
         cut.set_vertices(level);
         double worst = 1.0;
-        for (const MeshVertex& v : cut.vertex()) {
+        for (const MeshVertex& v : shown(cut)) {
             const Vec3 n = Vec3(v.normal[0], v.normal[1], v.normal[2]) / 32767.0;
             const Vec3 p(v.position_m[0], v.position_m[1], v.position_m[2]);
             const Vec3 ring = Vec3(p.x(), p.y(), 0.0).normalized() * 0.6;
@@ -166,105 +343,6 @@ TEST(MeshCut, WalkingDoesNotAllocate) {
         (void)cut.changes();
     }
     EXPECT_EQ(allocations, before);
-}
-
-TEST(ProgressiveMesh, SurvivesTheFileUnchanged) {
-    SceneWriter out;
-    write_mesh(out, 0, torus_data());
-    const std::vector<std::byte> bytes = out.to_bytes();
-    const ProgressiveMesh back = read_mesh(SceneFile::from_bytes(bytes, "torus"), 0);
-    EXPECT_EQ(back.data().vertex, torus_data().vertex);
-    EXPECT_EQ(back.data().merged, torus_data().merged);
-    EXPECT_EQ(back.data().parent, torus_data().parent);
-    EXPECT_EQ(back.data().error_m, torus_data().error_m);
-    EXPECT_EQ(back.data().triangle, torus_data().triangle);
-    EXPECT_EQ(back.data().triangle_count, torus_data().triangle_count);
-}
-
-ProgressiveMeshData small_data() { return make_progressive(isosurface(sampled(13, torus), -0.25)); }
-
-// Whatever is accepted can be walked: the sanitizers watch.
-void read_and_walk(const ProgressiveMeshData& data) {
-    SceneWriter out;
-    write_mesh(out, 0, data);
-    const std::vector<std::byte> bytes = out.to_bytes();
-    const ProgressiveMesh mesh = read_mesh(SceneFile::from_bytes(bytes, "hostile"), 0);
-    MeshCut cut(mesh);
-    for (std::uint32_t level = mesh.vertices_min(); level < mesh.vertices(); level += 3)
-        cut.set_vertices(level);
-    cut.set_vertices(mesh.vertices_min());
-    for (const std::uint32_t corner : cut.index()) ASSERT_LT(corner, cut.vertices());
-}
-
-TEST(ProgressiveMesh, RefusesEachKindOfDamage) {
-    const ProgressiveMeshData good = small_data();
-    ASSERT_NO_THROW(read_and_walk(good));
-    const auto damaged = [&](auto&& damage) {
-        ProgressiveMeshData bad = good;
-        damage(bad);
-        EXPECT_THROW(read_and_walk(bad), StartupError);
-    };
-    damaged([](ProgressiveMeshData& d) { d.parent[3] = d.base_vertices + 3; });
-    damaged([](ProgressiveMeshData& d) { d.parent.back() = UINT32_MAX; });
-    damaged([](ProgressiveMeshData& d) { d.triangle[5] = static_cast<std::uint32_t>(d.vertex.size()); });
-    damaged([](ProgressiveMeshData& d) { d.triangle[1] = d.triangle[0]; });
-    damaged([](ProgressiveMeshData& d) { d.triangle_count[2] = UINT32_MAX; });
-    damaged([](ProgressiveMeshData& d) { d.triangle_count.back() -= 1; });
-    damaged([](ProgressiveMeshData& d) { d.triangle_count.front() = d.triangle_count.back(); });
-    damaged([](ProgressiveMeshData& d) { d.error_m[1] = std::nanf(""); });
-    damaged([](ProgressiveMeshData& d) { d.error_m.back() = 1e30F; });
-    damaged(
-        [](ProgressiveMeshData& d) { d.vertex[0].position_m[1] = std::numeric_limits<float>::infinity(); });
-    damaged([](ProgressiveMeshData& d) { d.merged[0].position_m[1] = std::nanf(""); });
-    damaged([](ProgressiveMeshData& d) { d.base_vertices = 0; });
-    damaged([](ProgressiveMeshData& d) { d.base_vertices = UINT32_MAX; });
-    damaged([](ProgressiveMeshData& d) { d.parent.pop_back(); });
-    damaged([](ProgressiveMeshData& d) { d.triangle.pop_back(); });
-}
-
-TEST(ProgressiveMesh, RandomDamageIsRefusedOrHarmless) {
-    const ProgressiveMeshData good = small_data();
-    rc::check([&] {
-        ProgressiveMeshData bad = good;
-        const auto hits = *rc::gen::inRange(1, 6);
-        for (int i = 0; i < hits; ++i) {
-            const auto value =
-                *rc::gen::inRange<std::uint32_t>(0, static_cast<std::uint32_t>(good.vertex.size()) + 2);
-            const auto at = *rc::gen::inRange<std::size_t>(0, 1U << 20);
-            switch (*rc::gen::inRange(0, 4)) {
-                case 0:
-                    bad.parent[at % bad.parent.size()] = value;
-                    break;
-                case 1:
-                    bad.triangle[at % bad.triangle.size()] = value;
-                    break;
-                case 2:
-                    bad.triangle_count[at % bad.triangle_count.size()] = value;
-                    break;
-                default:
-                    bad.base_vertices = value;
-                    break;
-            }
-        }
-        try {
-            read_and_walk(bad);
-        } catch (const StartupError&) {
-        }
-    });
-}
-
-TEST(ProgressiveMesh, ChainsThatWouldTakeQuadraticWorkAreRefused) {
-    // Every vertex goes into the one before it and every triangle hangs at the end of the chain.
-    ProgressiveMeshData d;
-    const std::uint32_t n = 20000;
-    d.base_vertices = 3;
-    d.vertex.assign(n, MeshVertex{{0.0F, 0.0F, 0.0F}, {0, 0, 32767, 0}});
-    for (std::uint32_t v = 3; v < n; ++v) d.parent.push_back(v - 1);
-    d.merged.assign(n - 3, d.vertex[0]);
-    d.error_m.assign(n - 2, 0.0F);
-    for (std::uint32_t t = 0; t < 20000; ++t) d.triangle.insert(d.triangle.end(), {0, 1, n - 1});
-    d.triangle_count.assign(n - 2, 20000);
-    EXPECT_THROW(ProgressiveMesh{d}, StartupError);
 }
 
 }  // namespace

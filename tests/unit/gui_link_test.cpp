@@ -125,6 +125,13 @@ TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
 }
 
+TEST(MeshLevel, AdaptingTakesAtMostAQuarterOfAFrameAndNeverVeryLong) {
+    EXPECT_EQ(adapt_budget_s(0.0), 0.002);  // the first frame
+    EXPECT_EQ(adapt_budget_s(0.016), 0.004);
+    EXPECT_EQ(adapt_budget_s(3.0), 0.05);
+    EXPECT_EQ(adapt_budget_s(std::nan("")), 0.002);
+}
+
 TEST(PosePredictor, FollowsASteadyMotionToTheTimeOfThePicture) {
     PosePredictor predictor;
     const Vec3 speed(1e-8, -2e-8, 0.5e-8);

@@ -5,6 +5,7 @@
 
 #include "gui/render/arrow.hpp"
 #include "gui/render/camera.hpp"
+#include "gui/render/mesh_pace.hpp"
 #include "gui/render/scene_view.hpp"
 #include "gui/render/tube.hpp"
 #include "tests/unit/gui_fake.hpp"
@@ -15,6 +16,21 @@ namespace {
 Eigen::Vector3f on_screen(const Camera& camera, const Eigen::Vector3f& p, float aspect) {
     const Eigen::Vector4f clip = camera.projection(aspect) * camera.view() * p.homogeneous();
     return clip.head<3>() / clip.w();
+}
+
+TEST(MeshPace, MovesGetSmallerAtOnceWhereTheyTookLongAndLargerSlowly) {
+    MeshPace pace;
+    EXPECT_DOUBLE_EQ(pace.budget_ns(0.002), 2e6);
+    pace.took(1e6, 4e-3);
+    EXPECT_DOUBLE_EQ(pace.budget_ns(0.002), 0.5e6);
+    pace.took(1e6, 1e-3);
+    EXPECT_NEAR(pace.slower(), 3.7, 1e-12);
+    pace.took(100.0, 1.0);  // too small to be a measure
+    EXPECT_NEAR(pace.slower(), 3.7, 1e-12);
+    for (int i = 0; i < 200; ++i) pace.took(1e6, 0.0);
+    EXPECT_NEAR(pace.slower(), 0.25, 1e-3);
+    pace.took(1e6, 1e9);
+    EXPECT_EQ(pace.slower(), 16.0);
 }
 
 TEST(Camera, HomeShowsTheWholeBallAndPutsItsCentreInTheMiddle) {
