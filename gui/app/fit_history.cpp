@@ -8,22 +8,31 @@
 namespace tact {
 namespace {
 
-bool same(const Pose& a, const Pose& b) {
-    return (a.p_m - b.p_m).norm() <= 0.01 * kAngstromM && a.q.angularDistance(b.q) <= 0.01 * kDegreeRad;
+constexpr double kStill = 0.01, kTremble = 1.0;  // ångström, and degrees
+
+bool same(const Pose& a, const Pose& b, double within) {
+    return (a.p_m - b.p_m).norm() <= within * kAngstromM && a.q.angularDistance(b.q) <= within * kDegreeRad;
 }
 
 // The places of `to` at which a body of `from` is not.
-FitHistory::Places difference(const FitHistory::Places& from, const FitHistory::Places& to) {
+FitHistory::Places difference(const FitHistory::Places& from, const FitHistory::Places& to,
+                              double within = kStill) {
     FitHistory::Places moves;
     for (const FitHistory::Move& m : to) {
         const auto at =
             std::find_if(from.begin(), from.end(), [&](const FitHistory::Move& f) { return f.id == m.id; });
-        if (at != from.end() && !same(at->T_model_body, m.T_model_body)) moves.push_back(m);
+        if (at != from.end() && !same(at->T_model_body, m.T_model_body, within)) moves.push_back(m);
     }
     return moves;
 }
 
 bool differ(const FitHistory::Places& a, const FitHistory::Places& b) { return !difference(a, b).empty(); }
+
+// A device trembles in the hand, and it goes on holding what undo() moved: without more patience there, the
+// tremble would be a gesture, and undo() could never go back twice.
+bool differ(const FitHistory::Places& a, const FitHistory::Places& b, bool resumed) {
+    return !difference(a, b, resumed ? kTremble : kStill).empty();
+}
 
 }  // namespace
 
@@ -41,6 +50,7 @@ void FitHistory::observe(std::span<const Move> now, const Boundary& boundary) {
         boundary_ = boundary;
         if (boundary.placements < awaited_ && --patience_ > 0) return;
         patience_ = 0;
+        resumed_ = true;
         now_.assign(now.begin(), now.end());
         base_ = now_;
         return;
@@ -50,6 +60,8 @@ void FitHistory::observe(std::span<const Move> now, const Boundary& boundary) {
         // The new gesture began between two looks: where the bodies were at the last look is where the old
         // one ended, save for what a command placed since.
         commit();
+        if (resumed_) base_ = now_;  // a tremble that another gesture begins from
+        resumed_ = false;
         now_.assign(now.begin(), now.end());
         commit();
         return;
@@ -58,9 +70,9 @@ void FitHistory::observe(std::span<const Move> now, const Boundary& boundary) {
 }
 
 void FitHistory::commit() {
-    if (!differ(now_, base_)) {
+    if (!differ(now_, base_, resumed_)) {
         // Bodies that came meanwhile are part of what is there.
-        if (!now_.empty()) base_ = now_;
+        if (!now_.empty() && !(resumed_ && now_.size() == base_.size())) base_ = now_;
         return;
     }
     done_.push_back(std::exchange(base_, now_));
@@ -68,7 +80,7 @@ void FitHistory::commit() {
     undone_.clear();
 }
 
-std::size_t FitHistory::undoable() const { return done_.size() + (differ(now_, base_) ? 1 : 0); }
+std::size_t FitHistory::undoable() const { return done_.size() + (differ(now_, base_, resumed_) ? 1 : 0); }
 
 FitHistory::Places FitHistory::undo() {
     commit();

@@ -2,7 +2,8 @@
 //
 // Gesture   from one boundary to the next. A boundary is a grip (the hand takes hold), a placement by command
 //           or a selection: BodiesTopic.grips, .placements and .active. Where no body moved by a hundredth of
-//           an ångström or of a degree, there was no gesture.
+//           an ångström or of a degree, there was no gesture; nor by one whole where the hand just goes on
+//           holding what was moved by undo or its like.
 // Gives     lists of moves, which the caller sends as one placement each. Until the controller has made them
 //           (or kPatience looks), what the bodies do in between counts for nothing.
 // Bounds    the last kGesturesMax gestures, kSnapshotsMax snapshots.
@@ -57,6 +58,7 @@ private:
     bool begun_ = false;
     std::uint64_t awaited_ = 0;  // placements until go() is carried out
     int patience_ = 0;           // 0: nothing is awaited
+    bool resumed_ = false;       // no boundary since go() was carried out
     Boundary boundary_;
     Places now_, base_, accepted_;
     std::deque<Places> done_;  // places before each gesture, oldest first

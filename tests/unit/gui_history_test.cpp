@@ -75,6 +75,24 @@ TEST(FitHistory, AGripWithoutAMoveIsNoGesture) {
     EXPECT_EQ(s.history.undoable(), 0U);
 }
 
+TEST(FitHistory, AHandThatGoesOnHoldingCanUndoTwiceAndRedo) {
+    Scene s;
+    s.drag(1, 10.0);
+    s.grip();
+    s.drag(1, 20.0);
+    s.obey(s.history.undo());
+    s.drag(1, 10.3);  // it trembles
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
+    s.drag(1, -0.4);
+    EXPECT_EQ(s.history.redoable(), 2U);
+    s.obey(s.history.redo());
+    EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
+    s.drag(1, 14.0);  // this is meant
+    s.obey(s.history.undo());
+    EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
+}
+
 TEST(FitHistory, AnotherGestureEndsWhatCouldBeRedone) {
     Scene s;
     s.drag(1, 3.0);
@@ -168,7 +186,7 @@ RC_GTEST_PROP(FitHistory, AnySequenceIsWhatAListOfStatesDoes, ()) {
     int drags = 0;
     for (const int step : steps) {
         if (step == 0) {
-            s.drag(1, ++drags);
+            s.drag(1, drags += 3);  // more than a hand trembles
             s.grip();
             done.push_back(at);
             undone.clear();
