@@ -19,7 +19,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         // start).
         for (const auto& [name, value] :
              {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
-            if (!options->has_controller_option(name))
+            if (!options->has_controller_option(name) && !options->has_controller_option("--poses"))
                 options->controller.insert(options->controller.end(), {name, value});
         const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);

@@ -1,6 +1,7 @@
 // How far a structure is from the place that its file gives it, and how well it explains the map there.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,14 @@ struct Offset {
     double angle_deg = 0.0;
 };
 
+// A body of a run: a placed copy of a structure of the scene.
+struct BodyAt {
+    std::uint32_t id = 0;  // 0: of no run
+    std::uint32_t structure = 0;
+    Pose T_model_body;
+    bool fixed = false, in_hand = false;
+};
+
 // The parts of a docking scene that a run is judged by.
 class Places {
 public:
@@ -27,11 +36,12 @@ public:
     [[nodiscard]] const DensityGrid& grid() const { return grid_; }
 
     // Empty where the topic does not fit the scene or holds no numbers.
-    [[nodiscard]] std::optional<std::vector<Pose>> poses(const BodiesTopic& bodies) const;
-    [[nodiscard]] std::vector<Pose> file_poses() const;
-    [[nodiscard]] Offset offset(const Pose& T_model_body, std::size_t body) const;
+    [[nodiscard]] std::optional<std::vector<BodyAt>> bodies(const BodiesTopic& topic) const;
+    // One of each structure, where its file has it.
+    [[nodiscard]] std::vector<BodyAt> file_bodies() const;
+    [[nodiscard]] Offset offset(const BodyAt& body) const;
     // Empty where the map's resolution is not known. Takes up to seconds for large maps.
-    [[nodiscard]] std::optional<FitMetrics> fit(const std::vector<Pose>& poses) const;
+    [[nodiscard]] std::optional<FitMetrics> fit(const std::vector<BodyAt>& bodies) const;
 
 private:
     SceneMeta meta_;

@@ -122,9 +122,9 @@ private:
         if (observer_.poll() == Observer::News::arrived) {
             if (!seen_at_) seen_at_ = now;
         }
-        if (observer_.seen() && !facts_.poses_start)
+        if (observer_.seen() && !facts_.bodies_start)
             if (const auto bodies = newest(observer_.region().bodies))
-                facts_.poses_start = places_.poses(*bodies);
+                facts_.bodies_start = places_.bodies(*bodies);
         if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
         judge(now);
     }

@@ -23,6 +23,8 @@ constexpr Passed kController[] = {
     {"--start-offset-a", "A", "move the first structure this far from the place its file gives it"},
     {"--start-rotation-deg", "DEG", "and turn it by this angle"},
     {"--seed", "N", "of the random direction and axis of the two above"},
+    {"--copies", "N", "so many bodies of the first structure; the others stand about the map"},
+    {"--poses", "FILE.json", "start with the bodies where the report of an earlier run has them"},
     {"--config", "FILE", "configuration of the controller, TOML"},
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},

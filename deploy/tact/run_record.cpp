@@ -29,9 +29,8 @@ std::optional<Sample> take_sample(const RtRegion& region, const Places* places, 
         }
     }
     if (const auto bodies = newest(region.bodies); bodies && places != nullptr) {
-        const auto poses = places->poses(*bodies);
-        if (poses && bodies->active < poses->size())
-            s.offset = places->offset((*poses)[bodies->active], bodies->active);
+        const auto all = places->bodies(*bodies);
+        if (all && bodies->active < all->size()) s.offset = places->offset((*all)[bodies->active]);
     }
     return s;
 }

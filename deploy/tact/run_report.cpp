@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/observer.hpp"
+#include "ipc/base/units.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact::launch {
@@ -56,10 +57,9 @@ json governor(const RtRegion& region) {
 
 json offset_json(const Offset& o) { return {{"offset_a", o.distance_a}, {"angle_deg", o.angle_deg}}; }
 
-json fit_numbers(const Places& places, const std::vector<Pose>& poses, std::size_t body) {
-    const Offset o = places.offset(poses.at(body), body);
-    json j = offset_json(o);
-    const auto fit = places.fit(poses);
+json fit_numbers(const Places& places, const std::vector<BodyAt>& bodies, const BodyAt& judged) {
+    json j = offset_json(places.offset(judged));
+    const auto fit = places.fit(bodies);
     j["cc_zero"] = fit ? json(fit->cc_zero) : json(nullptr);
     j["cc_mean"] = fit ? json(fit->cc_mean) : json(nullptr);
     j["mean_density_sigma"] = fit ? json(fit->mean_density_sigma) : json(nullptr);
@@ -68,19 +68,54 @@ json fit_numbers(const Places& places, const std::vector<Pose>& poses, std::size
     return j;
 }
 
+std::optional<std::vector<BodyAt>> bodies_of(const RtRegion& region, const Places& places) {
+    const auto topic = newest(region.bodies);
+    return topic ? places.bodies(*topic) : std::nullopt;
+}
+
+// What tact-rt --poses reads.
+json bodies_report(const RtRegion& region, const Places& places) {
+    const auto bodies = bodies_of(region, places);
+    if (!bodies) return nullptr;
+    json all = json::array();
+    for (const BodyAt& b : *bodies) {
+        const Vec3 p_a = b.T_model_body.p_m / kAngstromM;
+        const Quat& q = b.T_model_body.q;
+        json j = offset_json(places.offset(b));
+        j["id"] = b.id;
+        j["structure"] = b.structure;
+        j["name"] = places.structures()[b.structure].name;
+        j["pos_model_a"] = {p_a.x(), p_a.y(), p_a.z()};
+        j["quat_model_body_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
+        j["fixed"] = b.fixed;
+        j["in_hand"] = b.in_hand;
+        all.push_back(j);
+    }
+    return all;
+}
+
+// Offsets are those of the body in the hand, or of the first; the fit is that of all together.
 json fit_report(const RtRegion& region, const Places& places, const RunFacts& facts) {
-    const auto bodies = newest(region.bodies);
-    const auto poses = bodies ? places.poses(*bodies) : std::nullopt;
-    if (!poses || poses->empty()) return nullptr;
-    const std::size_t body = std::min<std::size_t>(bodies->active, poses->size() - 1);
-    json j = fit_numbers(places, *poses, body);
-    j["body"] = places.structures()[body].name;
+    const auto bodies = bodies_of(region, places);
+    if (!bodies || bodies->empty()) return nullptr;
+    const auto in_hand =
+        std::find_if(bodies->begin(), bodies->end(), [](const BodyAt& b) { return b.in_hand; });
+    const BodyAt judged = in_hand != bodies->end() ? *in_hand : bodies->front();
+    json j = fit_numbers(places, *bodies, judged);
+    j["body"] = places.structures()[judged.structure].name;
+    j["body_id"] = judged.id;
     j["region"] = kFitRegion;
     j["resolution_a"] =
         places.meta().resolution_m > 0.0 ? json(places.meta().resolution_m * 1e10) : json(nullptr);
     j["voxel_a"] = places.grid().spacing_m.maxCoeff() * 1e10;
-    if (facts.poses_start) j["at_start"] = fit_numbers(places, *facts.poses_start, body);
-    j["at_file_place"] = fit_numbers(places, places.file_poses(), body);
+    if (facts.bodies_start) {
+        const auto& start = *facts.bodies_start;
+        const auto same =
+            std::find_if(start.begin(), start.end(), [&](const BodyAt& b) { return b.id == judged.id; });
+        if (same != start.end()) j["at_start"] = fit_numbers(places, start, *same);
+    }
+    const std::vector<BodyAt> file = places.file_bodies();
+    j["at_file_place"] = fit_numbers(places, file, file[judged.structure]);
     return j;
 }
 
@@ -132,7 +167,10 @@ json controller_report(const RtRegion& region) {
 
 json run_report(const RtRegion* region, const Places* places, const RunFacts& facts) {
     json j = region != nullptr ? controller_report(*region) : json::object();
-    if (region != nullptr && places != nullptr) j["fit"] = fit_report(*region, *places, facts);
+    if (region != nullptr && places != nullptr) {
+        j["bodies"] = bodies_report(*region, *places);
+        j["fit"] = fit_report(*region, *places, facts);
+    }
     if (j.contains("gui")) {
         // The controller's last word is from when the window was closing.
         j["gui"]["fps_last"] = j["gui"]["fps"];

@@ -19,12 +19,12 @@ namespace tact::launch {
 struct RunFacts {
     std::filesystem::path scene;
     std::string session;
-    double length_s = 0.0;                         // the controller was seen
-    std::string why_ended;                         // "the time is over", "the window was closed", ...
-    bool intended = false;                         // all went as asked
-    std::map<std::string, Ending> endings;         // by program
-    std::optional<std::vector<Pose>> poses_start;  // when the controller was first seen
-    std::optional<double> fps_median;              // over the looks at a window that was drawing
+    double length_s = 0.0;                            // the controller was seen
+    std::string why_ended;                            // "the time is over", "the window was closed", ...
+    bool intended = false;                            // all went as asked
+    std::map<std::string, Ending> endings;            // by program
+    std::optional<std::vector<BodyAt>> bodies_start;  // when the controller was first seen
+    std::optional<double> fps_median;                 // over the looks at a window that was drawing
 };
 
 // places: null where the scene is not known. Computes the fit, which may take a second.

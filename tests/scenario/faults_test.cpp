@@ -107,6 +107,49 @@ CommandTopic random_command(std::mt19937& random) {
     return c;
 }
 
+// An order to bodies that is nearly right: any id, a value or a place that may be possible, or no number.
+CommandTopic random_body_order(std::mt19937& random) {
+    constexpr auto kFirst = static_cast<unsigned>(CommandKind::select_body),
+                   kLast = static_cast<unsigned>(CommandKind::set_laplacian);
+    CommandTopic c{};
+    c.sequence = 1000 + random() % 1000;  // not those of the test's own commands
+    c.kind = static_cast<std::uint16_t>(kFirst + random() % (kLast - kFirst + 1));
+    c.body = static_cast<std::uint32_t>(random() % 4 == 0 ? random() : random() % 20);
+    c.value = random() % 5 == 0 ? std::nan("") : static_cast<double>(random() % 2);
+    std::uniform_real_distribution<double> near(-60e-10, 60e-10);
+    for (double& p : c.pos_model_m) p = random() % 8 == 0 ? HUGE_VAL : near(random);
+    c.quat_model_body_xyzw[random() % 4] = random() % 8 == 0 ? 1e200 : 1.0;
+    return c;
+}
+
+TEST(HostileVisualProcess, a_flood_of_orders_to_bodies_moves_them_about_and_the_force_stays_within_bounds) {
+    const Rig rig;
+    Controller rt(rig, {"--copies", "4"});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    std::mt19937 random(20261121);
+    for (int burst = 0; burst < 60; ++burst) {
+        for (int i = 0; i < 20; ++i) visual.region().commands.push(random_body_order(random));
+        visual.frame();
+        ASSERT_TRUE(watch.cycles_pass(5));
+        EXPECT_EQ(watch.state(), RunState::active);
+        EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
+        const auto bodies = launch::newest(watch.region().bodies);
+        ASSERT_TRUE(bodies);
+        ASSERT_LE(bodies->count, kBodiesMax);
+        EXPECT_GT(bodies->count, 0U);
+        EXPECT_TRUE(bodies->active == kNoBody || bodies->active < bodies->count);
+        for (std::uint32_t i = 0; i < bodies->count; ++i)
+            EXPECT_TRUE(std::isfinite(bodies->body[i].pos_model_m[0]));
+    }
+    const HealthTopic h = watch.health();
+    EXPECT_EQ(h.allocations, 0U);
+    EXPECT_EQ(h.locks, 0U);
+    EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
+}
+
 TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on) {
     const Rig rig;
     Controller rt(rig, {});
@@ -222,6 +265,37 @@ TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_h
         EXPECT_EQ(watch.force_n(), 0.0);
     }
     EXPECT_TRUE(bring_to_force(visual, watch)) << rt.said();
+}
+
+TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_mend) {
+    const Rig rig;
+    const std::string body = R"({"structure": 0, "name": "rod", "pos_model_a": [20, 25, 30],
+        "quat_model_body_xyzw": [0, 0, 1, 0], "fixed": )";
+    const auto good =
+        rig.file("good.json", "{\"bodies\": [" + body + "true}, " + body + "false, \"in_hand\": true}]}");
+    {
+        Controller rt(rig, {"--poses", good.string()});
+        Watch watch(rig);
+        ASSERT_TRUE(watch.attach()) << rt.said();
+        ASSERT_TRUE(watch.cycles_pass(10));
+        const auto bodies = launch::newest(watch.region().bodies);
+        ASSERT_TRUE(bodies);
+        ASSERT_EQ(bodies->count, 2U);
+        EXPECT_EQ(bodies->active, 1U);
+        EXPECT_EQ(bodies->body[0].flags, kBodyFixed);
+        EXPECT_NEAR(bodies->body[0].pos_model_m[1], 25e-10, 1e-15);
+        EXPECT_NEAR(std::abs(bodies->body[0].quat_model_body_xyzw[2]), 1.0, 1e-9);
+    }
+    const auto far = rig.file("far.json", R"({"bodies": [{"structure": 0, "pos_model_a": [1e9, 0, 0],
+        "quat_model_body_xyzw": [0, 0, 0, 1]}]})");
+    for (const auto& bad :
+         {far, rig.file("bad.json", "{\"bodies\": [" + body + "3}]}"), rig.folder() / "none"}) {
+        const auto said = run_to_end(
+            rig, rt_program(), {rig.scene().string(), "--priority", "0", "--check", "--poses", bad.string()});
+        ASSERT_TRUE(said);
+        EXPECT_EQ(said->ending.number, 1);
+        EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+    }
 }
 
 TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with_its_mend) {

@@ -74,7 +74,7 @@ void fill(RtRegion& region, std::uint64_t cycle) {
     bodies.count = 1;
     const Vec3 home = sample::structure().home_com_model_m;
     bodies.body[0] = {
-        {home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, 6, 0, 0};
+        {home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, 6, 0, kBodyFixed};
     region.bodies.publish(bodies);
 }
 
@@ -273,6 +273,15 @@ TEST_F(DeployRun, the_json_holds_what_the_controller_published) {
     EXPECT_EQ(report_["governor"]["paths"]["gui.mesh"]["level"], 0.5);
     EXPECT_EQ(report_["state"], "active");
     EXPECT_EQ(report_["scene"]["checksum"], "000000000000abcd");
+    ASSERT_EQ(report_["bodies"].size(), 1U);
+    const auto& body = report_["bodies"][0];
+    EXPECT_EQ(body["id"], 6);
+    EXPECT_EQ(body["structure"], 0);
+    EXPECT_EQ(body["name"], sample::structure().name);
+    EXPECT_NEAR(body["pos_model_a"][0].get<double>(), 1e10 * sample::structure().home_com_model_m.x() + 3.0,
+                1e-6);
+    EXPECT_NEAR(body["quat_model_body_xyzw"][2].get<double>(), std::sqrt(0.5), 1e-9);
+    EXPECT_TRUE(body["fixed"].get<bool>() && body["in_hand"].get<bool>());
     EXPECT_NEAR(report_["fit"]["offset_a"].get<double>(), 3.0, 1e-6);
     EXPECT_NEAR(report_["fit"]["angle_deg"].get<double>(), 90.0, 1e-6);
     EXPECT_NEAR(report_["fit"]["at_file_place"]["offset_a"].get<double>(), 0.0, 1e-9);
