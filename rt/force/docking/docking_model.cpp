@@ -43,6 +43,7 @@ constexpr double kToolRangeM = 10.0;  // a hand, and a body, is never farther fr
 constexpr double kLeavingN = 0.04, kLeavingNM = 0.002;  // a step
 constexpr double kLeavingShare = 0.005;                 // and of what is far beyond any device
 constexpr double kErrorMargin = 1.25;
+constexpr double kOnLevel = 1e-5;  // of the way to the next level
 
 double checked_gain(const SceneMeta& meta, const DockingSettings& settings) {
     const std::array<double, 3> given{settings.force_scale, settings.start_offset_m,
@@ -157,7 +158,9 @@ KnobSpec DockingModel::knob() const noexcept {
 DockingModel::Plan DockingModel::plan(float fidelity) const noexcept {
     const double f = fidelity > 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;
     const std::size_t last = levels().size() - 1;
-    const double place = f * static_cast<double>(last);
+    double place = f * static_cast<double>(last);
+    // A level's own fidelity is seldom a float; a hair above it the next level would be summed for nothing.
+    if (std::abs(place - std::round(place)) < kOnLevel) place = std::round(place);
     const auto lower = std::min(static_cast<std::size_t>(place), last);
     const double blend = place - static_cast<double>(lower);
     return {lower, blend > 0.0 ? lower + 1 : lower, blend};
