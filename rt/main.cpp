@@ -53,7 +53,7 @@ struct Options {
 
 // The command line goes on top of the file, so it is parsed into these and applied after it.
 struct Overrides {
-    std::optional<double> rate_hz, goal_hz, force_scale;
+    std::optional<double> rate_hz, goal_hz, picture_goal_hz, force_scale;
     std::optional<std::string> law;
     std::optional<int> core, priority;
     bool free_run = false;
@@ -67,8 +67,10 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->check(CLI::Range(0.0, 1e7));
     auto* rate = app.add_option("--rate", v.rate_hz, "servo rate in Hz")->check(CLI::Range(10.0, 20000.0));
     app.add_flag("--free-run", v.free_run, "as many updates as the processor gives")->excludes(rate);
-    app.add_option("--law", v.law, "of the governor: sensitus or fixed");
+    app.add_option("--law", v.law, "of the governor: elastic, sensitus or fixed");
     app.add_option("--goal", v.goal_hz, "of the governor, in Hz")->check(CLI::Range(1.0, 1e7));
+    app.add_option("--picture-goal", v.picture_goal_hz, "of the governor, in frames a second; 0: none")
+        ->check(CLI::Range(0.0, 1000.0));
     app.add_flag("--arm", o.arm, "arm at once instead of waiting for a command");
     app.add_flag(
         "--arm-with-gui", o.arm_with_gui,
@@ -113,6 +115,7 @@ RtConfig configure(const Options& o, const Overrides& v) {
     if (v.core) c.servo.core = *v.core;
     if (v.law) c.governor.law = *v.law;
     if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
+    if (v.picture_goal_hz) c.governor.picture_goal_hz = *v.picture_goal_hz;
     if (v.force_scale) c.shape.force_scale = *v.force_scale;
     if (!o.levels.empty()) c.governor.law = "fixed";
     c.device.hand_seed = static_cast<std::int64_t>(o.seed);

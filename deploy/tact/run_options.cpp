@@ -17,8 +17,9 @@ struct Passed {
 // is right.
 constexpr Passed kController[] = {
     {"--rate", "HZ", "servo rate"},
-    {"--law", "NAME", "law of the governor: sensitus or fixed"},
+    {"--law", "NAME", "law of the governor: elastic, sensitus or fixed"},
     {"--goal", "HZ", "force rate that the governor holds"},
+    {"--picture-goal", "FPS", "frames a second below which the surface gets coarser; 0: none"},
     {"--level", "PATH=VALUE", "level of a path under the law fixed; may be repeated"},
     {"--start-offset-a", "A", "move the first structure this far from the place its file gives it"},
     {"--start-rotation-deg", "DEG", "and turn it by this angle"},

@@ -51,7 +51,9 @@ bool sensible(const HealthTopic& h) noexcept {
 }
 
 bool sensible(const LevelsTopic& l) noexcept {
-    if (l.count > kPathsMax || !rate(l.goal_hz) || !rate(l.rate_hz) || !ended(l.law)) return false;
+    if (l.count > kPathsMax || !rate(l.goal_hz) || !rate(l.rate_hz) ||
+        !rate(static_cast<double>(l.picture_goal_hz)) || !ended(l.law))
+        return false;
     return std::all_of(l.path, l.path + l.count, [](const PathLevel& p) {
         return ended(p.path) && std::isfinite(p.level) && p.level >= 0.0F && p.level <= 1.0F &&
                std::isfinite(p.floor) && std::isfinite(p.cost_s) && std::isfinite(p.error);

@@ -40,7 +40,7 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
     ImGui::SameLine(theme.px(100.0F));
     ImGui::SetNextItemWidth(theme.px(84.0F));
     if (ImGui::BeginCombo("##law", law.c_str())) {
-        for (const char* name : {"sensitus", "fixed"})
+        for (const char* name : {"elastic", "sensitus", "fixed"})
             if (ImGui::Selectable(name, law == name))
                 state.wishes.push_back({CommandKind::set_law, 0.0, name});
         ImGui::EndCombo();

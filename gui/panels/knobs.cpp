@@ -91,6 +91,8 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     spec.lines = frame;
     spec.fixed_top = 0.0;
     spec.least_top = 20.0;
+    const double goal_hz = state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0;
+    spec.goal = goal_hz > 0.0 ? 1e3 / goal_hz : 0.0;
     draw_plot(theme, spec, each);
     end_card();
 }

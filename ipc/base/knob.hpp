@@ -21,7 +21,17 @@ struct KnobSpec {
 };
 
 // Why a level is what it is.
-enum class LevelReason : std::uint8_t { start, hold, rate_low, rate_high, at_floor, at_top, by_command };
+enum class LevelReason : std::uint8_t {
+    start,
+    hold,
+    rate_low,
+    rate_high,
+    at_floor,
+    at_top,
+    by_command,
+    picture_low,  // the picture's own goal, not the force rate's
+    picture_high
+};
 
 // What one step cost and how wrong it may be. The unit of the error belongs to the path (N for forces).
 struct PathLoad {

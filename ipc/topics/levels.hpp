@@ -29,14 +29,15 @@ struct PathLevel {
 static_assert(sizeof(PathLevel) == 64);
 
 struct alignas(64) LevelsTopic {
-    static constexpr TopicInfo kInfo{.name = "levels", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "levels", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t sequence;  // rises with every change
     double goal_hz;
     double rate_hz;         // what the law last saw
-    char law[kLawNameMax];  // "sensitus", "fixed"; ends with 0
+    char law[kLawNameMax];  // "elastic", "sensitus", "fixed"; ends with 0
     std::uint32_t count;
-    std::uint32_t reserved[3];  // zero
+    float picture_goal_hz;      // frames a second; 0: none
+    std::uint32_t reserved[2];  // zero
     PathLevel path[kPathsMax];
 };
 static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);

@@ -136,6 +136,10 @@ const char* level_reason_text(LevelReason reason) noexcept {
             return "at its top";
         case LevelReason::by_command:
             return "by command";
+        case LevelReason::picture_low:
+            return "frame rate below goal";
+        case LevelReason::picture_high:
+            return "frame rate above goal";
     }
     return kUnknown;
 }

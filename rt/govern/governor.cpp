@@ -1,3 +1,18 @@
+// The law "elastic".
+//
+// Force loop and picture share processors. With g the share that the picture takes, the loop gets a constant
+// part of the rest (all of it, or what fair scheduling leaves it beside other programs): r ~ 1 - g. With
+// V the level and n = d ln g / d ln V the elasticity of its cost,
+//     d ln r / d ln V = - n g / (1 - g),      so an error e = (r - r_g) / r_g asks for
+//     ln V <- ln V + k e (1 - g) / (n g).
+// g and n are measured (processor time of the visual process, cost_fit.hpp); the load of other programs and
+// the cost of an update need not be known. The seed's law is the same with a constant s for k (1 - g) / (n
+// g), which runs from below 1 for a full picture to 50 for a coarse one: hence its slow return where V is
+// small.
+//
+// Levels go down at once and by the whole of it (k = 1), up by half of it, kHold_s after the last way down,
+// and never by more than kDownMost and kUpMost at a time. Frame times are governed by the same model:
+//     ln V <- ln V - ln(t / t_g) / n.
 #include "rt/govern/governor.hpp"
 
 #include <algorithm>
@@ -5,14 +20,32 @@
 
 namespace tact {
 
-Governor::Governor(const GovernorSettings& settings) noexcept : settings_(settings) {}
-
 namespace {
+
+constexpr double kHold_s = 0.5;
+constexpr double kDownGain = 1.0, kUpGain = 0.5;
+constexpr double kDownMost = 1.4, kUpMost = 0.3;  // in ln V
+// A picture that never pauses takes the share that others leave it, whatever it draws: the model holds only
+// once it pauses again. Only for an error that is worth a leap: a picture may also rest where it just pauses.
+constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
+constexpr double kTolerance = 0.002;  // of the law "elastic", beside the flicker
+constexpr double kAim = 1.002;  // of the goal: what is left of flicker should lie above it as often as below
+constexpr double kPictureTolerance = 0.05;  // of a frame's time above its goal
+constexpr double kPictureRoom = 0.85;       // of its goal, up to which a frame may grow
+// Below this elasticity half of the picture would save less than a fourteenth of a frame: it stays.
+constexpr double kWorthwhile = 0.1;
+constexpr double kShareLeast = 0.02, kShareMost = 0.9;
+
 bool possible(const KnobSpec& knob) noexcept {
     return knob.floor >= 0.0F && knob.floor <= 1.0F && knob.start >= knob.floor && knob.start <= 1.0F &&
            knob.slew_per_s > 0.0F;
 }
+
+bool time_like(double s) noexcept { return std::isfinite(s) && s >= 0.0 && s < 1e6; }
+
 }  // namespace
+
+Governor::Governor(const GovernorSettings& settings) noexcept : settings_(settings) {}
 
 std::size_t Governor::add(const KnobSpec& knob) noexcept {
     if (count_ == kPathsMax || !possible(knob)) return kPathsMax;
@@ -28,63 +61,154 @@ void Governor::replace(std::size_t path, const KnobSpec& knob) noexcept {
          .level = knob.start,
          .wished = by_hand ? std::max(p.wished, knob.floor) : knob.start,
          .present = p.present};
+    rate_.restart();
+}
+
+bool Governor::follow_wishes(double dt_s) noexcept {
+    bool changed = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        GovernedPath& p = paths_[i];
+        if (p.level == p.wished) continue;
+        const float step = p.knob.slew_per_s * static_cast<float>(dt_s);
+        p.level = p.wished > p.level ? std::min(p.level + step, p.wished) : p.wished;
+        p.reason = LevelReason::by_command;
+        changed = true;
+    }
+    return changed;
+}
+
+bool Governor::say_hold() noexcept {
+    bool changed = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        changed = changed || paths_[i].reason != LevelReason::hold;
+        paths_[i].reason = LevelReason::hold;
+    }
+    return changed;
+}
+
+RateIs Governor::judge(double rate_hz, double dt_s) noexcept {
+    if (settings_.law == Law::sensitus) return judge_rate(rate_hz, settings_.goal_hz, settings_.tolerance);
+    rate_.add(rate_hz, kAim * settings_.goal_hz);
+    since_down_s_ += dt_s;
+    const RateIs rate = rate_.judge(kTolerance);
+    return rate == RateIs::high && since_down_s_ < kHold_s ? RateIs::right : rate;
+}
+
+Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept {
+    if (settings_.law == Law::sensitus) {
+        const double f = sensitus_factor(rate_hz, settings_.goal_hz, settings_.gain, settings_.tolerance);
+        return {f, f};
+    }
+    const double e = (rate == RateIs::low ? kDownGain : kUpGain) * rate_.error();
+    const double g = std::clamp(picture_share_, kShareLeast, kShareMost);
+    const double n = picture_cost_.elasticity(visual_level());
+    double visual = std::clamp(e * (1.0 - g) / (n * g), -kDownMost, kUpMost);
+    if (rate_.error() < -kFarOff && picture_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
+    return {std::exp(visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
+}
+
+double Governor::visual_level() const noexcept {
+    for (std::size_t i = 0; i < count_; ++i)
+        if (!paths_[i].knob.haptic) return static_cast<double>(paths_[i].level);
+    return 1.0;
+}
+
+// Factor by which visual levels may grow before a frame takes too long; no limit without a goal or a picture.
+double Governor::picture_room() const noexcept {
+    if (settings_.picture_goal_hz <= 0.0) return 1e9;
+    if (frame_s_ <= 0.0) return 1.0;  // wait for what the present levels cost
+    const double spare = kPictureRoom / (settings_.picture_goal_hz * frame_s_);
+    if (spare <= 1.0) return 1.0;
+    return std::exp(std::min(kUpGain * std::log(spare) / picture_cost_.elasticity(visual_level()), kUpMost));
 }
 
 bool Governor::step(double rate_hz, Duration dt) noexcept {
     const double dt_s = std::max(to_s(dt), 0.0);
-    if (settings_.law == Law::fixed) {
-        bool changed = false;
-        for (std::size_t i = 0; i < count_; ++i) {
-            GovernedPath& p = paths_[i];
-            if (p.level == p.wished) continue;
-            const float step = p.knob.slew_per_s * static_cast<float>(dt_s);
-            p.level = p.wished > p.level ? std::min(p.level + step, p.wished) : p.wished;
-            p.reason = LevelReason::by_command;
-            changed = true;
-        }
-        return changed;
-    }
+    if (settings_.law == Law::fixed) return follow_wishes(dt_s);
     if (!std::isfinite(rate_hz) || rate_hz < 0.0) return false;
-    const RateIs rate = judge_rate(rate_hz, settings_.goal_hz, settings_.tolerance);
-    if (rate == RateIs::right) {
-        bool changed = false;
-        for (std::size_t i = 0; i < count_; ++i) {
-            changed = changed || paths_[i].reason != LevelReason::hold;
-            paths_[i].reason = LevelReason::hold;
+    const RateIs rate = judge(rate_hz, dt_s);
+    if (rate == RateIs::right) return picture_binds_ ? false : say_hold();
+    const Factors by = factors(rate_hz, rate);
+    bool moved = false;
+    if (rate == RateIs::low) {
+        moved = scale(false, by.visual, dt_s, LevelReason::rate_low, LevelReason::at_floor);
+        picture_binds_ = picture_binds_ && !moved;
+        if (!moved) moved = scale(true, by.haptic, dt_s, LevelReason::rate_low, LevelReason::at_floor);
+        if (moved) since_down_s_ = 0.0;
+    } else {
+        moved = scale(true, by.haptic, dt_s, LevelReason::rate_high, LevelReason::at_top);
+        const double room = picture_room();
+        if (!moved && room > 1.0) {
+            const LevelReason up = picture_binds_ ? LevelReason::picture_high : LevelReason::rate_high;
+            moved = scale(false, std::min(by.visual, room), dt_s, up, LevelReason::at_top);
         }
-        return changed;
     }
-    const double factor = sensitus_factor(rate_hz, settings_.goal_hz, settings_.gain, settings_.tolerance);
-    const bool first_haptic = rate == RateIs::high;
-    const bool first = scale(first_haptic, factor, dt_s, rate);
-    return first ? true : scale(!first_haptic, factor, dt_s, rate);
+    if (moved) rate_.restart();
+    return moved;
+}
+
+bool Governor::look(const PictureLook& picture) noexcept {
+    if (!time_like(picture.work_s) || !time_like(picture.processor_s) || !time_like(picture.period_s))
+        return false;
+    if (picture.period_s > 0.0) {
+        const double share = std::min(picture.processor_s / picture.period_s, 64.0);
+        picture_share_ += (picture_share_ > 0.0 ? 0.2 : 1.0) * (share - picture_share_);
+    }
+    picture_cost_.add(visual_level(), picture.processor_s);
+    const double busy = picture.period_s > 0.0 ? std::min(picture.work_s / picture.period_s, 1.0) : 0.0;
+    picture_busy_ += 0.4 * (busy - picture_busy_);
+    if (settings_.law == Law::fixed || settings_.picture_goal_hz <= 0.0 || picture.work_s <= 0.0)
+        return false;
+
+    // A frame that takes very long is believed at once, else the better one of two: hitches are no load.
+    const double goal_s = 1.0 / settings_.picture_goal_hz;
+    const bool first = frame_s_ <= 0.0;
+    const double believed = first ? (picture.work_s > 2.0 * goal_s ? picture.work_s : 0.0)
+                                  : std::min(picture.work_s, frame_before_s_);
+    frame_before_s_ = picture.work_s;
+    frame_s_ = first ? picture.work_s : frame_s_ + 0.3 * (picture.work_s - frame_s_);
+    if (believed <= (1.0 + kPictureTolerance) * goal_s) return false;
+    double factor = 1.0;
+    if (settings_.law == Law::sensitus) {
+        factor =
+            sensitus_factor(1.0 / believed, settings_.picture_goal_hz, settings_.gain, settings_.tolerance);
+    } else {
+        const double n = picture_cost_.elasticity(visual_level());
+        if (n < kWorthwhile) return false;
+        factor = std::exp(std::max(-std::log(believed / goal_s) / n, -kDownMost));
+    }
+    if (!scale(false, factor, 0.0, LevelReason::picture_low, LevelReason::at_floor)) return false;
+    picture_binds_ = true;
+    since_down_s_ = 0.0;
+    rate_.restart();
+    return true;
 }
 
 // One kind of path by one factor. True: at least one of them moved.
-bool Governor::scale(bool haptic, double factor, double dt_s, RateIs rate) noexcept {
+bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_down,
+                     LevelReason stuck) noexcept {
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
         if (!p.present || p.knob.haptic != haptic) continue;
         // A knob with floor 0 has to find its way back up from it.
         const double before = static_cast<double>(p.level);
-        const double base = rate == RateIs::high ? std::max(before, 1e-3) : before;
+        const double base = factor > 1.0 ? std::max(before, 1e-3) : before;
         double wanted = std::clamp(base * factor, static_cast<double>(p.knob.floor), 1.0);
-        if (rate == RateIs::high)
-            wanted = std::min(wanted, before + static_cast<double>(p.knob.slew_per_s) * dt_s);
+        if (factor > 1.0) wanted = std::min(wanted, before + static_cast<double>(p.knob.slew_per_s) * dt_s);
         const auto level = static_cast<float>(wanted);
-        LevelReason reason = rate == RateIs::low ? LevelReason::rate_low : LevelReason::rate_high;
-        if (level == p.level) reason = rate == RateIs::low ? LevelReason::at_floor : LevelReason::at_top;
         moved = moved || level != p.level;
-        p.reason = reason;
+        p.reason = level == p.level ? stuck : up_or_down;
         p.level = level;
     }
+    if (moved && !haptic) frame_s_ = 0.0;
     return moved;
 }
 
 bool Governor::set_goal_hz(double goal_hz) noexcept {
     if (!(goal_hz >= 1.0 && goal_hz <= 1e7)) return false;
     settings_.goal_hz = goal_hz;
+    rate_.restart();
     return true;
 }
 
@@ -103,10 +227,17 @@ void Governor::set_law(Law law) noexcept {
         for (std::size_t i = 0; i < count_; ++i) paths_[i].wished = paths_[i].level;
     }
     settings_.law = law;
+    rate_.restart();
 }
 
 void Governor::set_present(std::size_t path, bool present) noexcept {
-    if (path < count_) paths_[path].present = present;
+    if (path >= count_) return;
+    if (!paths_[path].knob.haptic && present != paths_[path].present) {
+        rate_.restart();
+        picture_share_ = picture_busy_ = frame_s_ = 0.0;
+        picture_binds_ = false;
+    }
+    paths_[path].present = present;
 }
 
 }  // namespace tact

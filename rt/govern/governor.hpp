@@ -1,10 +1,13 @@
 // The one place that turns fidelity knobs.
 //
-// Runs on   servo thread, every so many milliseconds, constant time
-// In        the rate of the force loop, and which paths are there
+// Runs on   servo thread: step() every so many milliseconds, look() at each frame that obeyed; constant time
+// In        the rate of the force loop, what the picture costs, and which paths are there
 // Out       one level per path, within [floor, 1]; whether any changed
+// Goals     of the force rate, always; of the picture's own rate, where one is set and somebody draws
 // Order     rate too low: visual levels first, all by the same factor; haptic ones only when no visual one
-//           can give more. Rate to spare: haptic ones first. Down at once, up no faster than the knob's slew.
+//           can give more. Rate to spare: haptic ones first. Down at once, up no faster than the knob's slew,
+//           and visual ones only where the picture has time to spare too
+// Wind-up   none: the levels themselves are all that is integrated, and they are clamped
 #pragma once
 
 #include <array>
@@ -16,15 +19,18 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/knob.hpp"
 #include "ipc/base/rt.hpp"
+#include "rt/govern/cost_fit.hpp"
 #include "rt/govern/law.hpp"
+#include "rt/govern/rate_filter.hpp"
 
 namespace tact {
 
 struct GovernorSettings {
-    Law law = Law::sensitus;
+    Law law = kDefaultLaw;
     double goal_hz = 1000.0;
-    double gain = 0.5;        // s
-    double tolerance = 0.02;  // epsilon
+    double picture_goal_hz = 0.0;  // 0: the picture has no goal of its own
+    double gain = 0.5;             // s of the law "sensitus"
+    double tolerance = 0.02;       // epsilon of the law "sensitus"
 };
 
 struct GovernedPath {
@@ -33,6 +39,13 @@ struct GovernedPath {
     float wished = 1.0F;  // by a person, for the law "fixed"
     bool present = true;  // an absent path (no GUI attached) keeps its level and takes no part
     LevelReason reason = LevelReason::start;
+};
+
+// A frame that was drawn with the present levels.
+struct PictureLook {
+    double work_s = 0.0;       // its time, without the pause that keeps to a highest rate of pictures
+    double processor_s = 0.0;  // of the visual process, since the frame before
+    double period_s = 0.0;     // since the frame before
 };
 
 class Governor {
@@ -49,6 +62,8 @@ public:
     void replace(std::size_t path, const KnobSpec& knob) noexcept TACT_RT;
     // True: a level or its reason changed. rate_hz of the last interval, dt its length.
     bool step(double rate_hz, Duration dt) noexcept TACT_RT;
+    // One frame, once, and only one that obeyed the levels as they are. True as above.
+    bool look(const PictureLook& picture) noexcept TACT_RT;
 
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate
     bool set_level(std::size_t path, double level) noexcept TACT_RT;  // turns the law to "fixed"
@@ -60,11 +75,29 @@ public:
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:
-    bool scale(bool haptic, double factor, double dt_s, RateIs rate) noexcept;
+    struct Factors {
+        double visual, haptic;
+    };
+    [[nodiscard]] bool follow_wishes(double dt_s) noexcept;
+    [[nodiscard]] RateIs judge(double rate_hz, double dt_s) noexcept;
+    [[nodiscard]] Factors factors(double rate_hz, RateIs rate) const noexcept;
+    [[nodiscard]] double picture_room() const noexcept;
+    [[nodiscard]] double visual_level() const noexcept;
+    [[nodiscard]] bool say_hold() noexcept;
+    bool scale(bool haptic, double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
 
     GovernorSettings settings_;
     std::array<GovernedPath, kPathsMax> paths_{};
     std::size_t count_ = 0;
+
+    RateFilter rate_;
+    CostFit picture_cost_;
+    double picture_share_ = 0.0;  // of a processor, that the visual process has; filtered
+    double frame_s_ = 0.0;        // work of a frame, filtered; 0: none seen since the last change
+    double frame_before_s_ = 0.0;
+    double since_down_s_ = 1e9;
+    double picture_busy_ = 0.0;   // share of its time that it draws, filtered; 1: it never pauses
+    bool picture_binds_ = false;  // the last visual level that was given up, was for the picture's own goal
 };
 
 }  // namespace tact

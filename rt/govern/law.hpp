@@ -5,6 +5,10 @@
 //               V <- V + s V (r_c - r_g) / r_g    if r_c > (1 + e) r_g
 //           with goal r_g, measured rate r_c, gain s in (0, 1], tolerance e. The print has (1 - e) and (r_g -
 //           r_c) in both lines; read so, the second would shrink V when there is time to spare.
+// elastic   the same aim by a measured model of the picture's cost (rt/govern/governor.cpp has the
+// derivation):
+//           one step to where the goal should be, taken when the error is certain (rate_filter.hpp) and the
+//           picture has obeyed the step before.
 // fixed     the level that a person set, or the start level.
 #pragma once
 
@@ -18,8 +22,9 @@
 
 namespace tact {
 
-enum class Law : std::uint8_t { sensitus, fixed };
-inline constexpr std::array<std::string_view, 2> kLawNames{"sensitus", "fixed"};
+enum class Law : std::uint8_t { sensitus, fixed, elastic };
+inline constexpr std::array<std::string_view, 3> kLawNames{"sensitus", "fixed", "elastic"};
+inline constexpr Law kDefaultLaw = Law::elastic;  // measured better, see README.md
 
 [[nodiscard]] inline std::optional<Law> law_named(std::string_view name) noexcept {
     for (std::size_t i = 0; i < kLawNames.size(); ++i) {

@@ -56,8 +56,9 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"safety.timing_latches", &c.safety.timing_latches, 0, 0, {"real", "always", "never"}},
         {"safety.gui_silent_ms", &c.safety.gui_silent_ms, 50, 60000, {}},
         {"safety.on_gui_silent", &c.safety.on_gui_silent, 0, 0, {"continue", "ramp"}},
-        {"governor.law", &c.governor.law, 0, 0, {"sensitus", "fixed"}},
+        {"governor.law", &c.governor.law, 0, 0, {kLawNames.begin(), kLawNames.end()}},
         {"governor.goal_hz", &c.governor.goal_hz, 0, 1e7, {}},
+        {"governor.picture_goal_hz", &c.governor.picture_goal_hz, 0, 1000, {}},
         {"governor.gain", &c.governor.gain, 1e-3, 1, {}},
         {"governor.tolerance", &c.governor.tolerance, 0, 0.5, {}},
         {"governor.interval_ms", &c.governor.interval_ms, 10, 10000, {}},
@@ -208,9 +209,10 @@ ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
     s.chain.passivity = c.safety.passivity;
     s.chain.translation.energy_start_j = c.safety.passivity_energy_j;
     s.chain.rotation.energy_start_j = c.safety.passivity_energy_j;
-    s.governor.law = law_named(c.governor.law).value_or(Law::sensitus);
+    s.governor.law = law_named(c.governor.law).value_or(kDefaultLaw);
     const double rate_hz = s.free_running ? 1000.0 : 1e6 / c.servo.period_us;
     s.governor.goal_hz = c.governor.goal_hz > 0.0 ? c.governor.goal_hz : rate_hz;
+    s.governor.picture_goal_hz = c.governor.picture_goal_hz;
     s.governor.gain = c.governor.gain;
     s.governor.tolerance = c.governor.tolerance;
     s.governor_interval = duration_us(c.governor.interval_ms * 1e3);

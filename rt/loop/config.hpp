@@ -56,11 +56,12 @@ struct RtConfig {
         std::string on_gui_silent = "continue";  // or "ramp"
     } safety;
     struct Govern {
-        std::string law = "sensitus";
-        double goal_hz = 0.0;  // 0: the servo's rate; free running: 1000
-        double gain = 0.5;
+        std::string law = "elastic";
+        double goal_hz = 0.0;           // 0: the servo's rate; free running: 1000
+        double picture_goal_hz = 30.0;  // frames a second; 0: none
+        double gain = 0.5;              // of the law "sensitus", as its tolerance
         double tolerance = 0.02;
-        double interval_ms = 200.0;
+        double interval_ms = 100.0;
     } governor;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <numeric>
 
 #include "ipc/topics/text.hpp"
 #include "rt/govern/law.hpp"
@@ -182,6 +183,11 @@ void House::attend_gui() {
             report_.gui_heartbeat_ns = to_ns(Monotonic::now());
             report_.gui_fps = load.fps;
             report_.gui_busy_s = load.busy_s;
+            report_.gui_frame = load.frame;
+            report_.gui_levels_sequence = load.levels_sequence;
+            report_.gui_taken_at_ns = load.taken_at_ns;
+            report_.gui_work_s = std::accumulate(std::begin(load.part_s), std::end(load.part_s), 0.0);
+            report_.gui_cpu_s = load.cpu_s;
             report_.gui_vertices = load.vertices_drawn;
             report_.gui_vertices_max = load.vertices_max;
             if (settings_.arm_with_gui && load.vertices_drawn > 0) {

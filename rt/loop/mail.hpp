@@ -34,6 +34,11 @@ struct HouseReport {
     std::uint64_t page_faults;  // of the servo thread, from /proc, since it asked
     double gui_fps;
     double gui_busy_s;
+    std::uint64_t gui_frame;            // of the newest word
+    std::uint64_t gui_levels_sequence;  // of the levels that this frame obeyed
+    std::int64_t gui_taken_at_ns;
+    double gui_work_s;  // of the frame, without its pause
+    double gui_cpu_s;   // processor time since its start
     std::uint32_t gui_vertices;
     std::uint32_t gui_vertices_max;
     std::uint32_t gui_attached;  // 0 or 1

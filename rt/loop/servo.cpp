@@ -78,9 +78,8 @@ void Servo::warm_up() noexcept {
     pacer_.restart(now + settings_.period);
     watchdogs_.forget();
     statistics_.start(now);
-    governed_at_ = health_at_ = now;
-    interval_cycles_ = interval_overruns_ = 0;
-    interval_cost_ = interval_model_cost_ = Duration{0};
+    health_at_ = now;
+    start_interval(now);
     c.run = next_status(c.run, {.open = true}, now);
     say(EventCode::loop_started, 0.0, 0.0);
     publish_levels(c);
@@ -246,40 +245,6 @@ void Servo::publish(CycleState& c) noexcept {
         if (statistics_.second_over(c.now)) publish_lateness(c);
     }
     if (health_due_) publish_health(c);
-}
-
-void Servo::govern(CycleState& c) noexcept {
-    ++interval_cycles_;
-    interval_model_cost_ += c.model_cost;
-    const Duration interval = c.now - governed_at_;
-    if (dry_ || interval < settings_.governor_interval) return;
-    law_rate_hz_ = rate_for_law(interval);
-    model_cost_s_ = to_s(interval_model_cost_) / static_cast<double>(interval_cycles_);
-    governor_.set_present(kMeshIndex, c.house.gui_attached != 0);
-    float before[Governor::kPathsMax];
-    const auto paths = governor_.paths();
-    for (std::size_t i = 0; i < paths.size(); ++i) before[i] = paths[i].level;
-    bool changed = governor_.step(law_rate_hz_, interval);
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (paths[i].level != before[i])
-            say(EventCode::level_changed, static_cast<double>(i), static_cast<double>(paths[i].level));
-    }
-    changed = changed || levels_vertices_max_ != c.house.gui_vertices_max;
-    if (changed) ++levels_sequence_;
-    publish_levels(c);
-    governed_at_ = c.now;
-    interval_cycles_ = interval_overruns_ = 0;
-    interval_cost_ = interval_model_cost_ = Duration{0};
-}
-
-// A loop of fixed rate never shows more than its rate. What the law has to see is whether there is time to
-// spare: the rate that the cycles of this interval would have allowed. It is cut at a tenth above the goal,
-// so that levels come back by a few percent a step and not in one leap.
-double Servo::rate_for_law(Duration interval) const noexcept {
-    const double measured_hz = static_cast<double>(interval_cycles_) / std::max(to_s(interval), 1e-9);
-    if (settings_.free_running || interval_overruns_ > 0 || interval_cost_.count() <= 0) return measured_hz;
-    const double possible_hz = static_cast<double>(interval_cycles_) / to_s(interval_cost_);
-    return std::max(measured_hz, std::min(possible_hz, 1.1 * governor_.settings().goal_hz));
 }
 
 void Servo::close(CycleState& c) noexcept {

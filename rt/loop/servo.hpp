@@ -17,6 +17,7 @@
 #include "ipc/topics/regions.hpp"
 #include "rt/force/force_model.hpp"
 #include "rt/govern/governor.hpp"
+#include "rt/govern/picture_watch.hpp"
 #include "rt/loop/cycle.hpp"
 #include "rt/loop/mail.hpp"
 #include "rt/loop/statistics.hpp"
@@ -34,7 +35,7 @@ struct ServoSettings {
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
-    Duration governor_interval = std::chrono::milliseconds(200);
+    Duration governor_interval = std::chrono::milliseconds(100);
     Duration gui_silent = std::chrono::milliseconds(500);
     bool gui_silent_ramps = false;  // else it is only said
     std::uint32_t dry_cycles = 1000;
@@ -108,6 +109,9 @@ private:
     void publish_levels(const CycleState& c) noexcept TACT_RT;
     void publish_trace(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
+    [[nodiscard]] bool look_at_picture(const CycleState& c) noexcept TACT_RT;
+    void say_levels(const CycleState& c, std::span<const float> before, bool changed) noexcept TACT_RT;
+    void start_interval(Instant now) noexcept TACT_RT;
 
     Clock& clock_;
     RtRegion& region_;
@@ -142,6 +146,7 @@ private:
     double law_rate_hz_ = 0.0;
     double model_cost_s_ = 0.0;
     std::uint64_t levels_sequence_ = 0;
+    PictureWatch picture_;
     std::uint32_t levels_vertices_max_ = 0;
 };
 

@@ -148,6 +148,7 @@ void Servo::publish_levels(const CycleState& c) noexcept {
     t.sequence = levels_sequence_;
     t.goal_hz = governor_.settings().goal_hz;
     t.rate_hz = law_rate_hz_;
+    t.picture_goal_hz = static_cast<float>(governor_.settings().picture_goal_hz);
     const std::string_view law = kLawNames[static_cast<std::size_t>(governor_.settings().law)];
     std::memcpy(t.law, law.data(), std::min(law.size(), kLawNameMax - 1));
     const auto paths = governor_.paths();

@@ -290,7 +290,7 @@ TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
     loop.order(CommandKind::disarm);
     loop.cycles(60);
     EXPECT_DOUBLE_EQ(loop.health().goal_hz, 750.0);
-    EXPECT_STREQ(loop.levels().law, "sensitus");
+    EXPECT_STREQ(loop.levels().law, "elastic");
     EXPECT_EQ(loop.state(), RunState::ready);
     EXPECT_EQ(loop.shown_n(), 0.0);
     EXPECT_EQ(loop.health().command_sequence, 8U);

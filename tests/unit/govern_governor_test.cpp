@@ -1,5 +1,6 @@
 // The governor: the seed's law to the letter, its order of sacrifice, and what holds for any rates.
 #include "rt/govern/governor.hpp"
+#include "rt/govern/picture_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -34,7 +35,7 @@ TEST(SensitusLaw, is_the_equation_of_the_page) {
 }
 
 TEST(Governor, gives_the_picture_up_first_and_the_force_last) {
-    Governor governor = with({.goal_hz = 1000.0}, {kMesh, kForce});
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     int steps = 0;
     while (governor.level(0) > kMesh.floor && steps++ < 1000) {
         static_cast<void>(governor.step(500.0, kStep));
@@ -49,7 +50,7 @@ TEST(Governor, gives_the_picture_up_first_and_the_force_last) {
 }
 
 TEST(Governor, restores_the_force_before_the_picture_and_no_faster_than_its_slew) {
-    Governor governor = with({.goal_hz = 1000.0}, {kMesh, kForce});
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     for (int i = 0; i < 200; ++i) static_cast<void>(governor.step(100.0, kStep));
     float before = governor.level(1);
     while (governor.level(1) < 1.0F) {
@@ -63,7 +64,7 @@ TEST(Governor, restores_the_force_before_the_picture_and_no_faster_than_its_slew
 }
 
 TEST(Governor, an_absent_path_keeps_its_level_and_the_next_kind_answers) {
-    Governor governor = with({.goal_hz = 1000.0}, {kMesh, kForce});
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     governor.set_present(0, false);
     static_cast<void>(governor.step(500.0, kStep));
     EXPECT_FLOAT_EQ(governor.level(0), 1.0F);
@@ -74,7 +75,8 @@ TEST(Governor, an_absent_path_keeps_its_level_and_the_next_kind_answers) {
 // rate = capacity / (force + picture * V). The rest point is known in closed form.
 TEST(Governor, converges_on_a_shared_processor_to_the_level_where_the_rate_is_the_goal) {
     for (const double gain : {0.1, 0.5, 1.0}) {
-        Governor governor = with({.goal_hz = 800.0, .gain = gain, .tolerance = 0.02}, {kMesh});
+        Governor governor =
+            with({.law = Law::sensitus, .goal_hz = 800.0, .gain = gain, .tolerance = 0.02}, {kMesh});
         const auto rate_hz = [](double level) {
             return 1.0 / (0.8e-3 + 1.02e-3 * level);
         };  // 550 Hz unadapted
@@ -89,7 +91,7 @@ TEST(Governor, converges_on_a_shared_processor_to_the_level_where_the_rate_is_th
 }
 
 TEST(Governor, a_goal_beyond_the_machine_ends_at_the_floor_and_recovers_at_once) {
-    Governor governor = with({.goal_hz = 1400.0}, {kMesh});
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1400.0}, {kMesh});
     const auto rate_hz = [](double level) { return 1.0 / (0.8e-3 + 1.02e-3 * level); };
     for (int i = 0; i < 500; ++i)
         static_cast<void>(governor.step(rate_hz(static_cast<double>(governor.level(0))), kStep));
@@ -106,7 +108,8 @@ TEST(Governor, any_rates_leave_every_level_between_floor_and_one) {
         const double tolerance = *rc::gen::inRange(0, 501) * 1e-3;
         KnobSpec zero{.path = "z", .floor = 0.0F, .start = 0.5F};
         Governor governor =
-            with({.goal_hz = 1000.0, .gain = gain, .tolerance = tolerance}, {kMesh, kForce, zero});
+            with({.law = Law::sensitus, .goal_hz = 1000.0, .gain = gain, .tolerance = tolerance},
+                 {kMesh, kForce, zero});
         for (int i = 0; i < 100; ++i) {
             const double nasty = *rc::gen::element(std::numeric_limits<double>::quiet_NaN(), -1.0, 1e308, 0.0,
                                                    std::numeric_limits<double>::infinity());
@@ -127,6 +130,146 @@ TEST(Governor, any_rates_leave_every_level_between_floor_and_one) {
     EXPECT_TRUE(held);
 }
 
+// The same for the law "elastic", whatever the picture says of itself.
+TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_between_floor_and_one) {
+    const bool held = rc::check([] {
+        KnobSpec zero{.path = "z", .floor = 0.0F, .start = 0.5F};
+        Governor governor =
+            with({.law = Law::elastic, .goal_hz = 1000.0, .picture_goal_hz = 30.0}, {kMesh, kForce, zero});
+        const auto number = [](int to) {
+            const double nasty = *rc::gen::element(std::numeric_limits<double>::quiet_NaN(), -1.0, 1e308, 0.0,
+                                                   std::numeric_limits<double>::infinity());
+            return *rc::gen::weightedElement<bool>({{9, true}, {1, false}}) ? *rc::gen::inRange(0, to) * 1e-3
+                                                                            : nasty;
+        };
+        for (int i = 0; i < 100; ++i) {
+            const auto before = governor.paths();
+            const float force = before[1].level;
+            if (*rc::gen::inRange(0, 2) == 0) {
+                static_cast<void>(governor.step(1e3 * number(5000), kStep));
+            } else {
+                static_cast<void>(governor.look({number(3000), number(3000), number(3000)}));
+                RC_ASSERT(governor.level(1) == force);  // no force is given up for a picture
+            }
+            for (const GovernedPath& p : governor.paths())
+                RC_ASSERT(p.level >= p.knob.floor && p.level <= 1.0F);
+        }
+    });
+    EXPECT_TRUE(held);
+}
+
+TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
+    Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
+    // Half of the picture's cost varies (the prior), and it has half of the core.
+    for (int i = 0; i < 50; ++i)
+        static_cast<void>(governor.look({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
+    ASSERT_TRUE(governor.step(900.0, kStep));
+    const double e = 900.0 / 1002.0 - 1.0;
+    EXPECT_NEAR(static_cast<double>(governor.level(0)), std::exp(e * (1.0 - 0.5) / (0.5 * 0.5)), 1e-3);
+    EXPECT_EQ(governor.paths()[0].reason, LevelReason::rate_low);
+}
+
+TEST(Governor, the_elastic_law_comes_back_only_after_a_hold_and_by_small_steps) {
+    Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
+    ASSERT_TRUE(governor.step(300.0, kStep));
+    const float low = governor.level(0);
+    for (int i = 0; i < 4; ++i) {
+        static_cast<void>(governor.step(2000.0, kStep));
+        EXPECT_FLOAT_EQ(governor.level(0), low);
+    }
+    for (float before = low; governor.level(0) < 1.0F; before = governor.level(0)) {
+        ASSERT_TRUE(governor.step(2000.0, kStep));
+        ASSERT_LE(governor.level(0), before * 1.36F);
+    }
+}
+
+TEST(Governor, one_hitch_of_the_picture_is_no_load_and_two_are) {
+    Governor governor = with({.goal_hz = 1000.0, .picture_goal_hz = 30.0}, {kMesh});
+    const auto frame = [&](double work_s) {
+        return governor.look({.work_s = work_s, .processor_s = work_s, .period_s = std::max(work_s, 0.033)});
+    };
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(frame(0.02));
+    EXPECT_FALSE(frame(0.3));
+    EXPECT_FALSE(frame(0.02));
+    EXPECT_FALSE(frame(0.05));
+    EXPECT_TRUE(frame(0.05));
+    EXPECT_EQ(governor.paths()[0].reason, LevelReason::picture_low);
+    EXPECT_LT(governor.level(0), 0.7F);
+}
+
+TEST(Governor, without_a_goal_of_its_own_the_picture_may_take_its_time) {
+    Governor governor = with({.goal_hz = 1000.0, .picture_goal_hz = 0.0}, {kMesh});
+    for (int i = 0; i < 10; ++i)
+        EXPECT_FALSE(governor.look({.work_s = 2.0, .processor_s = 2.0, .period_s = 2.0}));
+    EXPECT_FLOAT_EQ(governor.level(0), 1.0F);
+}
+
+TEST(RateFilter, believes_a_big_error_at_once_and_a_small_one_after_a_while) {
+    RateFilter filter;
+    EXPECT_EQ(filter.judge(0.003), RateIs::right);  // nothing seen
+    filter.add(900.0, 1000.0);
+    EXPECT_EQ(filter.judge(0.003), RateIs::low);
+    filter.restart();
+    int n = 0;
+    for (; n < 200 && filter.judge(0.003) != RateIs::low; ++n)
+        filter.add(n % 2 == 0 ? 970.0 : 1010.0, 1000.0);
+    EXPECT_GT(n, 5);
+    EXPECT_LT(n, 200);
+}
+
+TEST(RateFilter, a_leap_is_seen_whole_and_not_as_part_of_the_mean) {
+    RateFilter filter;
+    for (int i = 0; i < 100; ++i) filter.add(i % 2 == 0 ? 995.0 : 1005.0, 1000.0);
+    filter.add(700.0, 1000.0);
+    EXPECT_DOUBLE_EQ(filter.error(), -0.3);
+}
+
+TEST(CostFit, finds_the_elasticity_of_a_line_and_keeps_its_prior_where_nothing_moves) {
+    CostFit moved, still;
+    for (int i = 0; i < 100; ++i) {
+        const double level = 0.1 + 0.8 * (i % 10) / 10.0;
+        moved.add(level, 0.01 + 0.04 * level);
+        still.add(0.5, 0.03);
+    }
+    EXPECT_NEAR(moved.elasticity(0.5), 0.02 / 0.03, 0.02);
+    EXPECT_NEAR(moved.elasticity(0.05), 0.002 / 0.012, 0.05);
+    EXPECT_NEAR(still.elasticity(0.5), 0.5, 1e-9);
+    still.add(std::nan(""), 1.0);
+    still.add(0.5, -1.0);
+    EXPECT_NEAR(still.elasticity(0.5), 0.5, 1e-9);
+}
+
+TEST(PictureWatch, hands_on_each_frame_that_obeyed_once) {
+    PictureWatch watch;
+    const Instant t = Instant{} + std::chrono::hours(1);
+    PictureWord w{.frame = 5,
+                  .levels_sequence = 1,
+                  .taken_at_ns = 1'000'000'000,
+                  .work_s = 0.01,
+                  .cpu_s = 1.0,
+                  .drawn = true};
+    EXPECT_FALSE(watch.take(w));  // the first one of a process has nothing before it
+    watch.asked(7, t);
+    EXPECT_TRUE(watch.pending(t));
+    const auto next = [&](std::uint64_t sequence) {
+        ++w.frame;
+        w.levels_sequence = sequence;
+        w.taken_at_ns += 50'000'000;
+        w.cpu_s += 0.02;
+        return watch.take(w);
+    };
+    EXPECT_FALSE(next(6));
+    EXPECT_TRUE(watch.pending(t));
+    const auto look = next(7);
+    ASSERT_TRUE(look);
+    EXPECT_NEAR(look->processor_s, 0.02, 1e-12);
+    EXPECT_NEAR(look->period_s, 0.05, 1e-12);
+    EXPECT_FALSE(watch.pending(t));
+    EXPECT_FALSE(watch.take(w));  // the same again
+    watch.asked(9, t);
+    EXPECT_FALSE(watch.pending(t + std::chrono::seconds(1)));  // one that does not answer stops nothing
+}
+
 TEST(Governor, the_fixed_law_holds_what_a_person_set_whatever_the_rate) {
     Governor governor = with({.law = Law::fixed, .goal_hz = 1000.0}, {kMesh, kForce});
     EXPECT_FALSE(governor.step(10.0, kStep));
@@ -141,7 +284,7 @@ TEST(Governor, the_fixed_law_holds_what_a_person_set_whatever_the_rate) {
 }
 
 TEST(Governor, going_over_to_the_fixed_law_keeps_the_levels_as_they_are) {
-    Governor governor = with({.goal_hz = 1000.0}, {kMesh});
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh});
     static_cast<void>(governor.step(500.0, kStep));
     const float level = governor.level(0);
     governor.set_law(Law::fixed);

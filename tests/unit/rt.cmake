@@ -5,6 +5,7 @@ tact_test(unit/safety_state_machine_test.cpp USES base safety)
 tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_watchdogs_test.cpp USES base safety)
 tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
+tact_test(unit/govern_replay_test.cpp USES base govern)
 tact_test(unit/hal_sim_test.cpp USES base hal)
 tact_test(unit/base_pacer_test.cpp USES base SYSTEM rapidcheck)
 tact_test(unit/loop_config_test.cpp USES base hal loop govern)
@@ -16,6 +17,7 @@ tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
 tact_test(scenario/bodies_scenario_test.cpp USES base topics assets hal force loop)
+tact_test(scenario/governor_scenario_test.cpp USES base topics hal force loop govern)
 
 # Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/loop/interpose.cpp
