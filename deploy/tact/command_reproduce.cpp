@@ -2,27 +2,41 @@
 #include <memory>
 
 #include "deploy/tact/commands.hpp"
-#include "deploy/tact/reproduce_governor.hpp"
+#include "deploy/tact/reproduce/docking.hpp"
 
 namespace tact::launch {
+
+namespace {
+
+void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const char* about, bool meshes) {
+    auto* const command = reproduce.add_subcommand(name, about);
+    const auto e = std::make_shared<DockingExperiment>();
+    e->with_meshes = meshes;
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_option("--core", e->rates.core.core, "the core that all share; -1: the last")
+        ->check(CLI::Range(-1, 1023));
+    command->add_option("--fps-max", e->rates.core.fps_max, "pictures a second, at most")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
+    command->add_option("--law", e->rates.law, "of the adapted runs")
+        ->check(CLI::IsMember({"elastic", "sensitus"}))
+        ->capture_default_str();
+    command->add_option("--goal", e->rates.goal_hz, "under load, in Hz; 0: from a measurement")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_flag("--quick", e->rates.quick, "seconds instead of a minute; shows that it works");
+    command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
+}
+
+}  // namespace
 
 void add_reproduce(CLI::App& app, int& exit_code) {
     auto* const reproduce =
         app.add_subcommand("reproduce", "run the seeds' experiments again, on this machine");
     reproduce->require_subcommand(1);
-    auto* const governor = reproduce->add_subcommand(
-        "governor", "the force rate with and without the law, with and without an external load");
-    const auto e = std::make_shared<GovernorExperiment>();
-    governor->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
-    governor->add_option("--core", e->core, "the core that all share; -1: the last")
-        ->check(CLI::Range(-1, 1023));
-    governor->add_option("--fps-max", e->fps_max, "pictures a second, at most")
-        ->check(CLI::Range(1.0, 240.0))
-        ->capture_default_str();
-    governor->add_option("--goal", e->goal_hz, "under load, in Hz; 0: from a measurement")
-        ->check(CLI::Range(0.0, 1e6));
-    governor->add_flag("--quick", e->quick, "seconds instead of a minute and a half; shows that it works");
-    governor->callback([e, &exit_code] { exit_code = reproduce_governor(*e); });
+    add_docking(*reproduce, exit_code, "docking", "the docking seed's figures 3 to 8", true);
+    add_docking(*reproduce, exit_code, "governor",
+                "of those, the force rate with and without the law, with and without an external load",
+                false);
 }
 
 }  // namespace tact::launch

@@ -170,6 +170,16 @@ void Canvas::fill(const Box& box, Colour colour, double opacity) {
             blend(x, y, colour, opacity);
 }
 
+void Canvas::paste(const Image& other, int x, int y) {
+    for (int j = 0; j < other.height; ++j)
+        for (int i = 0; i < other.width; ++i) {
+            const std::uint8_t* const from =
+                &other.rgba[4 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(other.width) +
+                                 static_cast<std::size_t>(i))];
+            blend(x + i, y + j, {from[0], from[1], from[2]}, 1.0);
+        }
+}
+
 void Canvas::polyline(std::span<const Pixel> points, Colour colour, double width_px, const Box& cut,
                       double dash_px) {
     const double half = width_px / 2.0;

@@ -80,6 +80,9 @@ public:
     void text(const Font& font, std::string_view words, Pixel at, int size_px, Colour colour,
               Anchor anchor = Anchor::left);
 
+    // Another image as it is, its upper left pixel at (x, y); what lies outside is cut off.
+    void paste(const Image& other, int x, int y);
+
     [[nodiscard]] const Image& image() const { return image_; }
 
 private:

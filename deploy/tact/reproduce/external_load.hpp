@@ -18,6 +18,7 @@ public:
     ~ExternalLoad() { stop(); }
     ExternalLoad(const ExternalLoad&) = delete;
     ExternalLoad& operator=(const ExternalLoad&) = delete;
+    [[nodiscard]] pid_t pid() const { return pid_; }
     void stop() noexcept;
     // Of its core, while it ran; once it was stopped.
     [[nodiscard]] double share() const { return share_; }

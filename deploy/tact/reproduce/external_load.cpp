@@ -1,4 +1,4 @@
-#include "deploy/tact/external_load.hpp"
+#include "deploy/tact/reproduce/external_load.hpp"
 
 #include <sched.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "deploy/tact/experiment_scene.hpp"
+#include "deploy/tact/reproduce/experiment_scene.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,0 +1,70 @@
+// What an experiment saw of a run: force rate, picture, who used the core, and what that amounts to.
+//
+// Rates      cycles over time, never a mean of rates
+// Windows    every stretch of a tenth of a second that ends at a sample; where it begins between two samples,
+// what
+//            they counted is divided between them
+// Disturbed  a window in which programs that do not belong to the experiment had more than kForeignShareMax
+// of
+//            the core: what is left when the processor time of all parties is taken off the time that went
+//            by, for the core is never idle. Or one in which an update cost kSlowerMax times its median of
+//            processor time: the core itself was slower (its sibling busy, or the host elsewhere).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tact::launch {
+
+constexpr std::size_t kParties = 4;
+
+struct RateSample {
+    double t_s = 0.0;         // since the run's first sample
+    std::uint64_t cycle = 0;  // of the force loop, by then
+    double level_mesh = 0.0, level_force = 0.0;
+    std::uint32_t vertices = 0;
+    double fps = 0.0;
+    bool load = false;             // the external one runs
+    double used_s[kParties] = {};  // processor time so far: controller, visual process, load, metronome
+};
+
+constexpr double kWindow_s = 0.1;
+constexpr double kForeignShareMax = 0.03, kSlowerMax = 1.05;
+constexpr double kLowestOfGoal = 0.95;
+
+struct RateWindow100 {
+    double t_s = 0.0;  // of its end
+    double rate_hz = 0.0;
+    double foreign_share = 0.0;
+    double update_s = 0.0;  // processor time of the controller per update
+    bool disturbed = false;
+};
+// One for each sample that has a whole window behind it.
+[[nodiscard]] std::vector<RateWindow100> windows(const std::vector<RateSample>& samples, double from_s,
+                                                 double to_s, double window_s = kWindow_s);
+
+struct RateSummary {
+    double seconds = 0.0;
+    double rate_mean_hz = 0.0;         // cycles over time
+    double rate_worst_1s_hz = 0.0;     // lowest mean over any second
+    double rate_worst_100ms_hz = 0.0;  // lowest of all windows
+    double rate_worst_quiet_hz = 0.0;  // lowest of the windows that nobody disturbed; 0: there were none
+    double share_below_percent = 0.0;  // of the quiet windows, below 95 % of the goal; 0 without a goal
+    double foreign_share = 0.0;        // of the core, over all of it
+    double disturbed_percent = 0.0;    // of the windows
+    double used_share[kParties] = {};  // of the core: controller, visual process, load, metronome
+    double vertices_mean = 0.0, fps_mean = 0.0;
+    double level_force_min = 0.0;
+};
+
+// Of the samples with t_s in [from_s, to_s]. All zero where there are fewer than two.
+[[nodiscard]] RateSummary summarize(const std::vector<RateSample>& samples, double from_s, double to_s,
+                                    double goal_hz = 0.0);
+
+// Time from `from_s` on until the rate over a window is back at 95 % of the goal and stays there for a
+// second. Negative: never.
+[[nodiscard]] double settling_s(const std::vector<RateSample>& samples, double from_s, double to_s,
+                                double goal_hz);
+
+}  // namespace tact::launch
