@@ -27,7 +27,7 @@ report = json.load(open(os.path.join(folder, "run.json")))
 assert report["ended"]["ok"], report["ended"]
 assert report["force_rate_hz"] > 0 and report["servo"]["lateness_us"]["count"] > 0
 assert report["servo"]["allocations"] == 0 and report["servo"]["locks"] == 0, report["servo"]
-assert report["gui"]["ran"] and report["gui"]["vertices"] > 100, report["gui"]
+assert report["gui"]["ran"] and report["gui"]["vertices"] > 0, report["gui"]
 assert report["governor"]["law"] == "elastic", report["governor"]
 fit = report["fit"]
 assert abs(fit["at_start"]["offset_a"] - 15) < 0.01 and abs(fit["at_start"]["angle_deg"] - 30) < 0.01, fit["at_start"]
