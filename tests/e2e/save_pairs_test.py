@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Saves six copies of each published structure in its map, opens them again in a fresh scene, and compares.
 
-save_pairs_test.py BIN [PAIR...]: BIN holds tact-prep; PAIR is a part of a map's name, all pairs without. Exit code 77: there is no data
+save_pairs_test.py BIN [--runs] [PAIR...]: BIN holds tact-prep; PAIR is a part of a map's name, all pairs without.
+With --runs, whole runs of tact place the pair's own structures, save them, and run again with what was saved. Exit code 77: there is no data
 (TACT_SHARED/data/em, or ../shared beside the repository).
 """
 import csv, gzip, json, math, os, random, subprocess, sys, tempfile
@@ -103,12 +104,47 @@ def check(em, map_name, models, resolution_a, scratch):
           % (map_name, len(bodies), count, worst, drift, apart, rows[0]["cc_mean"]), flush=True)
 
 
+def run(out, arguments):
+    """One run without a window; a longer one where the machine was too busy to see the controller in a second."""
+    for seconds in (1, 10, 60):
+        done = subprocess.run([os.path.join(sys.argv[1], "tact"), "dock", *map(str, arguments), "--no-gui", "--quiet",
+                               "--seconds", str(seconds), "--json", out], capture_output=True, text=True)
+        if done.returncode == 0 and json.load(open(out)).get("fit"):
+            return json.load(open(out))
+        if "never said where" not in done.stderr and done.returncode != 0:
+            sys.exit("tact dock: exit code %d\n%s" % (done.returncode, done.stderr))
+    sys.exit("the controller was never seen")
+
+
+def check_runs(em, map_name, models, resolution_a, scratch):
+    os.environ["TACT_RUNTIME_DIR"] = scratch
+    os.environ["XDG_CACHE_HOME"] = os.path.join(scratch, "cache")
+    folder = os.path.join(scratch, "saved")
+    common = ["--resolution-a", resolution_a, "--vertices-max", 2000]
+    first = run(os.path.join(scratch, "first.json"),
+                [os.path.join(em, map_name), *[os.path.join(em, m) for m in models], *common, "--save", folder,
+                 "--start-offset-a", 3, "--start-rotation-deg", 10])
+    poses = json.load(open(os.path.join(folder, "poses.json")))["bodies"]
+    rows = list(csv.DictReader(open(os.path.join(folder, "bodies.csv"))))
+    assert len(rows) == len(models)
+    for body, row in zip(poses, rows):
+        assert all(abs(p - float(row[k])) < 0.001 for p, k in zip(body["pos_model_a"], ("com_x_a", "com_y_a", "com_z_a")))
+    second = run(os.path.join(scratch, "second.json"),
+                 [os.path.join(em, map_name), *[os.path.join(folder, r["file"]) for r in rows], *common])
+    saved, again = first["fit"], second["fit"]["at_file_place"]
+    apart = max(abs(saved[k] - again[k]) for k in ("cc_zero", "cc_mean", "fraction_inside"))
+    assert apart < 0.002, apart
+    print("%-26s %d bodies; a run left the first %.2f A, %.2f deg from its file's place; cc about mean %.5f, in a fresh run %.5f"
+          % (map_name, len(rows), saved["offset_a"], saved["angle_deg"], saved["cc_mean"], again["cc_mean"]), flush=True)
+
+
 shared = os.environ.get("TACT_SHARED", os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "shared"))
 em = os.path.join(shared, "data", "em")
 if not os.path.isdir(em):
     print("the folder of real data is absent (set TACT_SHARED)")
     sys.exit(77)
+wanted = [a for a in sys.argv[2:] if not a.startswith("--")]
 for name, models, resolution in PAIRS:
-    if len(sys.argv) < 3 or any(part in name for part in sys.argv[2:]):
+    if not wanted or any(part in name for part in wanted):
         with tempfile.TemporaryDirectory() as scratch:
-            check(em, name, models, resolution, scratch)
+            (check_runs if "--runs" in sys.argv else check)(em, name, models, resolution, scratch)
