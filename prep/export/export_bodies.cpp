@@ -124,7 +124,9 @@ Remarks remarks_of(const SceneMeta& meta, const Fit& fit, std::size_t index, std
     if (body != nullptr) {
         remarks.emplace_back("body", std::to_string(body->id));
         for (int row = 0; row < 3; ++row)
-            remarks.emplace_back("matrix_row_" + std::to_string(row + 1), matrix_row(*move, row));
+            remarks.emplace_back("matrix_row_" + std::to_string(row + 1),  // within a line of PDB
+                                 printed("%.8f %.8f %.8f %.4f", move->turn(row, 0), move->turn(row, 1),
+                                         move->turn(row, 2), move->shift_a[row]));
         const Eigen::AngleAxisd turn = axis_of(*move);
         remarks.emplace_back("axis",
                              printed("%.9f %.9f %.9f", turn.axis().x(), turn.axis().y(), turn.axis().z()));

@@ -35,7 +35,11 @@ std::string remark_lines(const Remarks& remarks) {
         for (char& c : rest)  // PDB is ASCII
             if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
         while (!rest.empty()) {  // 80 columns; what is longer goes on in the next line
-            const std::size_t room = 80 - (sizeof kRemark - 1);
+            std::size_t room = 80 - (sizeof kRemark - 1);
+            if (rest.size() > room)
+                if (const std::size_t blank = rest.rfind(' ', room - 1);
+                    blank != std::string::npos && blank > 2)
+                    room = blank + 1;
             text += kRemark + rest.substr(0, room) + '\n';
             rest = rest.size() > room ? "  " + rest.substr(room) : std::string();
         }
