@@ -51,6 +51,11 @@ public:
         }
         return true;
     }
+    // Whether a pair of this cost belongs into the bucket that begins at `due`, or below.
+    [[nodiscard]] static bool in_bucket(float cost, float due) {
+        return std::bit_cast<std::uint32_t>(cost) >> kDropBits <= std::bit_cast<std::uint32_t>(due) >>
+               kDropBits;
+    }
     // What pop() is likely to return some calls later, for prefetching.
     [[nodiscard]] const QueuedPair* ahead(std::uint32_t places) const {
         if (low_ >= kWords || word_[low_] == 0) return nullptr;
@@ -64,7 +69,7 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
-    static constexpr std::uint32_t kDropBits = 17;  // of 31: 8 exponent and 6 mantissa bits stay
+    static constexpr std::uint32_t kDropBits = 22;  // of 31: 8 exponent and 1 mantissa bits stay
     static constexpr std::uint32_t kBuckets = 1U << (31 - kDropBits);
     static constexpr std::uint32_t kWords = kBuckets / 64;
     static constexpr std::uint32_t kChunk = 21;

@@ -1,4 +1,10 @@
 // The working state of simplify(): vertices with quadrics, triangles, who touches whom, and the queue.
+//
+//   contractor_start.cpp   planes, borders, the pairs to begin with
+//   contractor.cpp         the loop over the queue, and what a contraction changes
+//   contractor_checks.cpp  what it must not do: pinch, turn over, fold
+//   contractor_place.cpp   where volume and border ask for another place than the quadric
+//   contractor_join.cpp    pairs without an edge: surfaces that join, small parts that vanish
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +13,7 @@
 
 #include "ipc/base/huge_pages.hpp"
 #include "prep/mesh/bucket_queue.hpp"
-#include "prep/mesh/quadric.hpp"
+#include "prep/mesh/placement.hpp"
 #include "prep/mesh/simplify.hpp"
 
 namespace tact {
@@ -18,12 +24,16 @@ public:
     Simplified run(const Progress& progress);
 
 private:
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+    static constexpr std::uint32_t kBorder = 1U << 31;  // in a stamp
+    static constexpr std::uint32_t kNoEdge = 1U << 31;  // in QueuedPair::u: the two share no triangle
+
     // One cache line: what a look at a neighbour needs.
     struct alignas(64) Vertex {
         std::array<float, 3> p;      // scaled to the unit cube, about its centre
         Quadric q;                   // about p
         std::uint32_t stamp;         // rises when the vertex changes; the top bit: on a border
-        std::uint32_t first, count;  // its triangles, in touch_
+        std::uint32_t first, count;  // its triangles, in touch_; once gone: whom it went into, and 0
         [[nodiscard]] Eigen::Vector3f at() const { return {p[0], p[1], p[2]}; }
     };
     static_assert(sizeof(Vertex) == 64);
@@ -35,40 +45,74 @@ private:
         Eigen::Vector3f p_next, p_last;
     };
     using Star = std::vector<Wing>;
-    struct Place {
-        Eigen::Vector3f shift;  // from the kept vertex
-        float cost;
+    struct Leaf {
+        std::uint32_t next, last;
+        std::uint32_t other;             // the vertex of the pair that it did not touch
+        float turn;                      // |normal - before|
+        Eigen::Vector3f normal, before;  // unit; before is zero where it meant nothing
+    };
+    struct Joint {  // an edge between the new vertex and w
+        std::uint32_t w;
+        float bend, turn;  // |n - m| of its two triangles; the larger of their turns
     };
 
     void scale(const TriangleMesh& mesh);
     void touch();
     void add_planes();
+    void add_borders();
     void add_border(std::uint32_t u, std::uint32_t w);
+    void bound_bends();
     void queue_all(const Progress& progress);
-    void push(std::uint32_t u, std::uint32_t v);
+    void queue_near();
+    void push(std::uint32_t u, std::uint32_t v, std::uint32_t flag = 0);
     void gather(std::uint32_t u);
+    [[nodiscard]] Eigen::Vector3f double_area(const Corners& c) const {
+        const Eigen::Vector3f a = vertex_[c[0]].at();
+        return (vertex_[c[1]].at() - a).cross(vertex_[c[2]].at() - a);
+    }
 
     bool ahead(QueuedPair& pair, float& due);
     void fetch_lists(const QueuedPair& pair) const;
     void fetch_triangles(const QueuedPair& pair) const;
     void fetch_neighbours(const QueuedPair& pair) const;
-    [[nodiscard]] bool current(const QueuedPair& pair) const {
-        return vertex_[pair.u].stamp + vertex_[pair.v].stamp == pair.stamp;
-    }
+    [[nodiscard]] bool alive(std::uint32_t v) const { return vertex_[v].count != 0; }
+    [[nodiscard]] std::uint32_t heir(std::uint32_t v) const;
+    bool is_due(QueuedPair& pair, float due);
 
-    [[nodiscard]] Place best(const Quadric& sum, const Eigen::Vector3f& across) const;
-    [[nodiscard]] static Quadric sum_about_first(const Vertex& u, const Vertex& v);
+    [[nodiscard]] static Quadric sum_about_first(const Vertex& u, const Vertex& v) {
+        Quadric sum = v.q.about(u.at() - v.at());
+        sum += u.q;
+        return sum;
+    }
+    [[nodiscard]] float cost(std::uint32_t u, std::uint32_t v) const {
+        const Vertex &a = vertex_[u], &b = vertex_[v];
+        return best_place(sum_about_first(a, b), b.at() - a.at()).cost;
+    }
     void look(std::uint32_t self, const Eigen::Vector3f& origin, Star& star) const;
     void keep_volume(const Quadric& sum, std::uint32_t u, const Eigen::Vector3f& across, Place& place) const;
+    void keep_border(const Quadric& sum, std::uint32_t u, std::uint32_t v, Place& place);
     [[nodiscard]] bool topology_allows(std::uint32_t u, std::uint32_t v);
     bool turns_over(const Star& star, std::uint32_t other, const Eigen::Vector3f& from,
                     const Eigen::Vector3f& to);
-    [[nodiscard]] bool folds() const;
+    bool folds(std::uint32_t u, std::uint32_t v, bool joining);
+    [[nodiscard]] bool folds_outward(const Leaf& leaf, std::uint32_t u, std::uint32_t v);
+    void measure_bend(std::uint32_t w);
+    void note_bends(std::uint32_t u);
+    bool spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across, const Eigen::Vector3f& to,
+                bool joining = false);
     bool try_pair(std::uint32_t u, std::uint32_t v);
     void contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, const Place& place);
+    void record(std::uint32_t kept, std::uint32_t gone, float cost, float weight);
     void compact_touch();
     void drop_touch(std::uint32_t w, std::uint32_t t);
     void take_rest();
+
+    enum class Tried { done, refused, dropped };
+    Tried try_apart(QueuedPair& pair, float due);
+    Tried absorb(std::uint32_t into, QueuedPair& pair, float due);
+    bool small_part(std::uint32_t v, std::uint32_t apart_from);
+    void drop_coincident(std::uint32_t u);
+    void clear_borders(std::uint32_t u);
 
     const SimplifySettings settings_;
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
@@ -77,14 +121,18 @@ private:
     HugeVector<Corners> triangle_;     // dead: first corner is kNone
     HugeVector<std::uint32_t> touch_;  // triangles of each vertex; a list that grows moves to the end
     std::size_t touch_limit_ = 0;
+    HugeVector<std::uint8_t> bend_;  // of each vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
-    struct Leaf {
+    std::vector<Leaf> leaf_;    // the triangles that a contraction would leave at the new vertex
+    std::vector<Joint> joint_;  // the edges between them, found by folds()
+    struct Blade {
         std::uint32_t next, last;
         Eigen::Vector3f normal;
     };
-    std::vector<Leaf> leaf_;  // the triangles that a contraction would leave
+    std::vector<Blade> fan_;
     HugeVector<std::uint32_t> mark_, hits_;
     std::vector<std::uint32_t> ring_;  // neighbours found by gather(); hits_[w]: triangles shared with w
+    std::vector<std::uint32_t> part_;  // vertices found by small_part()
     std::uint32_t epoch_ = 0;
     std::uint32_t alive_ = 0;
     BucketQueue queue_;
@@ -92,7 +140,7 @@ private:
         QueuedPair pair;
         float due;
     };
-    std::array<Waiting, 16> waiting_{};  // taken from the queue, their memory on its way
+    std::array<Waiting, 32> waiting_{};  // taken from the queue, their memory on its way
     std::uint32_t waiting_first_ = 0, waiting_end_ = 0;
     Simplified result_;
     float error_ = 0.0F;

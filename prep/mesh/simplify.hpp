@@ -1,12 +1,17 @@
 // Simplifies a triangle mesh by contracting pairs of vertices, least error first (Garland, Heckbert 1997).
 //
-// Topology  a contraction is refused where it would pinch, close or double the surface (link condition), turn
-//           a triangle over or make it degenerate. Borders move along themselves, held by planes upright on
-//           them.
+// Pairs     edges; with pair_distance also vertices that are near in space, so that parts may join or vanish.
+// Topology  over edges a contraction is refused where it would pinch, close or double the surface (link
+// condition).
+//           Borders, and edges with more than two triangles, move along themselves, held by planes upright on
+//           them. Any mesh is taken; what cannot be contracted soundly is left as it is.
+// Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or comes
+// to lie within
+//           26 degrees on a neighbour, at the new vertex or across from it.
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of
 //           its mean over the planes that a vertex stands for, never falling along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
-// Cost      about 2.4 us and 240 bytes a vertex, see tests/bench/simplify_bench.cpp.  Thread  any but the
+// Cost      about 1.8 us and 250 bytes a vertex, see tests/bench/simplify_bench.cpp.  Thread  any but the
 // servo's. Fails by  StartupError on indices out of range or positions that are not finite.
 #pragma once
 
@@ -23,7 +28,11 @@ inline constexpr double kSeedBoundaryWeight = 1000.0;  // f of the seed
 
 struct SimplifySettings {
     std::uint32_t vertices_min = 4;  // stops there, or earlier where nothing more can be contracted
-    double boundary_weight = 10.0;   // f: planes upright on border edges, against triangle planes; 0: none
+    double boundary_weight = 100.0;  // f: planes upright on border edges, against triangle planes; 0: none
+    // t, in mean edge lengths: vertices without an edge that are nearer to each other are pairs too; 0: edges
+    // alone.
+    double pair_distance = 0.0;
+    std::uint32_t pairs_per_vertex_max = 4;  // of those, the nearest
 };
 
 struct Contraction {
@@ -35,6 +44,7 @@ struct Contraction {
 struct Simplified {
     std::vector<Contraction> contraction;  // in order
     TriangleMesh mesh;                     // what is left; vertices renumbered
+    std::vector<std::uint32_t> origin;     // the original number of each vertex of mesh
 };
 
 Simplified simplify(const TriangleMesh& mesh, const SimplifySettings& settings,

@@ -1,16 +1,15 @@
 // Simplification: time and two-sided error; and the walk of a progressive mesh.
 //
-// Shapes    two rings of seven blobs, their isosurface in a map of 73³ voxels (12,764 vertices); an open
+// Shapes    two rings of seven blobs, their isosurface in a map of 73³ voxels (12,424 vertices); an open
 //           sheet of 1,250 triangles; a rough torus of a million triangles and one of two, only where the
 //           environment variable TACT_BENCH_LARGE is set, as they take half a minute.
 // Figures   rms_pct, max_pct of the diagonal of the box; sharp: smallest cosine between neighbouring
 //           triangles. copy_ms: a plain copy of the buffers of the level, to judge the machine by.
 //
-// Measured 2026-11-20, two shared and loaded cores of 2.6 GHz, processor time:
-//   rings -> 2000 / 200           17 / 19 ms   rms 0.070 / 0.71 %    max 0.35 / 4.1 %
-//   sheet -> 100 / 8              f = none 0.90 / 4.2 %, 1 0.081 / 1.9 %, 10 0.079 / 1.2 %, 30 0.083 / 1.3 %,
-//                                 100 0.083 / 2.2 %, 1000 0.11 / 2.7 %: so f = 10 is the default
-//   1 M triangles -> 5,000        1.17 s       rms 0.019 %, 236 bytes a vertex at the most
+// Measured 2026-11-21, two shared and loaded cores of 2.6 GHz, processor time:
+//   rings -> 2000 / 200           16 / 18 ms   rms 0.070 / 0.67 %, relaxed 0.0625 / 0.55 %
+//   sheet -> 100 / 8              f = none to 1000: README.md of prep/mesh; f = 100 is the default
+//   1 M triangles -> 5,000        0.9 s        236 bytes a vertex at the most
 //   walks of a million vertices   see mesh_cut.cpp
 //
 #include <benchmark/benchmark.h>
@@ -22,58 +21,21 @@
 
 #include "ipc/assets/isosurface.hpp"
 #include "ipc/assets/mesh_cut.hpp"
+#include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/progressive.hpp"
-#include "tests/support/mesh_distance.hpp"
+#include "prep/mesh/relax.hpp"
+#include "prep/synthetic/rough_torus.hpp"
+#include "prep/synthetic/two_rings.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
 namespace tact::test {
 namespace {
 
 const TriangleMesh& rings() {
-    static const TriangleMesh mesh = [] {
-        std::vector<Vec3> blob;
-        for (int ring = 0; ring < 2; ++ring) {
-            for (int k = 0; k < 7; ++k) {
-                for (int l = 0; l < 3; ++l) {
-                    const double angle = 2.0 * std::numbers::pi * (k + 0.5 * ring) / 7.0 + 0.1 * l;
-                    const double radius = 0.4 + 0.11 * std::sin(2.1 * l);
-                    blob.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
-                                      (ring == 1 ? 1.0 : -1.0) * (0.12 + 0.17 * l));
-                }
-            }
-        }
-        return isosurface(sampled(73,
-                                  [&](const Vec3& p) {
-                                      double sum = 0.0;
-                                      for (const Vec3& b : blob)
-                                          sum += std::exp(-(p - b).squaredNorm() / (2.0 * 0.0768 * 0.0768));
-                                      return sum;
-                                  }),
-                          0.35);
-    }();
+    static const TriangleMesh mesh = isosurface(two_rings_map(), kTwoRingsContour);
     return mesh;
 }
 
-// A grid of n x m points bent to a torus, with bumps of all sizes down to a few triangles.
-TriangleMesh rough_torus(std::uint32_t n, std::uint32_t m) {
-    TriangleMesh mesh;
-    for (std::uint32_t i = 0; i < n; ++i) {
-        for (std::uint32_t j = 0; j < m; ++j) {
-            const double u = 2.0 * std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / m;
-            double r = 0.3;
-            for (int k = 0; k < 7; ++k)
-                r +=
-                    0.02 / (1 << k) * std::sin((3 << k) * u + 1.7 * k) * std::sin((2 << k) * v + 0.9 * k * k);
-            const double d = 1.0 + r * std::cos(v);
-            for (const double x : {d * std::cos(u), d * std::sin(u), r * std::sin(v)})
-                mesh.position_m.push_back(static_cast<float>(x));
-            const std::uint32_t a = i * m + j, b = (i + 1) % n * m + j, c = i * m + (j + 1) % m,
-                                e = (i + 1) % n * m + (j + 1) % m;
-            mesh.triangle.insert(mesh.triangle.end(), {a, b, e, a, e, c});
-        }
-    }
-    return mesh;
-}
 const TriangleMesh& million() {
     static const TriangleMesh mesh = rough_torus(1000, 500);
     return mesh;
@@ -98,12 +60,16 @@ const TriangleMesh& sheet() {
     return mesh;
 }
 
-void simplify_to(benchmark::State& state, const TriangleMesh& (*shape)(), double boundary_weight) {
+void simplify_to(benchmark::State& state, const TriangleMesh& (*shape)(), double boundary_weight,
+                 std::uint32_t relax_rounds = 0) {
     const TriangleMesh& mesh = shape();
     const SimplifySettings settings{.vertices_min = static_cast<std::uint32_t>(state.range(0)),
                                     .boundary_weight = boundary_weight};
     Simplified result;
-    for (auto _ : state) result = simplify(mesh, settings);
+    for (auto _ : state) {
+        result = simplify(mesh, settings);
+        relax(mesh, result, relax_rounds);
+    }
     const MeshDistance d = two_sided(mesh, result.mesh);
     const double diagonal_m = MeshGrid(mesh).diagonal_m();
     state.counters["rms_pct"] = 100.0 * d.rms_m / diagonal_m;
@@ -162,11 +128,17 @@ BENCHMARK_CAPTURE(simplify_to, rings, rings, SimplifySettings{}.boundary_weight)
     ->Arg(2000)
     ->Arg(200)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(simplify_to, rings_relaxed, rings, SimplifySettings{}.boundary_weight, 1)
+    ->Arg(2000)
+    ->Arg(200)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_default, sheet, SimplifySettings{}.boundary_weight)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_none, sheet, 0.0)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_1, sheet, 1.0)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_10, sheet, 10.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_10_relaxed, sheet, 10.0, 1)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_100, sheet, 100.0)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_100_relaxed, sheet, 100.0, 1)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_seed, sheet, kSeedBoundaryWeight)->Arg(100)->Arg(8);
 BENCHMARK(bake)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark::kMillisecond);
@@ -174,7 +146,7 @@ BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark:
 [[maybe_unused]] const bool large = [] {
     if (std::getenv("TACT_BENCH_LARGE") == nullptr) return false;
     benchmark::RegisterBenchmark("simplify_to/million", simplify_to, million,
-                                 SimplifySettings{}.boundary_weight)
+                                 SimplifySettings{}.boundary_weight, 1U)
         ->Arg(5000)
         ->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("jump/million", jump, walked_million)

@@ -6,6 +6,7 @@
 #include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
 #include "prep/mesh/progressive.hpp"
+#include "prep/mesh/relax.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
 namespace tact::test {
@@ -152,11 +153,13 @@ TEST(Simplify, AnyTriangleSoupIsTakenWithoutHarm) {
             rc::gen::map(rc::gen::inRange(-4, 5), [](int i) { return 0.25F * static_cast<float>(i); }));
         const auto t = *rc::gen::inRange<std::size_t>(0, 80);
         soup.triangle = *rc::gen::container<std::vector<std::uint32_t>>(3 * t, rc::gen::inRange(0U, n));
-        const Simplified direct = simplify(soup, {});
+        const SimplifySettings settings{.pair_distance = *rc::gen::element(0.0, 0.5, 3.0)};
+        Simplified direct = simplify(soup, settings);
+        relax(soup, direct, 1);
         for (const float x : direct.mesh.position_m) RC_ASSERT(std::isfinite(x));
         if (cleaned(soup).triangles() == 0) return;
         // The bake checks every level for triangles with equal corners.
-        const ProgressiveMesh baked(make_progressive(soup));
+        const ProgressiveMesh baked(make_progressive(soup, settings));
         RC_ASSERT(baked.vertices() == cleaned(soup).vertices());
     });
 }

@@ -11,7 +11,7 @@
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact::test {
+namespace tact {
 
 struct MeshDistance {
     double rms_m = 0.0, max_m = 0.0;
@@ -155,4 +155,4 @@ inline MeshDistance two_sided(const TriangleMesh& a, const TriangleMesh& b, std:
     return d;
 }
 
-}  // namespace tact::test
+}  // namespace tact

@@ -1,0 +1,177 @@
+// What a contraction must not do.
+//
+// Folds over the edges opposite the new vertex would need a look at triangles further away, which is dear. So
+// each vertex keeps an upper bound of |n - m| over the pairs of unit normals that meet at its edges. A
+// contraction turns a normal by a chord that is known, so the bound grows by that much; only where it says
+// that there might be a fold is the true value looked up. A few of a hundred contractions need that.
+#include <algorithm>
+#include <cmath>
+
+#include "prep/mesh/contractor.hpp"
+
+namespace tact {
+namespace {
+
+constexpr float kTurnCosine = 0.5F;   // a triangle may turn by 60 degrees in one contraction
+constexpr float kFoldCosine = -0.9F;  // and not come nearer than 26 degrees to lying on its neighbour
+constexpr float kFoldChord = 1.94F;   // |n - m| there, and a little less
+constexpr float kThin = 1e-3F;
+constexpr float kBendUnit = 2.0F / 255.0F;
+
+// 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle.
+float roundness(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float double_area) {
+    const float sides = a.squaredNorm() + b.squaredNorm() + (a - b).squaredNorm();
+    return sides > 0.0F ? 3.4641016F * double_area / sides : 0.0F;
+}
+
+float chord(float cosine) { return std::sqrt(std::max(0.0F, 2.0F - 2.0F * cosine)); }
+
+std::uint8_t rounded_up(float bend) {
+    return static_cast<std::uint8_t>(std::min(255.0F, bend * (1.0F / kBendUnit) + 1.0F));
+}
+
+}  // namespace
+
+// The link condition: the pair's common neighbours are those across its own triangles, no more.
+bool Contractor::topology_allows(std::uint32_t u, std::uint32_t v) {
+    const Vertex &a = vertex_[u], &b = vertex_[v];
+    std::uint32_t shared = 0, common = 0;
+    for (const Wing& wing : star_u_) shared += (wing.next == v || wing.last == v) ? 1 : 0;
+    if (shared == 0) return false;
+    const bool both_border = (a.stamp & b.stamp & kBorder) != 0;
+    // Would pinch the sheet, as pairs without an edge may.
+    if (both_border && shared == 2 && !(settings_.pair_distance > 0.0)) return false;
+    if (a.count + b.count <= 2 * shared + 1) return false;
+    if (!both_border && a.count == 3 && b.count == 3) return false;  // a tetrahedron would fold flat
+    if (((a.stamp | b.stamp) & kBorder) == 0 && a.count <= 24) {
+        // Around an inner vertex every neighbour is the next corner of one triangle.
+        for (const Wing& wing : star_v_) {
+            for (const Wing& other : star_u_) common += wing.next == other.next ? 1 : 0;
+        }
+        return common == shared;
+    }
+    gather(u);
+    for (const Wing& wing : star_v_) {
+        for (const std::uint32_t w : {wing.next, wing.last}) {
+            if (w == u || mark_[w] != epoch_) continue;
+            mark_[w] = epoch_ - 1;  // count it once
+            ++common;
+        }
+    }
+    return common == shared;
+}
+
+bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::Vector3f& from,
+                            const Eigen::Vector3f& to) {
+    for (const Wing& wing : star) {
+        if (wing.next == other || wing.last == other) continue;
+        const Eigen::Vector3f before = (wing.p_next - from).cross(wing.p_last - from);
+        const Eigen::Vector3f after = (wing.p_next - to).cross(wing.p_last - to);
+        const float area = after.norm(), was = before.norm();
+        const float cosine = before.dot(after) * (1.0F / (was * area));
+        const bool turns = !(cosine > kTurnCosine);
+        // The direction of a triangle that was a needle already means nothing.
+        if (turns || roundness(wing.p_next - to, wing.p_last - to, area) < kThin) {
+            if (roundness(wing.p_next - from, wing.p_last - from, was) > kThin) return true;
+        }
+        Leaf leaf{wing.next, wing.last, other, 2.0F, Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+        if (area > 0.0F) leaf.normal = after * (1.0F / area);
+        if (!turns) {
+            leaf.before = before * (1.0F / was);
+            leaf.turn = chord(cosine);
+        }
+        leaf_.push_back(leaf);
+    }
+    return false;
+}
+
+// Two neighbours at the new vertex, or one of them and the triangle across, would lie nearly face to face. A
+// fold that was there before may stay.
+bool Contractor::folds(std::uint32_t u, std::uint32_t v, bool joining) {
+    joint_.clear();
+    for (const Leaf& a : leaf_) {
+        for (const Leaf& b : leaf_) {
+            if (a.last != b.next || (joining && a.next == b.last)) continue;
+            const float cosine = a.normal.dot(b.normal);
+            const bool was_folded = a.other == b.other && a.before.dot(b.before) < kFoldCosine;
+            if (cosine < kFoldCosine && !was_folded) return true;
+            joint_.push_back({a.last, chord(cosine), std::max(a.turn, b.turn)});
+        }
+    }
+    for (const Leaf& leaf : leaf_) {
+        const float bend = kBendUnit * static_cast<float>(std::min(bend_[leaf.next], bend_[leaf.last]));
+        if (bend + leaf.turn > kFoldChord && folds_outward(leaf, u, v)) return true;
+    }
+    return false;
+}
+
+bool Contractor::folds_outward(const Leaf& leaf, std::uint32_t u, std::uint32_t v) {
+    measure_bend(leaf.next);
+    const Vertex& vertex = vertex_[leaf.next];
+    for (std::uint32_t i = 0; i < vertex.count; ++i) {
+        const Corners& c = triangle_[touch_[vertex.first + i]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (c[(k + 1) % 3] != leaf.last || c[(k + 2) % 3] != leaf.next || c[k] == u || c[k] == v)
+                continue;
+            const Eigen::Vector3f n = double_area(c);
+            const float limit = kFoldCosine * n.norm();
+            if (leaf.normal.dot(n) < limit && !(leaf.before.dot(n) < limit)) return true;
+        }
+    }
+    return false;
+}
+
+// Sets the bound of w to what is true now.
+void Contractor::measure_bend(std::uint32_t w) {
+    float bend = 0.0F;
+    fan_.clear();
+    const Vertex& vertex = vertex_[w];
+    for (std::uint32_t i = 0; i < vertex.count; ++i) {
+        const Corners& c = triangle_[touch_[vertex.first + i]];
+        const bool first = c[0] == w, second = c[1] == w;
+        const Eigen::Vector3f n = double_area(c);
+        const float length = n.norm();
+        fan_.push_back({first    ? c[1]
+                        : second ? c[2]
+                                 : c[0],
+                        first    ? c[2]
+                        : second ? c[0]
+                                 : c[1],
+                        n * (length > 0.0F ? 1.0F / length : 0.0F)});
+    }
+    for (const Blade& a : fan_) {
+        for (const Blade& b : fan_) {
+            if (a.last == b.next) bend = std::max(bend, chord(a.normal.dot(b.normal)));
+        }
+    }
+    bend_[w] = rounded_up(bend);
+}
+
+// After a contraction has passed: what the bounds around the new vertex are now.
+void Contractor::note_bends(std::uint32_t u) {
+    const auto add = [&](std::uint32_t w, float turn) {
+        const unsigned sum = unsigned{bend_[w]} + rounded_up(turn);
+        bend_[w] = static_cast<std::uint8_t>(std::min(255U, sum));
+    };
+    float largest = 0.0F;
+    for (const Joint& joint : joint_) {
+        largest = std::max(largest, joint.bend);
+        add(joint.w, joint.turn);
+        bend_[joint.w] = std::max(bend_[joint.w], rounded_up(joint.bend));
+    }
+    bend_[u] = rounded_up(largest);
+    if (joint_.size() == leaf_.size()) return;
+    for (const Leaf& leaf : leaf_) {  // at a border some edges have one triangle
+        add(leaf.next, leaf.turn);
+        add(leaf.last, leaf.turn);
+    }
+}
+
+bool Contractor::spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
+                        const Eigen::Vector3f& to, bool joining) {
+    leaf_.clear();
+    return turns_over(star_u_, v, Eigen::Vector3f::Zero(), to) || turns_over(star_v_, u, across, to) ||
+           folds(u, v, joining);
+}
+
+}  // namespace tact

@@ -1,0 +1,18 @@
+// Points that are near each other: for each point i, up to `count` points j > i within a distance, the
+// nearest first.
+//
+// Bounds  looks at no more than 512 points around each, however crowded it is.  Cost  sorts the points once.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace tact {
+
+void near_pairs(std::span<const Eigen::Vector3f> point, float distance, std::uint32_t count,
+                const std::function<void(std::uint32_t i, const std::vector<std::uint32_t>& near)>& take);
+
+}  // namespace tact

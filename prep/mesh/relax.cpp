@@ -1,0 +1,307 @@
+// Each round finds the nearest point of every sample, starting from the vertex that its own vertex went into,
+// and then solves one linear least-squares problem for the displacements of all vertices by conjugate
+// gradients:
+//
+//   sum_s w_s (n_s . (b_1 d_1 + b_2 d_2 + b_3 d_3) - n_s . e_s)^2  +  mu sum_v a_v |d_v|^2
+//
+// with the sample's normal n_s, its barycentric place b and offset e_s. Border edges are sampled too and pull
+// on the border, across their own direction.
+#include "prep/mesh/relax.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "prep/mesh/mesh_stars.hpp"
+#include "prep/mesh/nearest_point.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kSamplesPerVertex = 20;
+constexpr int kSolverSteps = 12;
+constexpr double kStay = 0.02;  // mu
+constexpr double kBorderWeight = 4.0;
+constexpr double kTurnCosine = 0.5;  // as in contractor_checks.cpp
+constexpr double kFoldCosine = -0.9;
+
+using Vec = Eigen::Vector3d;
+using Corners = std::array<std::uint32_t, 3>;
+
+struct Sample {
+    Vec at, normal;  // on a border: the direction of the edge
+    double weight;
+    std::uint32_t near;  // vertex to search from
+    bool border;
+};
+struct Row {
+    Corners corner;
+    std::array<double, 3> part;
+    Vec normal;
+    double weight, offset;
+};
+
+class Relaxer {
+public:
+    Relaxer(const TriangleMesh& original, Simplified& simplified);
+    void round();
+    void store();
+
+private:
+    void take_samples();
+    void take_border_samples();
+    void pull(Sample& sample);
+    void pull_border(Sample& sample);
+    [[nodiscard]] Vec original(std::uint32_t v) const {
+        return {original_.position_m[3 * std::size_t{v}], original_.position_m[3 * std::size_t{v} + 1],
+                original_.position_m[3 * std::size_t{v} + 2]};
+    }
+    std::vector<Vec> solve();
+    bool move(std::uint32_t v, const Vec& to);
+    [[nodiscard]] Vec double_area(const Corners& c) const {
+        return (at_[c[1]] - at_[c[0]]).cross(at_[c[2]] - at_[c[0]]);
+    }
+
+    const TriangleMesh& original_;
+    Simplified& simplified_;
+    std::vector<std::uint32_t> went_;  // original vertex -> vertex of the simplified mesh
+    std::vector<Vec> at_;
+    std::vector<Corners> triangle_;
+    MeshStars star_;
+    std::vector<Sample> sample_;
+    std::vector<Row> row_;
+    std::vector<Vec>
+        facing_;  // of each triangle: the sum of the normals of the samples that are nearest to it
+};
+
+std::vector<Corners> corners(const TriangleMesh& mesh) {
+    std::vector<Corners> out(mesh.triangles());
+    for (std::size_t t = 0; t < out.size(); ++t)
+        out[t] = {mesh.triangle[3 * t], mesh.triangle[3 * t + 1], mesh.triangle[3 * t + 2]};
+    return out;
+}
+
+Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
+    : original_(original),
+      simplified_(simplified),
+      triangle_(corners(simplified.mesh)),
+      star_(simplified.mesh) {
+    went_.assign(original.vertices(), kNone);
+    for (std::uint32_t v = 0; v < simplified.origin.size(); ++v) went_[simplified.origin[v]] = v;
+    for (std::size_t i = simplified.contraction.size(); i-- > 0;)
+        went_[simplified.contraction[i].gone] = went_[simplified.contraction[i].kept];
+    for (std::size_t v = 0; v < simplified.mesh.vertices(); ++v) {
+        const float* p = &simplified.mesh.position_m[3 * v];
+        at_.emplace_back(p[0], p[1], p[2]);
+    }
+    take_samples();
+    take_border_samples();
+}
+
+// Centres of triangles, weighted by area; of every so many where there are more than are worth their time.
+void Relaxer::take_samples() {
+    const std::size_t most = std::size_t{kSamplesPerVertex} * at_.size();
+    const std::size_t stride =
+        std::max<std::size_t>(1, original_.triangles() / std::max<std::size_t>(most, 1));
+    for (std::size_t t = 0; t < original_.triangles(); t += stride) {
+        const std::uint32_t* c = &original_.triangle[3 * t];
+        if (went_[c[0]] == kNone) continue;
+        const Vec a = original(c[0]), b = original(c[1]), d = original(c[2]);
+        const Vec normal = (b - a).cross(d - a);
+        const double area = normal.norm();
+        if (area > 0.0) sample_.push_back({(a + b + d) / 3.0, normal / area, area, went_[c[0]], false});
+    }
+}
+
+void Relaxer::take_border_samples() {
+    if (std::none_of(star_.border().begin(), star_.border().end(), [](auto n) { return n != kNone; })) return;
+    const MeshStars star(original_);
+    for (std::uint32_t v = 0; v < original_.vertices(); ++v) {
+        const std::uint32_t w = star.border()[v];
+        if (w == kNone || went_[v] == kNone) continue;
+        const Vec along = original(w) - original(v);
+        const double length = along.norm();
+        if (length > 0.0)
+            sample_.push_back(
+                {original(v) + 0.5 * along, along / length, kBorderWeight * length * length, went_[v], true});
+    }
+}
+
+// The nearest triangle around the vertex the sample starts from, then around that triangle's corners while it
+// gets nearer.
+void Relaxer::pull(Sample& sample) {
+    NearestPoint best;
+    std::uint32_t triangle = kNone;
+    const auto around = [&](std::uint32_t v) {
+        for (const std::uint32_t t : star_.triangles(v)) {
+            if (t == triangle) continue;
+            const Corners& c = triangle_[t];
+            const NearestPoint p = nearest_point(sample.at, at_[c[0]], at_[c[1]], at_[c[2]]);
+            if (p.square >= best.square) continue;
+            best = p;
+            triangle = t;
+        }
+    };
+    around(sample.near);
+    for (int step = 0; step < 4 && triangle != kNone; ++step) {
+        const std::uint32_t from = triangle;
+        for (const std::uint32_t v : triangle_[from]) {
+            if (v != sample.near) around(v);
+        }
+        if (triangle == from) break;
+    }
+    if (triangle == kNone) return;
+    const Corners& c = triangle_[triangle];
+    const std::size_t largest =
+        static_cast<std::size_t>(std::max_element(best.part.begin(), best.part.end()) - best.part.begin());
+    sample.near = c[largest];
+    const Vec n = double_area(c);
+    facing_[triangle] += sample.weight * sample.normal;
+    if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a part that is gone
+    const Vec foot = best.part[0] * at_[c[0]] + best.part[1] * at_[c[1]] + best.part[2] * at_[c[2]];
+    row_.push_back({c, best.part, sample.normal, sample.weight, sample.normal.dot(sample.at - foot)});
+}
+
+void Relaxer::pull_border(Sample& sample) {
+    double best = 1e300, part = 0.0;
+    std::uint32_t from = kNone;
+    const auto look = [&](std::uint32_t v) {
+        const std::uint32_t w = star_.border()[v];
+        if (w == kNone) return;
+        const Vec along = at_[w] - at_[v];
+        const double square = along.squaredNorm();
+        if (!(square > 0.0)) return;
+        const double s = std::clamp((sample.at - at_[v]).dot(along) / square, 0.0, 1.0);
+        const double distance = (sample.at - at_[v] - s * along).squaredNorm();
+        if (distance >= best) return;
+        best = distance;
+        part = s;
+        from = v;
+    };
+    look(sample.near);
+    for (const std::uint32_t t : star_.triangles(sample.near)) {
+        for (const std::uint32_t v : triangle_[t]) look(v);
+    }
+    if (from == kNone) return;
+    const std::uint32_t to = star_.border()[from];
+    const Vec e = sample.at - (1.0 - part) * at_[from] - part * at_[to];
+    const Vec side = sample.normal.unitOrthogonal(), up = sample.normal.cross(side);
+    for (const Vec& n : {side, up})
+        row_.push_back({{from, to, to}, {1.0 - part, part, 0.0}, n, sample.weight, n.dot(e)});
+    sample.near = part < 0.5 ? from : to;
+}
+
+std::vector<Vec> Relaxer::solve() {
+    const std::size_t n = at_.size();
+    std::vector<double> stay(n, 0.0);
+    std::vector<Vec> x(n, Vec::Zero()), r(n, Vec::Zero()), p, q(n);
+    for (const Row& row : row_) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            stay[row.corner[i]] += kStay * row.weight * row.part[i];
+            r[row.corner[i]] += row.weight * row.part[i] * row.offset * row.normal;
+        }
+    }
+    // Scaled by the weight that each vertex carries, which differs with the size of its triangles.
+    const auto scaled = [&](const std::vector<Vec>& from) {
+        std::vector<Vec> to(n);
+        for (std::size_t v = 0; v < n; ++v) to[v] = stay[v] > 0.0 ? Vec(from[v] / stay[v]) : Vec(Vec::Zero());
+        return to;
+    };
+    const auto dot = [&](const std::vector<Vec>& a, const std::vector<Vec>& b) {
+        double sum = 0.0;
+        for (std::size_t v = 0; v < n; ++v) sum += a[v].dot(b[v]);
+        return sum;
+    };
+    std::vector<Vec> z = scaled(r);
+    p = z;
+    double rz = dot(r, z);
+    for (int step = 0; step < kSolverSteps && rz > 0.0; ++step) {
+        for (std::size_t v = 0; v < n; ++v) q[v] = stay[v] * p[v];
+        for (const Row& row : row_) {
+            double along = 0.0;
+            for (std::size_t i = 0; i < 3; ++i) along += row.part[i] * row.normal.dot(p[row.corner[i]]);
+            const Vec back = row.weight * along * row.normal;
+            for (std::size_t i = 0; i < 3; ++i) q[row.corner[i]] += row.part[i] * back;
+        }
+        const double curve = dot(p, q);
+        if (!(curve > 0.0)) break;
+        const double length = rz / curve;
+        for (std::size_t v = 0; v < n; ++v) {
+            x[v] += length * p[v];
+            r[v] -= length * q[v];
+        }
+        z = scaled(r);
+        const double next = dot(r, z);
+        for (std::size_t v = 0; v < n; ++v) p[v] = z[v] + next / rz * p[v];
+        rz = next;
+    }
+    return x;
+}
+
+// False, and nothing done, where a triangle would turn over or two would come to lie on each other.
+bool Relaxer::move(std::uint32_t v, const Vec& to) {
+    const Vec from = at_[v];
+    std::vector<std::pair<Vec, std::uint32_t>> before;
+    for (const std::uint32_t t : star_.triangles(v)) before.push_back({double_area(triangle_[t]), t});
+    at_[v] = to;
+    const auto refuse = [&] {
+        at_[v] = from;
+        return false;
+    };
+    for (const auto& [was, t] : before) {
+        const Vec now = double_area(triangle_[t]);
+        if (!(was.dot(now) > kTurnCosine * was.norm() * now.norm()) || now.norm() < 0.1 * was.norm())
+            return refuse();
+        if (now.dot(facing_[t]) < 0.0 && was.dot(facing_[t]) >= 0.0) return refuse();
+    }
+    for (const auto& [was, t] : before) {
+        const Vec now = double_area(triangle_[t]);
+        for (const std::uint32_t w : triangle_[t]) {
+            for (const std::uint32_t other : star_.triangles(w)) {
+                if (other == t || !star_.share_edge(t, other)) continue;
+                const Vec n = double_area(triangle_[other]);
+                if (now.dot(n) < kFoldCosine * now.norm() * n.norm()) return refuse();
+            }
+        }
+    }
+    return true;
+}
+
+void Relaxer::round() {
+    row_.clear();
+    facing_.assign(triangle_.size(), Vec::Zero());
+    for (Sample& sample : sample_) {
+        if (sample.border)
+            pull_border(sample);
+        else
+            pull(sample);
+    }
+    const std::vector<Vec> shift = solve();
+    for (std::uint32_t v = 0; v < at_.size(); ++v) {
+        if (shift[v].allFinite() && !move(v, at_[v] + shift[v])) move(v, at_[v] + 0.3 * shift[v]);
+    }
+}
+
+void Relaxer::store() {
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+        for (std::size_t i = 0; i < 3; ++i)
+            simplified_.mesh.position_m[3 * v + i] = static_cast<float>(at_[v][static_cast<Eigen::Index>(i)]);
+    }
+}
+
+}  // namespace
+
+void relax(const TriangleMesh& original, Simplified& simplified, std::uint32_t rounds,
+           const Progress& progress) {
+    if (rounds == 0 || simplified.mesh.triangles() == 0) return;
+    Relaxer relaxer(original, simplified);
+    for (std::uint32_t i = 0; i < rounds; ++i) {
+        report(progress, static_cast<double>(i) / rounds, "simplify: moving vertices to the original");
+        relaxer.round();
+    }
+    relaxer.store();
+}
+
+}  // namespace tact

@@ -1,0 +1,14 @@
+// A map of two rings of seven subunits, three blobs each, made in code: the shape by which simplification is
+// measured.
+#pragma once
+
+#include "ipc/assets/density_map.hpp"
+
+namespace tact {
+
+inline constexpr double kTwoRingsContour = 0.35;
+
+// 73³ voxels over [-1, 1]³ metres; the isosurface at kTwoRingsContour is closed and has 12,424 vertices.
+DensityGrid two_rings_map();
+
+}  // namespace tact
