@@ -4,3 +4,4 @@ tact_fuzz(map_fuzz SOURCES fuzz/map_fuzz.cpp USES prep_map)
 # replay, under g++ and its sanitizers, is what runs.
 tact_fuzz(structure_fuzz SOURCES fuzz/structure_fuzz.cpp USES prep_structure CLANG_FROM 15)
 tact_fuzz(export_fuzz SOURCES fuzz/export_fuzz.cpp USES prep_export CLANG_FROM 15)
+tact_fuzz(mesh_fuzz SOURCES fuzz/mesh_fuzz.cpp USES prep_mesh prep_mesh_file)

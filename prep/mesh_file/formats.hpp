@@ -1,0 +1,87 @@
+// One function per mesh format, and what they share: building a mesh that is checked as it grows.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ipc/base/error.hpp"
+#include "prep/mesh_file/import_mesh.hpp"
+
+namespace tact {
+
+struct MeshSource {
+    std::string_view bytes;
+    std::string name;
+    const Progress& progress;
+
+    [[noreturn]] void refuse(const std::string& why,
+                             const std::string& mend = "export the mesh again") const {
+        throw StartupError("read mesh " + name, why, mend);
+    }
+    void at(std::size_t place) const {
+        report(progress, static_cast<double>(place) / static_cast<double>(bytes.size() + 1),
+               "reading the mesh");
+    }
+};
+
+class MeshBuilder {
+public:
+    explicit MeshBuilder(const MeshSource& source) : source_(source) {}
+
+    void reserve(std::size_t vertices, std::size_t triangles) {
+        mesh_.position_m.reserve(3 * vertices);
+        mesh_.triangle.reserve(3 * triangles);
+    }
+    [[nodiscard]] std::size_t vertices() const { return mesh_.vertices(); }
+    // `where` is called for the words of a complaint: "line 7".
+    template <class Where>
+    void vertex(const std::array<double, 3>& p, Where&& where) {
+        if (mesh_.vertices() >= kMeshElementsMax) source_.refuse("it has more than 2^28 vertices", kSmaller);
+        for (const double x : p) {
+            if (!(std::abs(x) <= 1e6))
+                source_.refuse(where() + ": a coordinate is not a number or beyond 1e6",
+                               "move the mesh near its origin, or repair it");
+            mesh_.position_m.push_back(static_cast<float>(x));
+        }
+    }
+    template <class Where>
+    void face(std::span<const std::int64_t> corner, Where&& where) {
+        if (corner.size() < 3) source_.refuse(where() + ": a face has fewer than three corners");
+        if (mesh_.triangles() + corner.size() > kMeshElementsMax)
+            source_.refuse("it has more than 2^28 triangles", kSmaller);
+        for (const std::int64_t v : corner) {
+            if (v < 0 || v >= kMeshElementsMax)
+                source_.refuse(where() + ": a face names an impossible vertex");
+            largest_ = std::max(largest_, v);
+        }
+        for (std::size_t i = 2; i < corner.size(); ++i) {
+            for (const std::size_t k : {std::size_t{0}, i - 1, i})
+                mesh_.triangle.push_back(static_cast<std::uint32_t>(corner[k]));
+        }
+    }
+    TriangleMesh finish() {
+        if (mesh_.triangles() == 0)
+            source_.refuse("it has no faces", "export a surface, not points or lines");
+        if (largest_ >= static_cast<std::int64_t>(mesh_.vertices()))
+            source_.refuse("a face names vertex " + std::to_string(largest_) + " (from 0) of " +
+                           std::to_string(mesh_.vertices()));
+        return std::move(mesh_);
+    }
+
+    static constexpr std::size_t kCornersMax = 255;
+
+private:
+    static constexpr const char* kSmaller = "cut the mesh into parts";
+    const MeshSource& source_;
+    TriangleMesh mesh_;
+    std::int64_t largest_ = -1;
+};
+
+ImportedMesh read_ply(const MeshSource& source);
+ImportedMesh read_obj(const MeshSource& source);
+ImportedMesh read_stl(const MeshSource& source);
+
+}  // namespace tact

@@ -1,0 +1,250 @@
+// PLY 1.0 (Turk). The header declares elements and their properties; of these x, y, z of "vertex" and the
+// list "vertex_indices" (or "vertex_index") of "face" are kept and all else is passed over.
+#include <bit>
+#include <limits>
+#include <vector>
+
+#include "prep/mesh_file/formats.hpp"
+#include "prep/mesh_file/text_scan.hpp"
+
+namespace tact {
+namespace {
+
+enum class Type : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+struct TypeName {
+    const char *name, *other;
+    Type type;
+};
+constexpr TypeName kTypes[] = {{"char", "int8", Type::i8},      {"uchar", "uint8", Type::u8},
+                               {"short", "int16", Type::i16},   {"ushort", "uint16", Type::u16},
+                               {"int", "int32", Type::i32},     {"uint", "uint32", Type::u32},
+                               {"float", "float32", Type::f32}, {"double", "float64", Type::f64}};
+constexpr std::size_t size_of(Type type) {
+    constexpr std::array<std::size_t, 8> kSize{1, 1, 2, 2, 4, 4, 4, 8};
+    return kSize[static_cast<std::size_t>(type)];
+}
+
+enum class Use : std::uint8_t { none, x, y, z, corners };
+struct Property {
+    Type type = Type::u8, count = Type::u8;  // count: of lists
+    bool list = false;
+    Use use = Use::none;
+};
+struct Element {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> property;
+};
+struct Header {
+    enum { ascii, little, big } format = ascii;
+    std::vector<Element> element;
+    std::size_t bytes = 0;
+};
+
+// "it declares" limits keep a header from asking for work that no file of its size can hold.
+constexpr std::size_t kHeaderLinesMax = 4096, kPropertiesMax = 256;
+
+class HeaderReader {
+public:
+    explicit HeaderReader(const MeshSource& source) : source_(source), scan_(source.bytes) {}
+
+    Header read() {
+        if (!scan_.next_line() || scan_.word() != "ply") refuse("it does not begin with \"ply\"");
+        bool formatted = false;
+        while (scan_.line_number() < kHeaderLinesMax && scan_.next_line()) {
+            const std::string_view key = scan_.word();
+            if (key == "format") {
+                const std::string_view format = scan_.word();
+                header_.format = format == "binary_little_endian" ? Header::little
+                                 : format == "binary_big_endian"  ? Header::big
+                                                                  : Header::ascii;
+                if (header_.format == Header::ascii && format != "ascii") refuse("an unknown format");
+                formatted = true;
+            } else if (key == "element") {
+                add_element();
+            } else if (key == "property") {
+                add_property();
+            } else if (key == "end_header") {
+                if (!formatted) refuse("a header without its format");
+                header_.bytes = std::min(scan_.place(), source_.bytes.size());
+                return header_;
+            } else if (key != "comment" && key != "obj_info" && !key.empty()) {
+                refuse("an unknown word in the header");
+            }
+        }
+        refuse("the header has no end");
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& why) const {
+        source_.refuse("line " + std::to_string(scan_.line_number()) + ": " + why);
+    }
+    void add_element() {
+        Element element{std::string(scan_.word()), 0, {}};
+        if (!TextScan::number(scan_.word(), element.count)) refuse("an element without its count");
+        if (element.count > source_.bytes.size())
+            source_.refuse("it declares " + std::to_string(element.count) + " elements \"" + element.name +
+                               "\" in a file of " + std::to_string(source_.bytes.size()) + " bytes",
+                           "fetch the file again");
+        header_.element.push_back(std::move(element));
+    }
+    Type type() {
+        const std::string_view word = scan_.word();
+        for (const TypeName& t : kTypes) {
+            if (word == t.name || word == t.other) return t.type;
+        }
+        refuse("an unknown type of property");
+    }
+    void add_property() {
+        if (header_.element.empty()) refuse("a property before the first element");
+        Element& element = header_.element.back();
+        if (element.property.size() == kPropertiesMax) refuse("an element with more than 256 properties");
+        Property property;
+        if (scan_.line().find(" list ") != std::string_view::npos) {
+            scan_.word();
+            property.list = true;
+            property.count = type();
+            if (property.count >= Type::f32) refuse("a list whose length is not an integer");
+        }
+        property.type = type();
+        const std::string_view name = scan_.word();
+        if (element.name == "vertex" && !property.list && name.size() == 1 && name[0] >= 'x' &&
+            name[0] <= 'z')
+            property.use = static_cast<Use>(1 + name[0] - 'x');
+        if (element.name == "face" && property.list && (name == "vertex_indices" || name == "vertex_index"))
+            property.use = Use::corners;
+        element.property.push_back(property);
+    }
+
+    const MeshSource& source_;
+    TextScan scan_;
+    Header header_;
+};
+
+class TextBody {
+public:
+    TextBody(const MeshSource& source, std::size_t from) : scan_(source.bytes.substr(from)) {}
+    bool number(Type, double& value) { return TextScan::number(scan_.word_of_any_line(), value); }
+    [[nodiscard]] std::size_t place() const { return scan_.place(); }
+
+private:
+    TextScan scan_;
+};
+
+class BinaryBody {
+public:
+    BinaryBody(const MeshSource& source, std::size_t from, bool big)
+        : bytes_(source.bytes), place_(from), big_(big) {}
+    bool number(Type type, double& value) {
+        const std::size_t size = size_of(type);
+        if (bytes_.size() - place_ < size) return false;
+        std::uint64_t raw = 0;
+        for (std::size_t i = 0; i < size; ++i)
+            raw |= std::uint64_t{static_cast<unsigned char>(bytes_[place_ + (big_ ? size - 1 - i : i)])}
+                   << (8 * i);
+        place_ += size;
+        switch (type) {
+            case Type::i8:
+                value = static_cast<std::int8_t>(raw);
+                break;
+            case Type::i16:
+                value = static_cast<std::int16_t>(raw);
+                break;
+            case Type::i32:
+                value = static_cast<std::int32_t>(raw);
+                break;
+            case Type::f32:
+                value = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
+                break;
+            case Type::f64:
+                value = std::bit_cast<double>(raw);
+                break;
+            default:
+                value = static_cast<double>(raw);
+        }
+        return true;
+    }
+    [[nodiscard]] std::size_t place() const { return place_; }
+
+private:
+    std::string_view bytes_;
+    std::size_t place_;
+    bool big_;
+};
+
+template <class Body>
+TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& body) {
+    MeshBuilder builder(source);
+    std::vector<std::int64_t> corner;
+    for (const Element& element : header.element) {
+        if (element.property.empty()) continue;  // nothing of it is in the file
+        const bool vertices = element.name == "vertex";
+        // No row of three floats or words is shorter, whatever the header says.
+        if (vertices) builder.reserve(std::min<std::uint64_t>(element.count, source.bytes.size() / 6), 0);
+        for (std::uint64_t n = 0; n < element.count; ++n) {
+            if (n % 65536 == 0) source.at(header.bytes + body.place());
+            const auto where = [&] { return element.name + " " + std::to_string(n); };
+            const auto next = [&](Type type) {
+                double value = 0.0;
+                if (!body.number(type, value))
+                    source.refuse(where() + ": the file ends early, or something is not a number",
+                                  "fetch the file again");
+                return value;
+            };
+            std::array<double, 3> p{};
+            for (const Property& property : element.property) {
+                if (!property.list) {
+                    const double value = next(property.type);
+                    if (property.use != Use::none)
+                        p[static_cast<std::size_t>(property.use) - static_cast<std::size_t>(Use::x)] = value;
+                    continue;
+                }
+                const double length = next(property.count);
+                const bool kept = property.use == Use::corners;
+                if (!(length >= 0.0) || (kept && length > static_cast<double>(MeshBuilder::kCornersMax)))
+                    source.refuse(where() + ": a list of impossible length", "divide faces into triangles");
+                corner.clear();
+                for (double i = 0.0; i < length; i += 1.0) {
+                    const double value = next(property.type);
+                    if (!kept) continue;
+                    if (!(std::abs(value) < 1e15)) source.refuse(where() + ": a corner is no number");
+                    corner.push_back(static_cast<std::int64_t>(value));
+                }
+                if (kept) builder.face(corner, where);
+            }
+            if (vertices) builder.vertex(p, where);
+        }
+    }
+    return builder.finish();
+}
+
+void check_kept(const MeshSource& source, const Header& header) {
+    unsigned found = 0;
+    std::size_t vertices = 0;
+    for (const Element& element : header.element) {
+        vertices += element.name == "vertex" ? 1 : 0;
+        for (const Property& property : element.property) found |= 1U << static_cast<unsigned>(property.use);
+    }
+    if (vertices != 1 || (found & 0b1110U) != 0b1110U) source.refuse("the vertices have no x, y and z");
+    if ((found & 0b10000U) == 0)
+        source.refuse("it has no faces with vertex_indices", "export triangles, not strips or points");
+}
+
+}  // namespace
+
+ImportedMesh read_ply(const MeshSource& source) {
+    const Header header = HeaderReader(source).read();
+    check_kept(source, header);
+    switch (header.format) {
+        case Header::ascii:
+            return {read_body(source, header, TextBody(source, header.bytes)), "PLY ascii"};
+        case Header::little:
+            return {read_body(source, header, BinaryBody(source, header.bytes, false)),
+                    "PLY binary little endian"};
+        default:
+            return {read_body(source, header, BinaryBody(source, header.bytes, true)),
+                    "PLY binary big endian"};
+    }
+}
+
+}  // namespace tact

@@ -1,0 +1,116 @@
+// STL: a triangle at a time, without shared vertices. Binary when the size is 84 + 50 n bytes for the n it
+// declares, whatever the first word is, since binary files that begin with "solid" exist.
+#include <bit>
+#include <cstring>
+#include <unordered_map>
+
+#include "prep/mesh_file/formats.hpp"
+#include "prep/mesh_file/text_scan.hpp"
+
+namespace tact {
+namespace {
+
+using Key = std::array<std::uint32_t, 3>;
+struct KeyHash {
+    std::size_t operator()(const Key& k) const {
+        std::uint64_t h = 0x9E3779B97F4A7C15;
+        for (const std::uint32_t x : k) {
+            h = (h ^ x) * 0xD6E8FEB86659FD93;
+            h ^= h >> 32U;
+        }
+        return static_cast<std::size_t>(h);
+    }
+};
+
+// Gives equal corners one vertex.
+class Welder {
+public:
+    explicit Welder(const MeshSource& source) : builder_(source) {}
+    template <class Where>
+    std::int64_t vertex(const std::array<double, 3>& p, Where&& where) {
+        Key key{};
+        for (std::size_t i = 0; i < 3; ++i)
+            key[i] = std::bit_cast<std::uint32_t>(static_cast<float>(p[i]) + 0.0F);  // -0 is 0
+        const auto [found, fresh] = number_.try_emplace(key, static_cast<std::int64_t>(builder_.vertices()));
+        if (fresh) builder_.vertex(p, where);
+        return found->second;
+    }
+    MeshBuilder& builder() { return builder_; }
+
+private:
+    MeshBuilder builder_;
+    std::unordered_map<Key, std::int64_t, KeyHash> number_;
+};
+
+std::uint32_t little_endian(const char* bytes) {
+    std::uint32_t value = 0;
+    for (unsigned i = 0; i < 4; ++i) value |= std::uint32_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
+    return value;
+}
+
+constexpr std::size_t kHead = 84, kStride = 50;
+
+ImportedMesh read_binary(const MeshSource& source, std::uint32_t count) {
+    Welder welder(source);
+    welder.builder().reserve(count / 2, count);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (t % 65536 == 0) source.at(kHead + kStride * std::size_t{t});
+        const auto where = [&] { return "triangle " + std::to_string(t); };
+        std::array<std::int64_t, 3> corner{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<double, 3> p{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t place = kHead + kStride * std::size_t{t} + 12 * (c + 1) + 4 * i;
+                p[i] = static_cast<double>(std::bit_cast<float>(little_endian(&source.bytes[place])));
+            }
+            corner[c] = welder.vertex(p, where);
+        }
+        welder.builder().face(corner, where);
+    }
+    return {welder.builder().finish(), "STL binary"};
+}
+
+ImportedMesh read_text(const MeshSource& source) {
+    Welder welder(source);
+    TextScan scan(source.bytes);
+    const auto where = [&] { return "line " + std::to_string(scan.line_number()); };
+    std::vector<std::int64_t> corner;
+    std::uint64_t words = 0;
+    for (std::string_view word = scan.word_of_any_line(); !word.empty(); word = scan.word_of_any_line()) {
+        if (++words % 65536 == 0) source.at(scan.place());
+        if (word == "loop") {
+            corner.clear();
+        } else if (word == "vertex") {
+            std::array<double, 3> p{};
+            for (double& x : p) {
+                if (!TextScan::number(scan.word_of_any_line(), x))
+                    source.refuse(where() + ": a vertex without three numbers");
+            }
+            if (corner.size() == 3) source.refuse(where() + ": a facet with more than three vertices");
+            corner.push_back(welder.vertex(p, where));
+        } else if (word == "endloop") {
+            if (corner.size() != 3) source.refuse(where() + ": a facet without three vertices");
+            welder.builder().face(corner, where);
+            corner.clear();
+        }
+    }
+    if (!corner.empty()) source.refuse("it ends within a facet", "fetch the file again");
+    return {welder.builder().finish(), "STL ascii"};
+}
+
+}  // namespace
+
+ImportedMesh read_stl(const MeshSource& source) {
+    if (source.bytes.size() >= kHead) {
+        const std::uint32_t count = little_endian(&source.bytes[80]);
+        if (source.bytes.size() == kHead + kStride * std::uint64_t{count}) return read_binary(source, count);
+    }
+    const bool text = source.bytes.substr(0, 512).find('\0') == std::string_view::npos;
+    if (text && source.bytes.starts_with("solid")) return read_text(source);
+    source.refuse(
+        "it is no text that begins with \"solid\", and its size is not that of the triangles that it "
+        "declares",
+        "fetch the file again");
+}
+
+}  // namespace tact
