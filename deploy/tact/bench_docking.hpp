@@ -21,10 +21,6 @@ struct DockingBench {
     std::uint64_t map_bytes = 0;  // of coefficients in memory
 };
 
-struct DockingBenchSettings {
-    int steps_n200 = 20000, steps_atoms100k = 400;
-};
-
-[[nodiscard]] DockingBench bench_docking(const DockingBenchSettings& settings = {});
+[[nodiscard]] DockingBench bench_docking();
 
 }  // namespace tact

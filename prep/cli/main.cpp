@@ -1,6 +1,4 @@
-// tact-prep: files in, one baked scene out.
-#include <unistd.h>
-
+// tact-prep: files in, one baked scene out; or one mesh.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -10,9 +8,12 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/bake/bake_docking.hpp"
+#include "prep/cli/bench_command.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/export_command.hpp"
 #include "prep/cli/scene_report.hpp"
+#include "prep/cli/simplify_command.hpp"
+#include "prep/cli/target.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/map/import_map.hpp"
 #include "prep/structure/import_structure.hpp"
@@ -46,28 +47,6 @@ std::string now_utc() {
     char text[32];
     std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
     return text;
-}
-
-// Found before minutes of work, not after them.
-void check_target(const Options& o) {
-    const std::string attempt = "write scene " + o.scene;
-    const fs::path target(o.scene);
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    std::error_code ignored;
-    if (fs::is_directory(target, ignored))
-        throw StartupError(attempt, "it is a folder", "give the name of a file: -o FOLDER/scene.tact");
-    if (!fs::is_directory(folder, ignored))
-        throw StartupError(attempt, "the folder " + folder.string() + " does not exist",
-                           "make it, or give another with -o");
-    if (::access(folder.c_str(), W_OK) != 0)
-        throw StartupError(attempt, "the folder " + folder.string() + " may not be written to",
-                           "give another with -o");
-    std::vector<std::string> inputs = o.models;
-    inputs.push_back(o.map);
-    for (const std::string& input : inputs) {
-        if (!input.empty() && fs::equivalent(input, target, ignored))
-            throw StartupError(attempt, "it is one of the input files", "give another name with -o");
-    }
 }
 
 std::string listed(const DensityGrid& grid) {
@@ -118,7 +97,9 @@ DockingInput from_ring(const Progress& progress) {
 }
 
 void bake(const Options& o, bool demo) {
-    check_target(o);
+    std::vector<std::string> inputs = o.models;
+    inputs.push_back(o.map);
+    check_target("write scene", o.scene, inputs);
     const auto started = std::chrono::steady_clock::now();
     Console console;
     const Progress progress = console.progress();
@@ -159,7 +140,8 @@ void info(const Options& o) {
 int run(int argc, char** argv) {
     Options o;
     CLI::App app(
-        "Bakes maps and structures into a scene that tact-rt and tact-gui map at once.\n"
+        "Bakes maps and structures into a scene that tact-rt and tact-gui map at once, and simplifies "
+        "meshes.\n"
         "Exit code 0: done; 1: an error, said on stderr; 130: cancelled by Ctrl-C, nothing written.",
         "tact-prep");
     app.set_version_flag("--version", "tact-prep " TACT_VERSION);
@@ -188,6 +170,9 @@ int run(int argc, char** argv) {
     CLI::App* const demo_dock =
         demo->add_subcommand("dock", "a ring of six subunits and its 12 Å map; one subunit is free");
     output(demo_dock);
+    CLI::App *simplify_parsed = nullptr, *bench_parsed = nullptr;
+    const auto simplify_file = add_simplify(app, simplify_parsed);
+    const auto bench = add_bench(app, bench_parsed);
     CLI::App* const show = app.add_subcommand("info", "what a scene holds; checks all of it");
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");
@@ -197,7 +182,11 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 1;
     }
-    if (show->parsed()) {
+    if (simplify_parsed->parsed()) {
+        simplify_file();
+    } else if (bench_parsed->parsed()) {
+        bench();
+    } else if (show->parsed()) {
         info(o);
     } else if (dock->parsed() || demo->parsed()) {
         bake(o, demo->parsed());

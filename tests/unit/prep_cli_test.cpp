@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -173,6 +174,43 @@ TEST_F(Program, BadInputIsRefusedByNamePlaceReasonAndMend) {
         EXPECT_EQ(run(wrong).code, 1);
     }
     EXPECT_EQ(run({"--help"}).code, 0);
+}
+
+TEST_F(Program, SimplifiesAMeshAndSaysWhatItDid) {
+    // A wavy sheet of 30 x 30 squares as OBJ, faces with four corners.
+    std::string obj;
+    for (int y = 0; y <= 30; ++y) {
+        for (int x = 0; x <= 30; ++x)
+            obj += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
+                   std::to_string(2.0 * std::sin(0.2 * x) * std::cos(0.3 * y)) + "\n";
+    }
+    for (int y = 0; y < 30; ++y) {
+        for (int x = 0; x < 30; ++x) {
+            const int a = 31 * y + x + 1;
+            obj += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(a + 32) +
+                   " " + std::to_string(a + 31) + "\n";
+        }
+    }
+    const std::string in = write("sheet.obj", obj), out = folder_ / "coarse.ply",
+                      again = folder_ / "again.ply";
+    const Ended e = run({"simplify", in, "--vertices", "100", "-o", out, "--json"});
+    ASSERT_EQ(e.code, 0) << e.err;
+    const auto json = nlohmann::json::parse(e.out);
+    EXPECT_EQ(json["vertices_in"].get<int>(), 961);
+    EXPECT_EQ(json["vertices"].get<int>(), 100);
+    EXPECT_EQ(json["folds"].get<int>(), 0);
+    EXPECT_GT(json["error"].get<double>(), 0.0);
+    EXPECT_LT(json["error"].get<double>(), 0.2);
+    // What was written is read again, and options are taken.
+    const Ended second = run({"simplify", out, "--vertices", "20", "-o", again, "--boundary-weight", "1000",
+                              "--pair-distance", "0.5", "--relax", "0"});
+    ASSERT_EQ(second.code, 0) << second.err;
+    EXPECT_NE(second.out.find("20 vertices"), std::string::npos) << second.out;
+    EXPECT_EQ(entries(), 3U);
+    expect_refused({"simplify", in, "--vertices", "100", "-o", in}, {"input files"});
+    expect_refused({"simplify", write("bad.stl", std::string(200, 'x')), "--vertices", "9", "-o", out},
+                   {"bad.stl", "its size"});
+    EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 1);
 }
 
 TEST_F(Program, CtrlCLeavesNothingHalfWritten) {

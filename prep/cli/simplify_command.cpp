@@ -1,0 +1,106 @@
+#include "prep/cli/simplify_command.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/error.hpp"
+#include "prep/cli/console.hpp"
+#include "prep/cli/target.hpp"
+#include "prep/mesh/mesh_folds.hpp"
+#include "prep/mesh/relax.hpp"
+#include "prep/mesh_file/import_mesh.hpp"
+#include "prep/mesh_file/write_ply.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string in, out;
+    SimplifySettings settings;
+    std::uint32_t relax_rounds = 1;
+    bool json = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void simplify_file(const Options& o) {
+    check_target("write mesh", o.out, {o.in});
+    Console console;
+    const Progress progress = console.progress();
+    const auto begin = std::chrono::steady_clock::now();
+    const ImportedMesh in = import_mesh(o.in, progress);
+    const TriangleMesh mesh = cleaned(in.mesh);
+    if (mesh.triangles() == 0)
+        throw StartupError("simplify " + o.in, "each of its triangles has two equal corners",
+                           "export it again");
+    const double read_s = seconds_since(begin);
+    const auto start = std::chrono::steady_clock::now();
+    Simplified result = simplify(mesh, o.settings, progress);
+    relax(mesh, result, o.relax_rounds, progress);
+    const double simplify_s = seconds_since(start);
+    report(progress, 0.99, "writing the mesh");
+    write_ply(o.out, result.mesh);
+    console.clear();
+    const float error = result.contraction.empty() ? 0.0F : result.contraction.back().error_m;
+    const std::size_t folds = count_folds(result.mesh);
+    if (o.json) {
+        const nlohmann::ordered_json json{{"format", in.format},
+                                          {"vertices_in", mesh.vertices()},
+                                          {"triangles_in", mesh.triangles()},
+                                          {"folds_in", count_folds(mesh)},
+                                          {"vertices", result.mesh.vertices()},
+                                          {"triangles", result.mesh.triangles()},
+                                          {"folds", folds},
+                                          {"error", error},
+                                          {"seconds", simplify_s},
+                                          {"read_seconds", read_s}};
+        std::printf("%s\n", json.dump(2).c_str());
+        return;
+    }
+    std::printf("%s: %zu vertices, %zu triangles (%s)\n", o.in.c_str(), mesh.vertices(), mesh.triangles(),
+                in.format.c_str());
+    std::printf("%s: %zu vertices, %zu triangles, error %.3g in the file's unit, %zu folds, %.2f s\n",
+                o.out.c_str(), result.mesh.vertices(), result.mesh.triangles(), static_cast<double>(error),
+                folds, simplify_s);
+    if (result.mesh.vertices() > o.settings.vertices_min)
+        std::printf("It cannot have fewer without changing what hangs together%s.\n",
+                    o.settings.pair_distance > 0.0 ? "" : "; --pair-distance 1 lets parts join and vanish");
+}
+
+}  // namespace
+
+std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
+    const auto o = std::make_shared<Options>();
+    command = app.add_subcommand("simplify", "a triangle mesh with fewer vertices, by pair contraction");
+    command->add_option("mesh", o->in, "PLY, OBJ or STL, also .gz")->required();
+    command->add_option("-o,--output", o->out, "the PLY file to write")->required();
+    command->add_option("--vertices", o->settings.vertices_min, "how many to leave, at the most")
+        ->required()
+        ->check(CLI::Range(1U, 1U << 28U));
+    command
+        ->add_option("--boundary-weight", o->settings.boundary_weight,
+                     "f: how much borders count against the surface (the published method has 1000)")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--pair-distance", o->settings.pair_distance,
+            "also contract vertices without an edge that are nearer than this many mean edge lengths")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    command
+        ->add_option("--relax", o->relax_rounds,
+                     "rounds of moving what is left nearer to the original; 0: none")
+        ->check(CLI::Range(0U, 20U))
+        ->capture_default_str();
+    command->add_flag("--json", o->json, "print what was done as JSON");
+    return [o] { simplify_file(*o); };
+}
+
+}  // namespace tact
