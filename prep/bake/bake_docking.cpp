@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <cstring>
 
+#include "ipc/assets/docking_gain.hpp"
 #include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/codebook/best_codebook.hpp"
-#include "prep/gain/docking_gain.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/mesh/progressive.hpp"

@@ -1,5 +1,5 @@
 // The docking gain against a map whose forces are known in closed form.
-#include "prep/gain/docking_gain.hpp"
+#include "ipc/assets/docking_gain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 //
 // Unit     joules per sigma, as SceneMeta::energy_j_per_sigma. World is the hand's, see SceneMeta.
 // Repeats  exactly for the same input and seed.
+// Thread   slow (some 30 ms for each structure); never on the servo thread.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,18 @@ struct DockingGain {
     double stiffness_n_m_max = 0.0;
 };
 
-// codebooks: one for each structure. Throws StartupError where no pose feels any density.
+// A body by some hundreds of points, and where it is at home.
+struct GainBody {
+    PointsView points;
+    Pose home;
+};
+// As many vectors as are enough to feel like the body, few enough for thousands of sums.
+inline constexpr std::size_t kGainVectors = 800;
+
+// Throws StartupError where no pose feels any density.
+DockingGain docking_gain(const DensityMap& map, std::span<const GainBody> bodies, double world_per_model,
+                         const GainSettings& settings = {}, const Progress& progress = {});
+// The same; codebooks: one for each structure.
 DockingGain docking_gain(const DensityMap& map, std::span<const Structure> structures,
                          std::span<const Codebook> codebooks, double world_per_model,
                          const GainSettings& settings = {}, const Progress& progress = {});

@@ -6,7 +6,7 @@
 // Poses: one half within 20 A and 30 degrees of home, as a structure is that belongs in the map; the other
 // half anywhere, turned at random, its centre at the densest of 16 random points of the box. Of all of them
 // those count whose own mean density is above that of the median pose, because near nothing nothing is felt.
-#include "prep/gain/docking_gain.hpp"
+#include "ipc/assets/docking_gain.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -22,13 +22,11 @@ namespace tact {
 
 namespace {
 
-// Enough vectors to feel like the body, few enough for thousands of sums.
-constexpr std::size_t kVectorsWanted = 800;
 constexpr double kNearM = 20e-10, kNearRad = 0.5236;
 
 PointsView points_of(const Structure& structure, const Codebook& codebook) {
     for (const Codebook::Level& level : codebook.levels) {
-        if (level.size() >= kVectorsWanted) return level.view();
+        if (level.size() >= kGainVectors) return level.view();
     }
     return {structure.x_m, structure.y_m, structure.z_m, structure.mass_fraction};
 }
@@ -72,18 +70,27 @@ Felt feel(const DensityMap& map, const PointsView& points, const Pose& pose) {
 DockingGain docking_gain(const DensityMap& map, std::span<const Structure> structures,
                          std::span<const Codebook> codebooks, double world_per_model,
                          const GainSettings& settings, const Progress& progress) {
+    std::vector<GainBody> bodies;
+    for (std::size_t i = 0; i < structures.size() && structures.size() == codebooks.size(); ++i) {
+        bodies.push_back({points_of(structures[i], codebooks[i]), structures[i].home()});
+    }
+    return docking_gain(map, bodies, world_per_model, settings, progress);
+}
+
+DockingGain docking_gain(const DensityMap& map, std::span<const GainBody> bodies, double world_per_model,
+                         const GainSettings& settings, const Progress& progress) {
     const std::string attempt = "choosing the gain of the docking force";
-    if (structures.empty() || structures.size() != codebooks.size() || !(world_per_model > 0.0)) {
+    if (bodies.empty() || !(world_per_model > 0.0)) {
         throw StartupError(attempt, "there is no structure with a codebook, or no scale", "give a structure");
     }
     double slope_p99 = 0.0, curvature_max = 0.0;
-    for (std::size_t i = 0; i < structures.size(); ++i) {
-        report(progress, static_cast<double>(i) / static_cast<double>(structures.size()), "gain");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        report(progress, static_cast<double>(i) / static_cast<double>(bodies.size()), "gain");
         SeededRandom random(settings.seed + i);
-        const PointsView points = points_of(structures[i], codebooks[i]);
+        const PointsView& points = bodies[i].points;
         std::vector<Felt> felt;
         for (std::uint32_t k = 0; k < std::max(settings.poses, 4U); ++k) {
-            Pose pose = structures[i].home();
+            Pose pose = bodies[i].home;
             if (k % 2 == 0) {
                 pose.p_m += kNearM * random.uniform() * random.direction();
                 pose.q = quat_from_rotation_vector(kNearRad * random.uniform() * random.direction());
