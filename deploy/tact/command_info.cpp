@@ -32,6 +32,15 @@ constexpr const char* kFormulas[] = {
     "torque about c, world, N m: Q = energy_j_per_sigma * sum_i w_i (r_i - c) x grad rho(r_i)",
     "so both are the slope of the energy U = -energy_j_per_sigma * C over the hand's motion; --force-scale "
     "multiplies both",
+    "option laplacian: rho is -s^2 Laplacian of (Gaussian * (value - background)), s = 0.225 * "
+    "max(resolution, 20 angstrom), over a unit that gives the density's force range with the same gain",
+    "option subtraction: the other bodies' simulated map (Gaussians of s = 0.225 * resolution, weight Z), "
+    "scaled by least squares where it is above 5 % of its maximum, is taken out of value; not below the "
+    "background",
+    "option clash: U = F (sqrt(L^2 + D^2) - L) is added, D = world_per_model * depth of the overlap (soft "
+    "maximum over atoms at the surface), F = 2 N, L = F / K, K such that seeded encounters stay below 300 "
+    "N/m; F "
+    "and K times the force scale",
     "the device gets F and Q behind the output chain (limits, slew, ramp-in); tact eval gives them before it",
 };
 

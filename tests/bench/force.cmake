@@ -1,2 +1,3 @@
 # Benches of force.
 tact_bench(bench/docking_bench.cpp USES assets force)
+tact_bench(bench/clash_bench.cpp USES assets force)

@@ -1,2 +1,4 @@
 # Tests of force.
 tact_test(unit/force_docking_test.cpp USES force)
+tact_test(unit/force_clash_test.cpp USES force SYSTEM rapidcheck)
+tact_test(unit/force_docking_options_test.cpp USES force)

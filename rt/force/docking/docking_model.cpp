@@ -122,12 +122,16 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
       built_(whole_),
       felt_(whole_.get()),
       bodies_(start_bodies(*parts_, settings), static_cast<std::uint32_t>(parts_->structures.size())) {
+    clash_gains_ = parts_->clash_gains;
+    clash_gains_.force_n *= settings.force_scale;
+    clash_gains_.stiffness_n_m *= settings.force_scale;
     error_scale_.fill(1.0);
 }
 
 DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
     : parts_(like.parts_),
       energy_j_per_sigma_(like.energy_j_per_sigma_),
+      clash_gains_(like.clash_gains_),
       bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())) {
     const std::uint32_t asked = bodies.options_asked & kFeltOptions;
     const std::uint32_t asked_whole = asked & ~kOptionSubtraction;
@@ -207,6 +211,28 @@ Wrench DockingModel::wrench(const DensitySums& sums) const noexcept {
 }
 
 StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
+    StepResult result = evaluate_density(T_model_body, budget);
+    add_clash(T_model_body, result);
+    return result;
+}
+
+void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const noexcept {
+    const ModelBodies& list = bodies_.list();
+    if ((list.options_asked & kOptionClash) == 0 || !bodies_.in_hand() || !T_model_body.finite()) return;
+    const Instant begin = Monotonic::now();
+    std::array<ClashBody, ModelBodies::kMax> others{};
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+        if (i != list.active) others[count++] = {&parts_->clash[list.structure[i]], list.T_model_body[i]};
+    }
+    const ClashResult clash = clash_force({&parts_->clash[bodies_.structure()], T_model_body},
+                                          {others.data(), count}, parts_->meta.world_per_model, clash_gains_);
+    result.wrench_world.force_n += clash.wrench_world.force_n;
+    result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
+    result.load.cost += Monotonic::now() - begin;
+}
+
+StepResult DockingModel::evaluate_density(const Pose& T_model_body, const Budget& budget) const noexcept {
     const Instant begin = Monotonic::now();
     if (!T_model_body.finite()) return out_of_range();
     StepResult result;
@@ -303,8 +329,9 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
         body.p_m = parts_->meta.to_model(hand.p_m + com_from_tool_world_m_);
         body.q = (hand.q * q_tool_body_).normalized();
     }
-    StepResult result = evaluate(body, budget);
+    StepResult result = evaluate_density(body, budget);
     audit(result, body);
+    add_clash(body, result);
     const double gain = ramp_gain(ramp_);
     result.wrench_world.force_n *= gain;
     result.wrench_world.torque_n_m *= gain;
@@ -346,16 +373,22 @@ bool DockingModel::choose_density() noexcept {
     } else if (!fits || whole_->options == asked) {
         felt_ = whole_.get();
     }
-    bodies_.list().options = felt_->options;
+    show_options();
     return felt_ != before;
+}
+
+void DockingModel::show_options() noexcept {
+    bodies_.list().options = felt_->options | (bodies_.list().options_asked & kOptionClash);
 }
 
 bool DockingModel::order(const ModelOrder& order) noexcept {
     if (order.kind == ModelOrder::Kind::option) {
-        if ((order.option & kFeltOptions) == 0) return false;
+        if ((order.option & ~(kFeltOptions | kOptionClash)) != 0 || order.option == 0) return false;
         std::uint32_t& asked = bodies_.list().options_asked;
+        const std::uint32_t before = asked;
         asked = order.on ? asked | order.option : asked & ~order.option;
-        if (choose_density()) fade(shown_);
+        const bool another = choose_density();
+        if (another || ((before ^ asked) & kOptionClash) != 0) fade(shown_);
         return true;
     }
     ModelOrder checked = order;
@@ -407,7 +440,7 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
 }
 
 void DockingModel::give_up() noexcept {
-    bodies_.list().options_asked = whole_->options;
+    bodies_.list().options_asked = whole_->options | (bodies_.list().options_asked & kOptionClash);
     if (choose_density()) fade(shown_);
 }
 

@@ -7,6 +7,10 @@
 //           reset(), when the clutch (button bit 0) is released, and when another body, or the same one
 //           elsewhere, comes into the hand. With the clutch held the body stays and the tool moves alone; so
 //           it does with a fixed body in the hand, of which nothing is felt.
+// Clash     with kOptionClash bodies push each other apart, clash_force.hpp; a constant-time order, as its
+// fields
+//           are made with the model. It is no part of the knob: a wall that comes and goes with the load
+//           would be worse than one that always costs.
 // Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
 //           fade to zero; only then does the new one fade in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
@@ -27,6 +31,7 @@
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
 #include "rt/force/docking/error_audit.hpp"
@@ -66,6 +71,7 @@ public:
     void give_up() noexcept TACT_RT override;
 
     // The wrench on the active body, were it at this place: what step() shows once its ramp is over.
+    // The clash is in it.
     [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
     // Cost and error of a level before it is computed.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
@@ -74,6 +80,7 @@ public:
     [[nodiscard]] const SceneMeta& meta() const { return parts_->meta; }
     [[nodiscard]] double energy_j_per_sigma() const { return energy_j_per_sigma_; }
     [[nodiscard]] Pose home() const { return parts_->structures[bodies_.structure()].home(); }
+    [[nodiscard]] const ClashGains& clash_gains() const { return clash_gains_; }
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
@@ -102,6 +109,9 @@ private:
     [[nodiscard]] bool sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
                                  DensitySums& sums) const noexcept;
     [[nodiscard]] Wrench wrench(const DensitySums& sums) const noexcept;
+    [[nodiscard]] StepResult evaluate_density(const Pose& T_model_body, const Budget& budget) const noexcept;
+    void add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
+    void show_options() noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
@@ -111,6 +121,7 @@ private:
 
     std::shared_ptr<const DockingParts> parts_;
     double energy_j_per_sigma_;
+    ClashGains clash_gains_;
     // With nothing subtracted, and as ordered when this model was built: maybe the same. What is felt is one
     // of the two, so that a step can go from one to the other.
     std::shared_ptr<const FeltDensity> whole_, built_;

@@ -14,6 +14,7 @@
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {
@@ -26,6 +27,8 @@ struct DockingParts {
     DensityGrid grid;  // felt where no option is on
     std::vector<Structure> structures;
     std::vector<std::vector<PointSet>> levels;
+    std::vector<ClashField> clash;  // by structure
+    ClashGains clash_gains;
 };
 
 // codebooks: one for each structure.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "ipc/assets/docking_gain.hpp"
+#include "ipc/assets/laplacian_map.hpp"
+#include "ipc/assets/subtracted_map.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
 namespace tact {
@@ -63,12 +66,54 @@ std::vector<LevelFigures> calibrated(const DensityMap& map, const std::vector<Po
     return figures;
 }
 
+DensityGrid without_others(const DockingParts& parts, const ModelBodies& bodies) {
+    std::vector<PlacedStructure> placed;
+    for (std::uint32_t i = 0; i < bodies.count && i < ModelBodies::kMax; ++i) {
+        if (i == bodies.active || bodies.structure[i] >= parts.structures.size()) continue;
+        placed.push_back({&parts.structures[bodies.structure[i]], bodies.T_model_body[i]});
+    }
+    if (placed.empty()) return parts.grid;
+    return subtract_placed(parts.grid, parts.meta.map_background, placed, parts.meta.resolution_m).grid;
+}
+
+double contour_resolution_m(const DockingParts& parts) {
+    return std::max(parts.meta.resolution_m, kContourResolutionM);
+}
+
+// With the unit u the energy is -k_E sum w L / u, k_E the scene's gain. The gain that suits L in units of its
+// root mean square r is k_L, so u = r k_E / k_L.
+double laplacian_unit(const DockingParts& parts, const DensityGrid& filtered) {
+    const double rms = rms_of(filtered);
+    std::vector<GainBody> bodies;
+    for (std::size_t s = 0; s < parts.structures.size(); ++s) {
+        std::size_t level = 0;
+        while (level + 1 < parts.levels[s].size() && parts.levels[s][level].size() < kGainVectors) ++level;
+        bodies.push_back({parts.levels[s][level].view(), parts.structures[s].home()});
+    }
+    const DockingGain gain = docking_gain(DensityMap(filtered, 0.0, rms), bodies, parts.meta.world_per_model);
+    const double unit = rms * parts.meta.energy_j_per_sigma / gain.energy_j_per_sigma;
+    return unit > 0.0 ? unit : rms;  // a scene without force
+}
+
+DensityMap felt_map(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
+    const SceneMeta& meta = parts.meta;
+    const bool subtracted = (options & kOptionSubtraction) != 0;
+    if ((options & kOptionLaplacian) == 0) {
+        return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma};
+    }
+    const DensityGrid whole = laplacian_map(parts.grid, meta.map_background, contour_resolution_m(parts));
+    const double unit = laplacian_unit(parts, whole);
+    if (!subtracted) return {whole, 0.0, unit};
+    return {laplacian_map(without_others(parts, bodies), meta.map_background, contour_resolution_m(parts)),
+            0.0, unit};
+}
+
 }  // namespace
 
 std::shared_ptr<const FeltDensity> make_felt_density(const DockingParts& parts, double newtons_per_gradient,
                                                      std::uint32_t options, const ModelBodies& bodies) {
     auto felt = std::make_shared<FeltDensity>(FeltDensity{
-        .map = DensityMap(parts.grid, parts.meta.map_background, parts.meta.map_sigma),
+        .map = felt_map(parts, options, bodies),
         .options = options & kFeltOptions,
         .active_id = bodies.active < bodies.count ? bodies.id[bodies.active] : 0,
         .others = bodies.others,

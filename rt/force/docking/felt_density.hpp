@@ -2,9 +2,13 @@
 //
 // Options   which of kOptionSubtraction and kOptionLaplacian went into the density; kFeltOptions are those
 //           that can be made.
+// Laplacian ipc/assets/laplacian_map.hpp, at the resolution of the map or 20 A, whichever is coarser. Its
+//           unit, in place of sigma, is such that the scene's own gain gives the force range of
+//           ipc/assets/docking_gain.hpp.
+// Subtract  all bodies but the one in the hand, ipc/assets/subtracted_map.hpp; before the Laplacian is taken.
+//           The unit stays that of the whole map, so what is left feels as strong as before.
 // Error     of a level: the largest |F_level - F_atoms| over seeded poses, with a margin. It is an estimate
-// of
-//           a bound, not a proof of one; error_audit.hpp goes on measuring while the loop runs.
+//           of a bound, not a proof of one; error_audit.hpp goes on measuring while the loop runs.
 // Thread    made off the servo thread, in up to seconds; never changes afterwards.
 #pragma once
 
@@ -33,7 +37,9 @@ struct FeltDensity {
     std::vector<std::vector<LevelFigures>> figures;  // by structure and level
 };
 
-inline constexpr std::uint32_t kFeltOptions = 0;
+inline constexpr std::uint32_t kFeltOptions = kOptionSubtraction | kOptionLaplacian;
+// The contours of finer maps are felt at this resolution: theirs are too narrow to be found (README.md).
+inline constexpr double kContourResolutionM = 20e-10;
 
 // newtons_per_gradient: of the force in the world, by the weighted gradient in sigma per model metre.
 std::shared_ptr<const FeltDensity> make_felt_density(const DockingParts& parts, double newtons_per_gradient,

@@ -1,0 +1,223 @@
+// What a docking force may be made of besides the density: clash, subtraction, contours; through the model.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ipc/assets/docking_gain.hpp"
+#include "ipc/assets/laplacian_map.hpp"
+#include "ipc/assets/simulated_map.hpp"
+#include "rt/force/docking/docking_model.hpp"
+#include "rt/force/docking/start_pose.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kA = 1e-10;
+
+Structure cloud(const char* name, const Vec3& home_m, std::uint64_t seed) {
+    Structure s;
+    s.name = name;
+    s.home_com_model_m = home_m;
+    SeededRandom random(seed);
+    constexpr std::size_t kAtoms = 400;
+    s.mass_u = 13.0 * kAtoms;
+    for (std::size_t i = 0; i < kAtoms; ++i) {
+        const Vec3 p = std::cbrt(random.uniform()) * random.direction();
+        s.x_m.push_back(static_cast<float>(16.0 * kA * p.x()));
+        s.y_m.push_back(static_cast<float>(12.0 * kA * p.y()));
+        s.z_m.push_back(static_cast<float>(9.0 * kA * p.z()));
+        s.mass_fraction.push_back(1.0F / kAtoms);
+        s.element.push_back(6);
+    }
+    return s;
+}
+
+// Two clouds side by side, and the map that they give.
+struct Scene {
+    SceneMeta meta{};
+    DensityGrid grid;
+    std::vector<Structure> structures{cloud("left", Vec3(45.0, 60.0, 60.0) * kA, 1),
+                                      cloud("right", Vec3(75.0, 60.0, 60.0) * kA, 2)};
+    std::vector<Codebook> codebooks{2};
+
+    Scene() {
+        meta.kind = SceneKind::docking;
+        meta.body_count = 2;
+        meta.world_per_model = 0.16 / (120.0 * kA);
+        for (double& c : meta.centre_model_m) c = 60.0 * kA;
+        meta.map_background = 0.0;
+        meta.resolution_m = 12.0 * kA;
+        grid.size = {41, 41, 41};
+        grid.spacing_m = Vec3::Constant(3.0 * kA);
+        const PlacedStructure both[] = {{&structures[0], structures[0].home()},
+                                        {&structures[1], structures[1].home()}};
+        grid.values = simulated_map(grid, both, meta.resolution_m);
+        meta.map_sigma = rms_of(grid);
+        meta.energy_j_per_sigma =
+            docking_gain(DensityMap(grid, 0.0, meta.map_sigma), structures, codebooks, meta.world_per_model)
+                .energy_j_per_sigma;
+    }
+};
+
+const Scene& scene() {
+    static const Scene made;
+    return made;
+}
+
+std::unique_ptr<DockingModel> make_model(const DockingSettings& settings = {}) {
+    const Scene& s = scene();
+    return std::make_unique<DockingModel>(s.meta, s.grid, s.structures, s.codebooks, settings);
+}
+
+bool set_option(ForceModel& model, std::uint32_t option, bool on) {
+    ModelOrder order;
+    order.kind = ModelOrder::Kind::option;
+    order.option = option;
+    order.on = on;
+    return model.order(order);
+}
+
+// As ordered, built aside and taken over.
+std::unique_ptr<ForceModel> rebuilt(const ForceModel& model) {
+    std::unique_ptr<ForceModel> next = model.rebuild(model.bodies());
+    EXPECT_TRUE(next && next->adopt(model));
+    return next;
+}
+
+double density_at(const ForceModel& model, const Vec3& p_m) {
+    Vec3 gradient;
+    return dynamic_cast<const DockingModel&>(model).map().sample(p_m, gradient);
+}
+
+Wrench felt_at(const ForceModel& model, const Pose& pose) {
+    return dynamic_cast<const DockingModel&>(model).evaluate(pose, Budget{}).wrench_world;
+}
+
+TEST(DockingOptions, WithSubtractionTheDensityOfTheOtherBodyIsGoneAndTheOwnOneStays) {
+    const auto model = make_model();
+    const Vec3 own = scene().structures[0].home_com_model_m, other = scene().structures[1].home_com_model_m;
+    const double own_before = density_at(*model, own), other_before = density_at(*model, other);
+    ASSERT_TRUE(set_option(*model, kOptionSubtraction, true));
+    EXPECT_TRUE(model->stale());
+    EXPECT_EQ(model->bodies().options, 0U);
+    const auto next = rebuilt(*model);
+    EXPECT_FALSE(next->stale());
+    EXPECT_EQ(next->bodies().options, kOptionSubtraction);
+    EXPECT_LT(std::abs(density_at(*next, other)), 0.05 * other_before);
+    EXPECT_NEAR(density_at(*next, own), own_before, 0.05 * own_before);
+    // A body that lies where the other does is pulled home, not deeper in.
+    Pose between = scene().structures[0].home();
+    between.p_m.x() += 14.0 * kA;
+    EXPECT_LT(felt_at(*next, between).force_n.x(), -0.1);
+    EXPECT_GT(felt_at(*next, between).force_n.norm(), felt_at(*model, between).force_n.norm());
+    // Off again: at once, without a build.
+    ASSERT_TRUE(set_option(*next, kOptionSubtraction, false));
+    EXPECT_FALSE(next->stale());
+    EXPECT_NEAR(density_at(*next, other), other_before, 1e-6 * other_before);
+}
+
+TEST(DockingOptions, TheContoursAreFeltAsStronglyAsTheDensity) {
+    const auto model = make_model();
+    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    const auto next = rebuilt(*model);
+    EXPECT_EQ(next->bodies().options, kOptionLaplacian);
+    SeededRandom random(4);
+    const Structure& left = scene().structures[0];
+    double most_n = 0.0;
+    for (int i = 0; i < 300; ++i) {
+        const Pose pose =
+            start_pose(left.home(), 20.0 * kA * random.uniform(), 0.5 * random.uniform(), random.next());
+        const Vec3 force_n = felt_at(*next, pose).force_n;
+        most_n = std::max(most_n, force_n.norm());
+        Pose fore = pose, back = pose;
+        const int a = i % 3;
+        fore.p_m[a] += 0.5 * kA, back.p_m[a] -= 0.5 * kA;
+        const double stiffness_n_m = (felt_at(*next, fore).force_n - felt_at(*next, back).force_n).norm() /
+                                     (kA * scene().meta.world_per_model);
+        ASSERT_LT(stiffness_n_m, 330.0);
+    }
+    EXPECT_LT(most_n, 3.3);
+    EXPECT_GT(most_n, 0.3);
+    // Alone in its place it is at rest, and pulled back from beside.
+    Pose away = left.home();
+    away.p_m.z() += 6.0 * kA;
+    EXPECT_LT(felt_at(*next, away).force_n.z(), -0.05);
+}
+
+TEST(DockingOptions, BothTogetherAreTheContoursOfWhatIsLeft) {
+    const auto model = make_model();
+    ASSERT_TRUE(set_option(*model, kOptionLaplacian | kOptionSubtraction, true));
+    const auto next = rebuilt(*model);
+    EXPECT_EQ(next->bodies().options, kOptionLaplacian | kOptionSubtraction);
+    const Vec3 other = scene().structures[1].home_com_model_m, own = scene().structures[0].home_com_model_m;
+    EXPECT_GT(density_at(*next, own), 0.0);
+    EXPECT_LT(std::abs(density_at(*next, other)), 0.2 * density_at(*next, own));
+}
+
+TEST(DockingOptions, AClashIsFeltAtOnceWithoutAStepOfTheForce) {
+    const auto model = make_model();
+    Pose overlapping = scene().structures[1].home();
+    overlapping.p_m.x() -= 18.0 * kA;
+    ModelOrder place;
+    place.kind = ModelOrder::Kind::place;
+    place.body = model->bodies().id[0];
+    place.T_model_body = overlapping;
+    ASSERT_TRUE(model->order(place));
+    ToolState tool;
+    model->reset(tool);
+    Vec3 before = Vec3::Zero();
+    const auto steps = [&] {
+        double most = 0.0;
+        for (int i = 0; i < 1000; ++i) {
+            const StepResult now = model->step(tool, Budget{});
+            most = std::max(most, (now.wrench_world.force_n - before).norm());
+            before = now.wrench_world.force_n;
+        }
+        return most;
+    };
+    EXPECT_LT(steps(), 0.06);
+    const Wrench without = felt_at(*model, overlapping);
+    ASSERT_TRUE(set_option(*model, kOptionClash, true));
+    EXPECT_FALSE(model->stale());
+    EXPECT_EQ(model->bodies().options, kOptionClash);
+    const Wrench with = felt_at(*model, overlapping);
+    const ClashField left(scene().structures[0]), right(scene().structures[1]);
+    const ClashBody other{&right, model->bodies().T_model_body[1]};
+    const Wrench clash =
+        clash_force({&left, overlapping}, {&other, 1}, scene().meta.world_per_model, model->clash_gains())
+            .wrench_world;
+    EXPECT_LT(clash.force_n.x(), -0.1);
+    EXPECT_LT((with.force_n - without.force_n - clash.force_n).norm(), 1e-9);
+    EXPECT_LT((with.torque_n_m - without.torque_n_m - clash.torque_n_m).norm(), 1e-10);
+    EXPECT_LT(steps(), 0.06);
+    EXPECT_LT((before - with.force_n).norm(), 1e-6);
+    // It outlives a rebuild, and a rebuild that failed.
+    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    EXPECT_EQ(rebuilt(*model)->bodies().options, kOptionClash | kOptionLaplacian);
+    model->give_up();
+    EXPECT_EQ(model->bodies().options, kOptionClash);
+    EXPECT_FALSE(model->stale());
+    ASSERT_TRUE(set_option(*model, kOptionClash, false));
+    EXPECT_LT((felt_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
+}
+
+TEST(DockingOptions, ForceScaleScalesTheClashToo) {
+    DockingSettings settings;
+    settings.force_scale = 0.5;
+    const auto full = make_model(), half = make_model(settings);
+    Pose overlapping = scene().structures[1].home();
+    overlapping.p_m.x() -= 18.0 * kA;
+    for (DockingModel* model : {full.get(), half.get()}) ASSERT_TRUE(set_option(*model, kOptionClash, true));
+    EXPECT_LT((0.5 * felt_at(*full, overlapping).force_n - felt_at(*half, overlapping).force_n).norm(), 1e-9);
+}
+
+TEST(DockingOptions, UnknownOptionsAreRefused) {
+    const auto model = make_model();
+    EXPECT_FALSE(set_option(*model, 0, true));
+    EXPECT_FALSE(set_option(*model, 1U << 9, true));
+    EXPECT_FALSE(set_option(*model, kOptionClash | (1U << 9), true));
+    EXPECT_EQ(model->bodies().options_asked, 0U);
+}
+
+}  // namespace
+}  // namespace tact
