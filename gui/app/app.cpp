@@ -56,8 +56,11 @@ public:
         state_.renderer = window_.renderer();
         if (options.plain) {
             view_options_.gradient = false;
+            const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(colour::kGround);
+            view_options_.plain_ground = Eigen::Vector3f(ground.x, ground.y, ground.z);
             state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
         }
+        view_options_.depth_cue = options.depth_cue;
         fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
         if (!options.scene.empty())
             start_loading(options.scene);
@@ -205,6 +208,7 @@ private:
         view_ = std::make_unique<SceneView>(content_, *programs_);
         vertices_wanted_ = view_->vertices_max();
         view_->approach_vertices(vertices_wanted_, 1e9);  // at once: nothing is drawn yet
+        view_->molecules().set_look(options_.look);
         camera_.frame(view_->radius_a());
         fit_.reset();
         outcome_ = FitOutcome{};
@@ -310,7 +314,14 @@ private:
         if (!view_) return;
         place_bodies(now_ns);
         follow_fit();
-        view.T_model_body = places_;
+        drawn_.clear();
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const bool live = controller_.have_bodies && i < controller_.bodies.count;
+            const auto number = static_cast<std::uint32_t>(i);
+            drawn_.push_back({places_[i], live ? controller_.bodies.body[i].structure : number,
+                              live ? controller_.bodies.body[i].id : number + 1});
+        }
+        view.bodies = drawn_;
         view.active = active_body();
         const PathLevel* const force =
             controller_.have_levels ? find_path(controller_.levels, kDockingPath) : nullptr;
@@ -422,6 +433,7 @@ private:
     Camera camera_;
     PosePredictor predictors_[kBodiesMax];
     std::vector<Pose> places_;
+    std::vector<DrawnBody> drawn_;
     std::future<std::shared_ptr<const SceneContent>> loading_;
     std::string loading_path_;
     bool picture_wanted_ = false, picture_failed_ = false;

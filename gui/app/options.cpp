@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 
 namespace tact {
 
@@ -34,6 +35,16 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
            "--fps-max", options.fps_max,
            "at most this many pictures a second; 0: as many as can be; default: the display's rate, or 60")
         ->check(CLI::Range(0.0, 1e5));
+    app.add_option("--molecule", options.look.style, "bodies as trace, tube, sticks or spheres")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, MoleculeStyle>{{"trace", MoleculeStyle::trace},
+                                                 {"tube", MoleculeStyle::tube},
+                                                 {"sticks", MoleculeStyle::sticks},
+                                                 {"spheres", MoleculeStyle::spheres}}));
+    app.add_option("--colour", options.look.colouring, "bodies by chain, element or body")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{
+            {"chain", Colouring::chain}, {"element", Colouring::element}, {"body", Colouring::body}}));
+    app.add_flag("!--no-depth-cue", options.depth_cue, "do not fade what lies far behind");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "gui/render/looks.hpp"
+
 namespace tact {
 
 struct GuiOptions {
@@ -13,6 +15,8 @@ struct GuiOptions {
     int width_px = 1280, height_px = 720;
     bool hidden = false;
     bool plain = false;
+    MoleculeLook look;  // of all bodies at the start
+    bool depth_cue = true;
     double fps_max = -1.0;  // 0: no limit; below: 60 where the display does not pace
 };
 

@@ -3,38 +3,30 @@
 namespace tact {
 namespace {
 
-constexpr char kLitVertex[] = R"(#version 330 core
+constexpr char kLitVertex[] = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 colour;
-uniform mat4 u_eye;
-uniform mat4 u_projection;
-uniform vec2 u_haze;
 uniform float u_glass;
+uniform float u_opacity;
+uniform vec4 u_tint;
 out vec4 v_colour;
-const vec3 fog = vec3(0.070, 0.090, 0.122);
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
     vec3 n = normalize(mat3(u_eye) * normal);
     vec3 v = normalize(-p.xyz);
     float facing = dot(n, v);
     if (facing < 0.0) n = -n;  // both sides are lit
-    vec3 key = normalize(vec3(0.35, 0.75, 0.55));
-    float diffuse = max(dot(n, key), 0.0);
-    float fill = 0.5 + 0.5 * n.y;
-    float shine = max(dot(n, normalize(key + v)), 0.0);
-    shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;  // to the 32nd, without a logarithm
-    vec3 c = colour.rgb * (0.22 + 0.26 * fill + 0.62 * diffuse) + vec3(0.22 * shine);
-    float h = smoothstep(u_haze.x, u_haze.y, -p.z);
-    float rim = 1.0 - abs(facing);
+    vec4 c = lit(mix(colour.rgb, u_tint.rgb, u_tint.a), n, v);
     float a = colour.a;
     if (u_glass > 0.5) {
-        a = mix(0.17, 0.78, rim * rim) + 0.45 * shine;
+        float rim = 1.0 - abs(facing);
+        a *= mix(0.17, 0.78, rim * rim) + 0.45 * c.a;
         if (facing < 0.0) a *= 0.55;
-        a *= 1.0 - 0.55 * h;
+        a *= 1.0 - 0.8 * haze_at(-p.z);
     }
-    v_colour = vec4(mix(c, fog, 0.62 * h), min(a, 1.0));
     gl_Position = u_projection * p;
+    v_colour = hazed(vec4(c.rgb, min(a * u_opacity, 1.0)), -p.z, gl_Position.y / gl_Position.w);
 }
 )";
 constexpr char kPlainFragment[] = R"(#version 330 core
@@ -42,36 +34,26 @@ in vec4 v_colour;
 out vec4 colour;
 void main() { colour = v_colour; }
 )";
-constexpr char kFlatVertex[] = R"(#version 330 core
+constexpr char kFlatVertex[] = R"(
 layout(location = 0) in vec3 position;
-uniform mat4 u_eye;
-uniform mat4 u_projection;
-uniform vec2 u_haze;
 uniform vec4 u_colour;
 out vec4 v_colour;
-const vec3 fog = vec3(0.070, 0.090, 0.122);
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
-    float h = smoothstep(u_haze.x, u_haze.y, -p.z);
-    v_colour = vec4(mix(u_colour.rgb, fog, 0.62 * h), u_colour.a);
     gl_Position = u_projection * p;
+    v_colour = hazed(u_colour, -p.z, gl_Position.y / gl_Position.w);
 }
 )";
-constexpr char kBallVertex[] = R"(#version 330 core
+constexpr char kBallVertex[] = R"(
 layout(location = 0) in vec3 position;
-uniform mat4 u_eye;
-uniform mat4 u_projection;
-uniform vec2 u_haze;
 uniform vec4 u_colour;
 uniform vec2 u_size;  // radius, pixels per ångström at distance 1
 out vec4 v_colour;
-const vec3 fog = vec3(0.070, 0.090, 0.122);
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
-    float h = smoothstep(u_haze.x, u_haze.y, -p.z);
-    v_colour = vec4(mix(u_colour.rgb, fog, 0.62 * h), u_colour.a);
     gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 3.0, 64.0);
     gl_Position = u_projection * p;
+    v_colour = hazed(u_colour, -p.z, gl_Position.y / gl_Position.w);
 }
 )";
 constexpr char kBallFragment[] = R"(#version 330 core
@@ -105,47 +87,46 @@ void main() { colour = vec4(v_colour, 1.0); }
 }  // namespace
 
 Programs::Programs()
-    : lit_("surface", kLitVertex, kPlainFragment),
-      flat_("line", kFlatVertex, kPlainFragment),
-      balls_("point", kBallVertex, kBallFragment),
-      background_("background", kBackgroundVertex, kBackgroundFragment) {
-    at_lit_ = {lit_.uniform("u_eye"), lit_.uniform("u_projection"), lit_.uniform("u_haze"),
-               lit_.uniform("u_glass")};
-    at_flat_ = {flat_.uniform("u_eye"), flat_.uniform("u_projection"), flat_.uniform("u_haze"),
-                flat_.uniform("u_colour")};
-    at_balls_ = {balls_.uniform("u_eye"), balls_.uniform("u_projection"), balls_.uniform("u_haze"),
-                 balls_.uniform("u_colour"), balls_.uniform("u_size")};
+    : lit_("surface", shader(kLitVertex).c_str(), kPlainFragment),
+      flat_("line", shader(kFlatVertex).c_str(), kPlainFragment),
+      balls_("point", shader(kBallVertex).c_str(), kBallFragment),
+      background_("background", kBackgroundVertex, kBackgroundFragment),
+      lit_view_(lit_),
+      flat_view_(flat_),
+      balls_view_(balls_),
+      glass_(lit_.uniform("u_glass")),
+      opacity_(lit_.uniform("u_opacity")),
+      tint_(lit_.uniform("u_tint")),
+      flat_colour_(flat_.uniform("u_colour")),
+      balls_colour_(balls_.uniform("u_colour")),
+      balls_size_(balls_.uniform("u_size")) {
     background_.use();
     glUniform3fv(background_.uniform("u_top"), 1, kBackgroundTop);
     glUniform3fv(background_.uniform("u_bottom"), 1, kBackgroundBottom);
 }
 
 void Programs::use_lit(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
-                       bool glass) {
+                       const Paint& paint) {
     lit_.use();
-    set_uniform(at_lit_.eye, eye);
-    set_uniform(at_lit_.projection, projection);
-    glUniform2f(at_lit_.haze, haze.begin_a, haze.end_a);
-    glUniform1f(at_lit_.glass, glass ? 1.0F : 0.0F);
+    lit_view_.set(eye, projection, haze);
+    glUniform1f(glass_, paint.glass ? 1.0F : 0.0F);
+    glUniform1f(opacity_, paint.opacity);
+    glUniform4fv(tint_, 1, paint.tint.data());
 }
 
 void Programs::use_flat(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                         const float rgba[4]) {
     flat_.use();
-    set_uniform(at_flat_.eye, eye);
-    set_uniform(at_flat_.projection, projection);
-    glUniform2f(at_flat_.haze, haze.begin_a, haze.end_a);
-    glUniform4fv(at_flat_.colour, 1, rgba);
+    flat_view_.set(eye, projection, haze);
+    glUniform4fv(flat_colour_, 1, rgba);
 }
 
 void Programs::use_balls(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                          const float rgba[4], float radius_a, float view_height_px) {
     balls_.use();
-    set_uniform(at_balls_.eye, eye);
-    set_uniform(at_balls_.projection, projection);
-    glUniform2f(at_balls_.haze, haze.begin_a, haze.end_a);
-    glUniform4fv(at_balls_.colour, 1, rgba);
-    glUniform2f(at_balls_.size, radius_a, 0.5F * view_height_px * projection(1, 1));
+    balls_view_.set(eye, projection, haze);
+    glUniform4fv(balls_colour_, 1, rgba);
+    glUniform2f(balls_size_, radius_a, 0.5F * view_height_px * projection(1, 1));
 }
 
 void Programs::draw_background() {

@@ -1,30 +1,30 @@
-// The shader programs, shared by everything that is drawn.
+// The shader programs of triangles, lines, points and the background. Atoms: gui/render/impostors.hpp.
 //
 // Light is computed per vertex, so that the cost of a frame follows the vertices drawn (the governor's knob)
 // and drawing on the processor alone stays usable. Attributes: 0 position, 1 normal, 2 colour.
 #pragma once
 
 #include "gui/render/gl.hpp"
+#include "gui/render/shading.hpp"
 
 namespace tact {
 
-struct Haze {  // what lies far behind fades into the background
-    float begin_a = 0.0F, end_a = 1.0F;
+// How triangles with normals are coloured.
+struct Paint {
+    bool glass = false;                              // seen through where it faces the eye, dense at the rim
+    float opacity = 1.0F;                            // times the colour's own
+    Eigen::Vector4f tint = Eigen::Vector4f::Zero();  // rgb in place of the vertices' colour where a is 1
 };
-
-inline constexpr float kBackgroundTop[3] = {0.105F, 0.135F, 0.180F};
-inline constexpr float kBackgroundBottom[3] = {0.035F, 0.045F, 0.065F};
 
 class Programs {
 public:
     Programs();
-    // Triangles with normals. glass: seen through where it faces the eye, dense at the rim.
     void use_lit(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
-                 bool glass);
+                 const Paint& paint);
     // Lines and box, one colour.
     void use_flat(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                   const float rgba[4]);
-    // Points drawn as balls of radius_a; px_per_a at distance 1.
+    // Points drawn as balls of radius_a, flat in depth.
     void use_balls(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                    const float rgba[4], float radius_a, float view_height_px);
     void draw_background();
@@ -32,15 +32,8 @@ public:
 private:
     GlProgram lit_, flat_, balls_, background_;
     GlVertexArray empty_;
-    struct {
-        GLint eye, projection, haze, glass;
-    } at_lit_{};
-    struct {
-        GLint eye, projection, haze, colour;
-    } at_flat_{};
-    struct {
-        GLint eye, projection, haze, colour, size;
-    } at_balls_{};
+    ViewUniforms lit_view_, flat_view_, balls_view_;
+    GLint glass_, opacity_, tint_, flat_colour_, balls_colour_, balls_size_;
 };
 
 }  // namespace tact

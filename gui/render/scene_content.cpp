@@ -68,6 +68,7 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
         content->bodies.push_back(read_structure(file, i));
         content->codebooks.push_back(i < file.count({'C', 'O', 'D', 'E'}) ? read_codebook(file, i)
                                                                           : Codebook{});
+        content->bonds.push_back(find_bonds(content->bodies.back()));
     }
     find_extent(*content);
     return content;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gui/render/bonds.hpp"
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
@@ -24,9 +25,10 @@ struct SceneContent {
     std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
     DensityGrid grid;                       // empty: none
     std::vector<Structure> bodies;
-    std::vector<Codebook> codebooks;     // one per body
-    Vec3 centre_model_m = Vec3::Zero();  // of what is drawn: origin of the scene frame
-    double radius_m = 0.0;               // of a ball about it that holds everything at home
+    std::vector<Codebook> codebooks;       // one per body
+    std::vector<std::vector<Bond>> bonds;  // one list per body
+    Vec3 centre_model_m = Vec3::Zero();    // of what is drawn: origin of the scene frame
+    double radius_m = 0.0;                 // of a ball about it that holds everything at home
     Vec3 box_min_model_m = Vec3::Zero(), box_max_model_m = Vec3::Zero();  // of the map
 };
 

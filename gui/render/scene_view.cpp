@@ -21,20 +21,14 @@ constexpr float kBallRgba[4] = {0.93F, 0.94F, 0.97F, 1.0F};
 constexpr float kGraphRgba[4] = {0.80F, 0.84F, 0.90F, 0.38F};
 constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
 constexpr Rgb8 kForceColour{255, 92, 92};
+// Depth cue: from somewhat before the target to well behind it, in radii of the scene.
+constexpr float kHazeBegin = 0.6F, kHazeEnd = 1.6F, kHazeStrength = 0.8F;
 
 Eigen::Matrix4f scene_from_model(const Vec3& centre_m) {
     Eigen::Matrix4f m = Eigen::Matrix4f::Zero();
     m.topLeftCorner<3, 3>() = kAPerM * Eigen::Matrix3f::Identity();
     m.topRightCorner<3, 1>() = (-centre_m / kAngstromM).cast<float>();
     m(3, 3) = 1.0F;
-    return m;
-}
-
-// From the body frame in ångström.
-Eigen::Matrix4f scene_from_body(const Pose& T_model_body, const Vec3& centre_m) {
-    Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
-    m.topLeftCorner<3, 3>() = T_model_body.q.toRotationMatrix().cast<float>();
-    m.topRightCorner<3, 1>() = ((T_model_body.p_m - centre_m) / kAngstromM).cast<float>();
     return m;
 }
 
@@ -45,7 +39,6 @@ struct SceneView::Pass {
     const ViewFrame& frame;
     Eigen::Matrix4f eye_from_scene, projection;
     Haze haze;
-    std::size_t bodies;
 };
 
 std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt) {
@@ -56,15 +49,11 @@ std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt) 
 }
 
 SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& programs)
-    : content_(std::move(content)), programs_(programs) {
+    : content_(std::move(content)), programs_(programs), molecules_(content_, programs) {
     if (content_->mesh) surface_ = std::make_unique<Surface>(*content_->mesh);
-    for (std::size_t i = 0; i < content_->bodies.size(); ++i) {
-        Body body;
-        fill(body.tubes, build_tubes(content_->bodies[i], kTubeVertices / content_->bodies.size()),
-             GL_STATIC_DRAW);
-        for (const Codebook::Level& level : content_->codebooks[i].levels)
-            body.levels.push_back(make_points(level));
-        bodies_.push_back(std::move(body));
+    for (const Codebook& codebook : content_->codebooks) {
+        codebooks_.emplace_back();
+        for (const Codebook::Level& level : codebook.levels) codebooks_.back().push_back(make_points(level));
     }
     Codebook::Level corners;
     for (std::uint32_t k = 0; k < 8; ++k) {
@@ -79,21 +68,6 @@ SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& prog
             if ((k & bit) == 0) corners.edges.push_back({k, k | bit});
     }
     box_ = make_points(corners);
-}
-
-void SceneView::fill(Tubes& tubes, const TubeMesh& mesh, GLenum usage) {
-    glBindVertexArray(tubes.array.get());
-    glBindBuffer(GL_ARRAY_BUFFER, tubes.vertices.get());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertex.size() * sizeof(TubeVertex)),
-                 mesh.vertex.data(), usage);
-    attribute(0, 3, GL_FLOAT, GL_FALSE, sizeof(TubeVertex), 0);
-    attribute(1, 3, GL_FLOAT, GL_FALSE, sizeof(TubeVertex), 12);
-    attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(TubeVertex), 24);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tubes.indices.get());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.index.size() * sizeof(std::uint32_t)),
-                 mesh.index.data(), usage);
-    tubes.count = static_cast<GLsizei>(mesh.index.size());
-    glBindVertexArray(0);
 }
 
 SceneView::Points SceneView::make_points(const Codebook::Level& level) {
@@ -132,18 +106,11 @@ float SceneView::arrow_a_per_n() const {
 void SceneView::draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame) {
     const float aspect =
         static_cast<float>(frame.width_px) / static_cast<float>(std::max(frame.height_px, 1));
-    const Pass pass{options,
-                    frame,
-                    camera.view(),
-                    camera.projection(aspect),
-                    {camera.distance_a() - 0.6F * radius_a(), camera.distance_a() + 1.6F * radius_a()},
-                    std::min(bodies_.size(), frame.T_model_body.size())};
+    const Pass pass{options, frame, camera.view(), camera.projection(aspect), haze_of(camera, options)};
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    glEnable(GL_CULL_FACE);  // tubes are closed
-    if (options.backbone) draw_bodies(pass);
-    glDisable(GL_CULL_FACE);
+    if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     if (options.codebook || options.graph) draw_codebook(pass);
@@ -156,22 +123,22 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glUseProgram(0);
 }
 
-void SceneView::draw_bodies(const Pass& pass) {
-    for (std::size_t i = 0; i < pass.bodies; ++i) {
-        programs_.use_lit(
-            pass.eye_from_scene * scene_from_body(pass.frame.T_model_body[i], content_->centre_model_m),
-            pass.projection, pass.haze, false);
-        glBindVertexArray(bodies_[i].tubes.array.get());
-        glDrawElements(GL_TRIANGLES, bodies_[i].tubes.count, GL_UNSIGNED_INT, nullptr);
-    }
+Haze SceneView::haze_of(const Camera& camera, const ViewOptions& options) const {
+    Haze haze;
+    haze.begin_a = camera.distance_a() - kHazeBegin * radius_a();
+    haze.end_a = camera.distance_a() + kHazeEnd * radius_a();
+    if (options.depth_cue) haze.strength = kHazeStrength;
+    if (!options.gradient) haze.top = haze.bottom = options.plain_ground;
+    return haze;
 }
 
 void SceneView::draw_codebook(const Pass& pass) {
-    for (std::size_t i = 0; i < pass.bodies; ++i) {
-        if (bodies_[i].levels.empty()) continue;
-        Points& points = bodies_[i].levels[codebook_level(content_->codebooks[i], pass.frame.points_felt)];
+    for (const DrawnBody& body : pass.frame.bodies) {
+        const std::size_t s = body.structure;
+        if (body.hidden || s >= codebooks_.size() || codebooks_[s].empty()) continue;
+        Points& points = codebooks_[s][codebook_level(content_->codebooks[s], pass.frame.points_felt)];
         const Eigen::Matrix4f eye =
-            pass.eye_from_scene * scene_from_body(pass.frame.T_model_body[i], content_->centre_model_m);
+            pass.eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m);
         glBindVertexArray(points.array.get());
         if (pass.options.graph) {
             programs_.use_flat(eye, pass.projection, pass.haze, kGraphRgba);
@@ -188,21 +155,20 @@ void SceneView::draw_codebook(const Pass& pass) {
 }
 
 void SceneView::draw_force(const Pass& pass) {
-    if (pass.frame.active >= pass.bodies) return;
-    const Pose& body = pass.frame.T_model_body[pass.frame.active];
+    if (pass.frame.active >= pass.frame.bodies.size()) return;
+    const Pose& body = pass.frame.bodies[pass.frame.active].T_model_body;
     const Eigen::Vector3f from = ((body.p_m - content_->centre_model_m) / kAngstromM).cast<float>();
     Eigen::Vector3f along = pass.frame.force_world_n.cast<float>() * arrow_a_per_n();
     const float most = 3.0F * radius_a();
     if (along.norm() > most) along *= most / along.norm();
     const TubeMesh mesh = build_arrow(from, along, 0.02F * radius_a(), kForceColour);
     if (mesh.index.empty()) return;
-    fill(arrow_, mesh, GL_STREAM_DRAW);
-    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, false);
-    glBindVertexArray(arrow_.array.get());
+    arrow_.fill(mesh, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
     // Always seen, also inside the structure: everything else is drawn, so its depth may go.
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
-    glDrawElements(GL_TRIANGLES, arrow_.count, GL_UNSIGNED_INT, nullptr);
+    arrow_.draw();
 }
 
 void SceneView::draw_box(const Pass& pass) {
@@ -214,7 +180,7 @@ void SceneView::draw_box(const Pass& pass) {
 void SceneView::draw_surface(const Pass& pass) {
     const bool glass = pass.options.style == SurfaceStyle::glass;
     programs_.use_lit(pass.eye_from_scene * scene_from_model(content_->centre_model_m), pass.projection,
-                      pass.haze, glass);
+                      pass.haze, {.glass = glass});
     // Glass is not sorted: all of it has one colour, so the order hardly shows, and one pass costs half of
     // two.
     if (glass)

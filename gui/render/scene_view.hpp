@@ -1,8 +1,8 @@
-// The three-dimensional view of a docking scene: surface, backbones, codebook, force.
+// The three-dimensional view of a docking scene: surface, bodies, codebook, force.
 //
 // Frame    poses and forces come in model and world axes (which are parallel) in SI; drawing is in ångström.
 // Thread   frame thread, context current. Draws into the bound frame buffer, inside the given viewport.
-// Cost     follows the vertices of the surface; backbones are bounded by kTubeVertices in total.
+// Cost     follows the vertices of the surface; that of bodies: gui/render/molecules.hpp.
 #pragma once
 
 #include <memory>
@@ -10,33 +10,33 @@
 #include <vector>
 
 #include "gui/render/camera.hpp"
+#include "gui/render/molecules.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/surface.hpp"
-#include "gui/render/tube.hpp"
+#include "gui/render/triangle_buffers.hpp"
 
 namespace tact {
-
-enum class SurfaceStyle : int { glass, solid, wire };
 
 struct ViewOptions {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
     SurfaceStyle style = SurfaceStyle::glass;
-    bool gradient = true;  // background; off: one colour, cheaper
+    bool depth_cue = true;  // what lies far behind fades into the background
+    bool gradient = true;   // background; off: plain_ground, cheaper
+    Eigen::Vector3f plain_ground =
+        Eigen::Vector3f::Zero();  // the colour cleared to where there is no gradient
 };
 
 struct ViewFrame {
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport, y from below as OpenGL counts
-    std::span<const Pose> T_model_body;                   // one per body drawn
-    std::size_t active = 0;                               // the body in the hand
-    std::uint32_t points_felt = 0;                        // picks the level of the codebook that is shown
+    std::span<const DrawnBody> bodies;
+    std::size_t active = 0;         // the body in the hand; none where it is not one of them
+    std::uint32_t points_felt = 0;  // picks the level of the codebook that is shown
     Vec3 force_world_n = Vec3::Zero();
 };
 
 class SceneView {
 public:
-    static constexpr std::size_t kTubeVertices = 20000;
-
     SceneView(std::shared_ptr<const SceneContent> content, Programs& programs);
 
     [[nodiscard]] const SceneContent& content() const { return *content_; }
@@ -44,6 +44,7 @@ public:
     void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
     std::size_t upload();
     void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
+    [[nodiscard]] Molecules& molecules() { return molecules_; }
 
     [[nodiscard]] std::uint32_t vertices() const { return surface_ ? surface_->cut().vertices() : 0; }
     [[nodiscard]] std::uint32_t triangles() const { return surface_ ? surface_->cut().triangles() : 0; }
@@ -58,34 +59,25 @@ public:
     [[nodiscard]] float arrow_a_per_n() const;
 
 private:
-    struct Tubes {
-        GlVertexArray array;
-        GlBuffer vertices, indices;
-        GLsizei count = 0;
-    };
     struct Points {
         GlVertexArray array;
         GlBuffer vertices, edges;
         GLsizei points = 0, edge_indices = 0;
     };
-    struct Body {
-        Tubes tubes;
-        std::vector<Points> levels;
-    };
     struct Pass;  // matrices of one draw()
-    void draw_bodies(const Pass& pass);
+    [[nodiscard]] Haze haze_of(const Camera& camera, const ViewOptions& options) const;
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
     void draw_box(const Pass& pass);
     void draw_surface(const Pass& pass);
-    static void fill(Tubes& tubes, const TubeMesh& mesh, GLenum usage);
     static Points make_points(const Codebook::Level& level);
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;
     std::unique_ptr<Surface> surface_;
-    std::vector<Body> bodies_;
-    Tubes arrow_;
+    Molecules molecules_;
+    std::vector<std::vector<Points>> codebooks_;  // levels of each structure
+    TriangleBuffers arrow_;
     Points box_;
 };
 

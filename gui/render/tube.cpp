@@ -18,24 +18,8 @@ struct Strand {
     Rgb8 colour{};
 };
 
-std::vector<Strand> strands_of(const Structure& s) {
-    std::vector<Strand> strands;
-    bool open = false;
-    std::uint16_t chain = 0;
-    Vector3f last = Vector3f::Zero();
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        if (s.trace[i] == 0) continue;
-        const Vector3f p = Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]) / static_cast<float>(kAngstromM);
-        const bool near = (p - last).norm() < static_cast<float>(kTraceGapM / kAngstromM);
-        if (!open || s.chain[i] != chain || !near) strands.push_back({{}, chain_colour(s.chain[i])});
-        strands.back().point_a.push_back(p);
-        open = true;
-        chain = s.chain[i];
-        last = p;
-    }
-    // A lone atom makes no tube.
-    std::erase_if(strands, [](const Strand& strand) { return strand.point_a.size() < 2; });
-    return strands;
+Vector3f point_a(const Structure& s, std::size_t i) {
+    return Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]) / static_cast<float>(kAngstromM);
 }
 
 Vector3f catmull_rom(const std::vector<Vector3f>& p, std::size_t i, float t) {
@@ -113,21 +97,29 @@ void add_strand(TubeMesh& mesh, const Strand& strand, int steps, int sides, floa
 
 }  // namespace
 
-Rgb8 chain_colour(std::size_t chain) {
-    static constexpr std::array<Rgb8, 7> kColours{{{230, 159, 0},
-                                                   {86, 180, 233},
-                                                   {0, 158, 115},
-                                                   {240, 228, 66},
-                                                   {0, 114, 178},
-                                                   {213, 94, 0},
-                                                   {204, 121, 167}}};
-    return kColours[chain % kColours.size()];
+std::vector<std::vector<std::uint32_t>> strands_of(const Structure& s) {
+    std::vector<std::vector<std::uint32_t>> strands;
+    for (std::uint32_t i = 0; i < s.size(); ++i) {
+        if (s.trace[i] == 0) continue;
+        const bool follows = !strands.empty() && s.chain[i] == s.chain[strands.back().back()] &&
+                             (point_a(s, i) - point_a(s, strands.back().back())).norm() <
+                                 static_cast<float>(kTraceGapM / kAngstromM);
+        if (!follows) strands.emplace_back();
+        strands.back().push_back(i);
+    }
+    std::erase_if(strands, [](const auto& strand) { return strand.size() < 2; });
+    return strands;
 }
 
 TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
-    const std::vector<Strand> strands = strands_of(structure);
+    std::vector<Strand> strands;
     std::size_t points = 0;
-    for (const Strand& s : strands) points += s.point_a.size();
+    for (const auto& atoms : strands_of(structure)) {
+        Strand strand{{}, chain_colour(structure.chain[atoms.front()])};
+        for (const std::uint32_t i : atoms) strand.point_a.push_back(point_a(structure, i));
+        points += atoms.size();
+        strands.push_back(std::move(strand));
+    }
     int steps = 1, sides = 4;
     for (const auto& [try_steps, try_sides] : {std::pair{4, 8}, {3, 6}, {2, 6}, {2, 5}, {1, 5}, {1, 4}}) {
         steps = try_steps;

@@ -5,11 +5,11 @@
 // Size     sides and steps are chosen so that the whole stays below vertices_max where that can be.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "gui/render/elements.hpp"
 #include "ipc/assets/structure.hpp"
 
 namespace tact {
@@ -27,11 +27,10 @@ struct TubeMesh {
     std::size_t strands = 0;
 };
 
-using Rgb8 = std::array<std::uint8_t, 3>;
-// Okabe-Ito, told apart by colour-blind people too; without black, which is not seen on a dark ground.
-[[nodiscard]] Rgb8 chain_colour(std::size_t chain);
-
 inline constexpr double kTraceGapM = 8e-10;  // above the C-alpha (3.8 A) and phosphate (about 7 A) distances
+
+// The trace atoms in order, parted as the curve is; strands of one atom are left out.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> strands_of(const Structure& structure);
 
 [[nodiscard]] TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max);
 

@@ -9,4 +9,7 @@ if(TACT_GUI)
     target_compile_definitions(gui_window_test PRIVATE TACT_GUI_PROGRAM="$<TARGET_FILE:tact-gui>")
     add_dependencies(gui_window_test tact-gui)
     set_tests_properties(gui_window_test PROPERTIES RUN_SERIAL ON)
+    tact_test(unit/gui_shapes_test.cpp USES gui_render assets base)
+    tact_test(unit/gui_draw_test.cpp USES gui_app gui_panels gui_render launch prep_mesh topics shm assets base
+        TIMEOUT 300)
 endif()

@@ -1,0 +1,26 @@
+// How things may look: the words that a person chooses among.
+#pragma once
+
+namespace tact {
+
+enum class MoleculeStyle : int {
+    trace,    // straight sticks between the trace atoms (C-alpha, P)
+    tube,     // a smooth tube along them
+    sticks,   // bonds
+    spheres,  // atoms at their van der Waals radii
+};
+
+enum class Colouring : int {
+    chain,
+    element,  // carbon by chain
+    body,
+};
+
+struct MoleculeLook {
+    MoleculeStyle style = MoleculeStyle::tube;
+    Colouring colouring = Colouring::chain;
+};
+
+enum class SurfaceStyle : int { glass, solid, wire };
+
+}  // namespace tact

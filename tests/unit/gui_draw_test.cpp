@@ -1,0 +1,276 @@
+// What lands in the pixels: impostors against a slow reference, the depth cue, copies, looks.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/x_server.hpp"
+#include "gui/app/window.hpp"
+#include "gui/render/scene_view.hpp"
+#include "ipc/base/units.hpp"
+#include "tests/unit/gui_fake.hpp"
+
+// Graphics drivers and X libraries keep memory to the end on purpose.
+extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+
+namespace tact {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+using Distance = std::function<double(const Eigen::Vector3d& eye_a)>;
+
+// One X server and one context for all cases.
+class GuiDraw : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (launch::find_in_path("Xvfb").empty()) return;
+        char name[] = "/tmp/tact-gui-draw-XXXXXX";
+        folder_ = mkdtemp(name);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
+        for (const auto& [key, value] : server_->environment())
+            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
+        window_ = std::make_unique<Window>(kWidth, kHeight, true);
+        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
+    }
+    static void TearDownTestSuite() {
+        target_.reset();
+        window_.reset();
+        server_.reset();
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+    void SetUp() override {
+        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        target_->bind();
+        glViewport(0, 0, kWidth, kHeight);
+        glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        glEnable(GL_DEPTH_TEST);
+        glDisable(GL_BLEND);
+        glDisable(GL_CULL_FACE);
+        camera_.frame(20.0F);
+    }
+    void TearDown() override { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}); }
+
+    static std::vector<float> depths() {
+        std::vector<float> depth(std::size_t{kWidth} * kHeight);
+        glReadPixels(0, 0, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+        return depth;
+    }
+    Eigen::Matrix4f projection() const {
+        return camera_.projection(static_cast<float>(kWidth) / static_cast<float>(kHeight));
+    }
+    // Walks along the ray of every pixel until the distance to the shape is nothing: slow, and it has no
+    // formula in common with the shaders.
+    void expect_shape(const Distance& distance) const {
+        const Eigen::Matrix4d p = projection().cast<double>();
+        const std::vector<float> depth = depths();
+        int hits = 0, wrong = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const Eigen::Vector3d ray = Eigen::Vector3d((2.0 * (x + 0.5) / kWidth - 1.0) / p(0, 0),
+                                                            (2.0 * (y + 0.5) / kHeight - 1.0) / p(1, 1), -1.0)
+                                                .normalized();
+                double t = 0.0, nearest = 1e9;
+                for (int step = 0; step < 400 && t < 1000.0 && nearest > 1e-4; ++step) {
+                    nearest = std::min(nearest, distance(t * ray));
+                    t += distance(t * ray);
+                }
+                const auto seen = static_cast<double>(depth[static_cast<std::size_t>(y * kWidth + x)]);
+                const bool hit = nearest <= 1e-4;
+                hits += hit ? 1 : 0;
+                if (hit != (seen < 1.0)) {
+                    // Single precision may differ about a pixel that the outline all but misses.
+                    if (nearest > 1e-2) ++wrong;
+                    continue;
+                }
+                if (!hit) continue;
+                const double z_a = p(2, 3) / (2.0 * seen - 1.0 + p(2, 2));  // distance along the view
+                // At a grazing ray the depth is as steep as can be: judged by the distance to the shape.
+                EXPECT_NEAR(distance(ray * (z_a / -ray.z())), 0.0, 0.02) << "pixel " << x << ", " << y;
+            }
+        EXPECT_GT(hits, 20);
+        EXPECT_LE(wrong, hits / 50) << "of " << hits;
+    }
+    ImpostorView impostor_view(const Eigen::Matrix4f& eye) const { return {eye, projection(), haze_}; }
+
+    static std::string folder_;
+    static std::unique_ptr<launch::XServer> server_;
+    static std::unique_ptr<Window> window_;
+    static std::unique_ptr<OffscreenTarget> target_;
+    Camera camera_;
+    Haze haze_;
+};
+std::string GuiDraw::folder_;
+std::unique_ptr<launch::XServer> GuiDraw::server_;
+std::unique_ptr<Window> GuiDraw::window_;
+std::unique_ptr<OffscreenTarget> GuiDraw::target_;
+
+Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
+    return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
+}
+
+TEST_F(GuiDraw, ASphereCoversItsOutlineAndHasItsDepthInEveryPixel) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = camera_.view();
+    for (const Sphere& sphere :
+         {Sphere{{0.0F, 0.0F, 0.0F}, 6.0F, {}}, Sphere{{14.0F, -9.0F, 10.0F}, 3.0F, {}},
+          Sphere{{0.0F, 15.0F, 30.0F}, 8.0F, {}}}) {
+        glClear(GL_DEPTH_BUFFER_BIT);
+        ImpostorShapes shapes;
+        shapes.fill(std::array{sphere});
+        programs.use_spheres(impostor_view(eye));
+        shapes.draw();
+        const Eigen::Vector3d c = in_eye(eye, sphere.centre_a);
+        expect_shape(
+            [&](const Eigen::Vector3d& p) { return (p - c).norm() - static_cast<double>(sphere.radius_a); });
+    }
+}
+
+TEST_F(GuiDraw, AStickCoversItsOutlineAndHasItsDepthInEveryPixel) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = camera_.view();
+    const Eigen::Vector3f towards = camera_.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 12.0F);
+    for (const Stick& stick :
+         {Stick{{-8.0F, 3.0F, 0.0F}, 2.0F, {9.0F, -2.0F, 5.0F}, {}, {}},
+          Stick{{0.0F, 0.0F, 0.0F}, 3.0F, {towards.x(), towards.y(), towards.z()}, {}, {}},
+          Stick{{10.0F, 10.0F, 0.0F}, 1.0F, {10.0F, 10.5F, 0.0F}, {}, {}},
+          Stick{{4.0F, 4.0F, 4.0F}, 3.0F, {4.0F, 4.0F, 4.0F}, {}, {}}}) {
+        glClear(GL_DEPTH_BUFFER_BIT);
+        ImpostorShapes shapes;
+        shapes.fill(std::array{stick});
+        programs.use_sticks(impostor_view(eye));
+        shapes.draw();
+        const Eigen::Vector3d a = in_eye(eye, stick.from_a), b = in_eye(eye, stick.to_a);
+        expect_shape([&](const Eigen::Vector3d& p) {
+            const double length2 = (b - a).squaredNorm();
+            const double t = length2 > 0.0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
+            return (p - a - t * (b - a)).norm() - static_cast<double>(stick.radius_a);
+        });
+    }
+}
+
+TEST_F(GuiDraw, WhatReachesTheEyeIsLeftOutAndDoesNoHarm) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = Eigen::Matrix4f::Identity();
+    ImpostorShapes spheres, sticks;
+    spheres.fill(std::array{Sphere{{0.0F, 0.0F, -1.0F}, 2.0F, {}}, Sphere{{0.0F, 0.0F, 50.0F}, 2.0F, {}}});
+    sticks.fill(std::array{Stick{{0.0F, 0.0F, 1.0F}, 1.0F, {0.0F, 0.0F, -90.0F}, {}, {}}});
+    programs.use_spheres(impostor_view(eye));
+    spheres.draw();
+    programs.use_sticks(impostor_view(eye));
+    sticks.draw();
+    for (const float d : depths()) ASSERT_EQ(d, 1.0F);
+}
+
+TEST_F(GuiDraw, HazeEndsInTheBackgroundAndIsNothingBeforeItBegins) {
+    ImpostorPrograms programs;
+    haze_.strength = 1.0F;
+    haze_.top = Eigen::Vector3f(0.2F, 0.4F, 0.6F);
+    haze_.bottom = haze_.top;
+    const AtomColours red{{255, 0, 0, 255}, {255, 0, 0, 255}};
+    ImpostorShapes shapes;
+    shapes.fill(std::array{Sphere{{0.0F, 0.0F, 0.0F}, 8.0F, red}});
+    const auto middle = [&](float begin_a, float end_a) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        haze_.begin_a = begin_a;
+        haze_.end_a = end_a;
+        programs.use_spheres(impostor_view(camera_.view()));
+        shapes.draw();
+        const Image image = read_pixels(kWidth, kHeight);
+        const std::size_t at = std::size_t{3} * (kHeight / 2 * kWidth + kWidth / 2);
+        return Rgb8{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+    };
+    const float d = camera_.distance_a();
+    const Rgb8 clear = middle(d + 10.0F, d + 20.0F), gone = middle(d - 30.0F, d - 20.0F);
+    EXPECT_GT(clear[0], clear[1] + 50);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(gone[i], 255.0F * haze_.top[i], 1.5F);
+}
+
+// Pixels that differ from the background.
+std::size_t drawn(const Image& image) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+        count += (image.rgb[i] | image.rgb[i + 1] | image.rgb[i + 2]) != 0 ? 1U : 0U;
+    return count;
+}
+
+class GuiDrawScene : public GuiDraw {
+protected:
+    void SetUp() override {
+        GuiDraw::SetUp();
+        if (IsSkipped()) return;
+        const std::string path = folder_ + "/scene.tact";
+        if (!std::filesystem::exists(path)) fake::write_helix_scene(path, 16);
+        content_ = load_scene(path);
+        programs_.emplace();
+        view_.emplace(content_, *programs_);
+        camera_.frame(view_->radius_a());
+        options_.surface = options_.codebook = options_.graph = options_.force = false;
+        home_ = {content_->bodies[0].home(), 0, 1};
+    }
+    void TearDown() override {
+        view_.reset();
+        programs_.reset();
+        GuiDraw::TearDown();
+    }
+    Image picture(std::span<const DrawnBody> bodies) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        ViewFrame frame{};
+        frame.width_px = kWidth;
+        frame.height_px = kHeight;
+        frame.bodies = bodies;
+        frame.active = 1000;
+        view_->draw(camera_, options_, frame);
+        return read_pixels(kWidth, kHeight);
+    }
+    std::shared_ptr<const SceneContent> content_;
+    std::optional<Programs> programs_;
+    std::optional<SceneView> view_;
+    ViewOptions options_;
+    DrawnBody home_;
+};
+
+TEST_F(GuiDrawScene, EachStyleDrawsSomethingOfItsOwn) {
+    std::set<std::vector<std::uint8_t>> pictures;
+    for (const auto style :
+         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
+        for (const auto colouring : {Colouring::chain, Colouring::body}) {
+            view_->molecules().set_look({style, colouring});
+            const Image image = picture(std::array{home_});
+            EXPECT_GT(drawn(image), 100U);
+            pictures.insert(image.rgb);
+        }
+    EXPECT_EQ(pictures.size(), 8U);
+}
+
+TEST_F(GuiDrawScene, CopiesAreDrawnWhereTheyAreHiddenAndUnknownOnesNotAtAll) {
+    view_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
+    const std::size_t one = drawn(picture(std::array{home_}));
+    DrawnBody copy = home_;
+    copy.id = 2;
+    copy.T_model_body.p_m += Vec3(0.0, 0.0, 14e-10);
+    EXPECT_GT(drawn(picture(std::array{home_, copy})), one + 50);
+    copy.hidden = true;
+    EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
+    copy.hidden = false;
+    copy.structure = 77;
+    EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
+}
+
+TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {
+    DrawnBody copy = home_;
+    copy.id = 2;
+    view_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
+    const Image tube = picture(std::array{home_});
+    view_->molecules().set_look(2, {MoleculeStyle::spheres, Colouring::chain});
+    EXPECT_EQ(picture(std::array{home_}).rgb, tube.rgb);
+    EXPECT_NE(picture(std::array{copy}).rgb, tube.rgb);
+    view_->molecules().set_shapes_max(content_->bodies[0].size() - 1);
+    EXPECT_EQ(picture(std::array{copy}).rgb, tube.rgb);
+    EXPECT_EQ(view_->molecules().left_out(), 1U);
+}
+
+}  // namespace
+}  // namespace tact

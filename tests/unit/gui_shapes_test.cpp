@@ -1,0 +1,134 @@
+// Bonds, colours and shapes of atoms: gui/render/bonds, elements, atom_shapes.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "gui/render/atom_shapes.hpp"
+#include "gui/render/tube.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+void add(Structure& s, std::uint8_t element, std::array<double, 3> a, std::int32_t residue = 1,
+         std::uint16_t chain = 0) {
+    s.x_m.push_back(static_cast<float>(a[0] * kAngstromM));
+    s.y_m.push_back(static_cast<float>(a[1] * kAngstromM));
+    s.z_m.push_back(static_cast<float>(a[2] * kAngstromM));
+    s.element.push_back(element);
+    s.residue.push_back(residue);
+    s.chain.push_back(chain);
+    s.trace.push_back(0);
+}
+
+// As dense as a protein and a good deal denser, over several cells of the search grid to either side of zero.
+Structure crowd(std::size_t atoms, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-14.0, 14.0);
+    const std::array<std::uint8_t, 7> elements{6, 6, 7, 8, 16, 30, 12};
+    Structure s;
+    for (std::size_t i = 0; i < atoms; ++i)
+        add(s, elements[random() % elements.size()], {place(random), place(random), place(random)},
+            static_cast<std::int32_t>(random() % 4), static_cast<std::uint16_t>(random() % 2));
+    return s;
+}
+
+TEST(Bonds, AreThoseThatTryingEveryPairFinds) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        const Structure s = crowd(1200, seed);
+        std::vector<Bond> expected;
+        for (std::uint32_t i = 0; i < s.size(); ++i)
+            for (std::uint32_t j = i + 1; j < s.size(); ++j)
+                if (bonded(s, i, j)) expected.push_back({i, j});
+        ASSERT_GT(expected.size(), 50U);
+        EXPECT_EQ(find_bonds(s), expected);
+    }
+}
+
+TEST(Bonds, OfAPeptideAreThoseOfTheTextbook) {
+    // Glycine and the nitrogen of the next residue; a water-like oxygen and an ion beside them.
+    Structure s;
+    add(s, 7, {0.0, 0.0, 0.0});
+    add(s, 6, {1.46, 0.0, 0.0});
+    add(s, 6, {2.0, 1.43, 0.0});
+    add(s, 8, {1.25, 2.4, 0.0});
+    add(s, 7, {3.33, 1.55, 0.0}, 2);
+    add(s, 12, {4.9, 2.6, 0.0}, 3);      // magnesium, 1.9 from the nitrogen
+    add(s, 6, {3.33, 1.55, 1.4}, 2, 1);  // as near as a bond, of another chain
+    EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}, {1, 2}, {2, 3}, {2, 4}}));
+}
+
+TEST(Bonds, JoinSulphursOfDistantResiduesAndChains) {
+    Structure s;
+    add(s, 16, {0.0, 0.0, 0.0}, 5, 0);
+    add(s, 16, {2.05, 0.0, 0.0}, 90, 1);
+    add(s, 16, {6.0, 0.0, 0.0}, 91, 1);
+    EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}}));
+}
+
+TEST(Bonds, OfAHeapOfAtomsStayLinear) {
+    // All within half an ångström and more: every pair would be a bond, two hundred million of them.
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(0.0, 1.5);
+    Structure s;
+    for (int i = 0; i < 20000; ++i) add(s, 6, {place(random), place(random), place(random)});
+    const std::vector<Bond> bonds = find_bonds(s);
+    EXPECT_LE(bonds.size(), kBondsOfAtomMax * s.size());
+    // Far out, where coordinates may be at most, nothing overflows.
+    Structure far;
+    for (int i = 0; i < 3; ++i) add(far, 6, {9.9e6, 1.4 * i, -9.9e6});
+    (void)find_bonds(far);
+}
+
+TEST(Elements, HaveTheColoursOfJmol) {
+    EXPECT_EQ(element_colour(7), (Rgb8{0x30, 0x50, 0xF8}));
+    EXPECT_EQ(element_colour(8), (Rgb8{0xFF, 0x0D, 0x0D}));
+    EXPECT_EQ(element_colour(26), (Rgb8{0xE0, 0x66, 0x33}));
+    EXPECT_EQ(element_colour(79), (Rgb8{0xFF, 0xD1, 0x23}));
+    EXPECT_EQ(element_colour(118), element_colour(0));
+    EXPECT_FLOAT_EQ(covalent_radius_a(6), 0.76F);
+    EXPECT_FLOAT_EQ(covalent_radius_a(30), 1.22F);
+    EXPECT_FLOAT_EQ(covalent_radius_a(255), 0.0F);
+    // Longer bonds would reach beyond the cells that find_bonds() looks into.
+    for (unsigned z = 0; z < 256; ++z)
+        EXPECT_LT(2.0 * static_cast<double>(covalent_radius_a(static_cast<std::uint8_t>(z))) + kBondSlackA,
+                  4.8);
+}
+
+TEST(Shapes, CarbonHasTheColourOfItsChainTheOthersTheirOwn) {
+    Structure s;
+    add(s, 6, {0.0, 0.0, 0.0}, 1, 0);
+    add(s, 6, {1.5, 0.0, 0.0}, 1, 1);
+    add(s, 8, {3.0, 0.0, 0.0}, 1, 1);
+    const auto spheres = spheres_of(s);
+    EXPECT_NE(spheres[0].colours.element, spheres[1].colours.element);
+    EXPECT_EQ(spheres[1].colours.element, spheres[1].colours.chain);
+    EXPECT_EQ(spheres[2].colours.element, (Rgba8{0xFF, 0x0D, 0x0D, 255}));
+    EXPECT_EQ(spheres[2].colours.chain, spheres[1].colours.chain);
+    EXPECT_FLOAT_EQ(spheres[2].radius_a, 1.52F);
+    EXPECT_NEAR(spheres[1].centre_a[0], 1.5F, 1e-6F);
+}
+
+TEST(Shapes, AnAtomWithoutBondsIsSeenAmongSticks) {
+    Structure s;
+    add(s, 6, {0.0, 0.0, 0.0});
+    add(s, 6, {1.5, 0.0, 0.0});
+    add(s, 30, {20.0, 0.0, 0.0});
+    const auto sticks = sticks_of(s, find_bonds(s));
+    ASSERT_EQ(sticks.size(), 2U);
+    EXPECT_EQ(sticks[1].from_a, sticks[1].to_a);
+    EXPECT_GT(sticks[1].radius_a, 2.0F * kStickRadiusA);
+}
+
+TEST(Shapes, TheTraceIsBrokenWhereTheTubeIs) {
+    Structure s;
+    for (int i = 0; i < 10; ++i) add(s, 6, {3.8 * i + (i > 4 ? 30.0 : 0.0), 0.0, 0.0}, i, i > 7 ? 1 : 0);
+    s.trace.assign(s.size(), 1);
+    EXPECT_EQ(strands_of(s).size(), 3U);  // of five, three and two atoms
+    EXPECT_EQ(trace_of(s).size(), 4U + 2U + 1U);
+    EXPECT_EQ(build_tubes(s, 10000).strands, 3U);
+}
+
+}  // namespace
+}  // namespace tact
