@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gui/app/command_sender.hpp"
+#include "gui/app/contour_child.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/describe.hpp"
 #include "gui/app/fit_worker.hpp"
@@ -43,6 +44,9 @@ void catch_signals() {
 
 constexpr std::size_t kEventsKept = 100;
 constexpr std::size_t kEventsPerFrame = 64;
+// Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
+// (tests/bench/draw_bench.cpp).
+constexpr std::size_t kShapesMaxInSoftware = 8000;
 
 class App {
 public:
@@ -205,10 +209,13 @@ private:
 
     void use_scene() {
         if (!programs_) programs_ = std::make_unique<Programs>();
-        view_ = std::make_unique<SceneView>(content_, *programs_);
-        vertices_wanted_ = view_->vertices_max();
-        view_->approach_vertices(vertices_wanted_, 1e9);  // at once: nothing is drawn yet
+        view_ = std::make_unique<SceneView>(content_, *programs_, refine_by_child(content_));
+        if (!options_.contours.empty())
+            view_->contours().set(contours_of(options_.contours, content_->scale));
+        view_->approach_vertices(view_->vertices_max(), 1e9);  // at once: nothing is drawn yet
+        vertices_share_ = 1.0;
         view_->molecules().set_look(options_.look);
+        if (window_.software()) view_->molecules().set_shapes_max(kShapesMaxInSoftware);
         camera_.frame(view_->radius_a());
         fit_.reset();
         outcome_ = FitOutcome{};
@@ -243,15 +250,16 @@ private:
     }
 
     void obey_level() {
-        if (!view_ || !content_->mesh) return;
+        if (!view_) return;
         const PathLevel* const path = controller_.attached() && controller_.have_levels
                                           ? find_path(controller_.levels, kMeshPath)
                                           : nullptr;
         // Without a controller the surface stays as it was last told; at first that is all of it.
-        if (path != nullptr)
-            vertices_wanted_ =
-                vertices_for(*path, content_->mesh->vertices_min(), content_->mesh->vertices());
-        view_->approach_vertices(vertices_wanted_, adapt_budget_s(clock_.frame_s()));
+        const std::uint32_t most = view_->vertices_max();
+        if (path != nullptr && most > 0)
+            vertices_share_ = vertices_for(*path, view_->vertices_min(), most) / static_cast<double>(most);
+        view_->approach_vertices(static_cast<std::uint32_t>(std::lround(vertices_share_ * most)),
+                                 adapt_budget_s(clock_.frame_s()));
         state_.scene.mesh_error_m = view_->error_m();
     }
 
@@ -341,6 +349,12 @@ private:
         view_options_.box = t.box;
         view_options_.style = static_cast<SurfaceStyle>(t.style);
         view_->draw(camera_, view_options_, view);
+        if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
+            left_out_ = left_out;
+            if (left_out > 0)
+                spdlog::info("bodies drawn as tubes, as this renderer has no time for their atoms: {}",
+                             left_out);
+        }
     }
 
     void paint_grounds(const Layout& layout, float to_px, int height_px) {
@@ -426,7 +440,7 @@ private:
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
-    std::uint32_t vertices_wanted_ = 0;
+    double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     std::unique_ptr<FitWorker> fit_;
     FitOutcome outcome_;
     ViewOptions view_options_;
@@ -434,6 +448,7 @@ private:
     PosePredictor predictors_[kBodiesMax];
     std::vector<Pose> places_;
     std::vector<DrawnBody> drawn_;
+    std::size_t left_out_ = 0;
     std::future<std::shared_ptr<const SceneContent>> loading_;
     std::string loading_path_;
     bool picture_wanted_ = false, picture_failed_ = false;

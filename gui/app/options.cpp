@@ -44,6 +44,13 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--colour", options.look.colouring, "bodies by chain, element or body")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{
             {"chain", Colouring::chain}, {"element", Colouring::element}, {"body", Colouring::body}}));
+    app.add_option("--contour",
+                   "a surface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four: the level in the map's unit, "
+                   "with s in sigma, with % of the map's volume; styles glass, solid, wire")
+        ->expected(1, static_cast<int>(kContoursMax))
+        ->type_name("CONTOUR")
+        ->each(
+            [&options](const std::string& text) { options.contours.push_back(read_contour_option(text)); });
     app.add_flag("!--no-depth-cue", options.depth_cue, "do not fade what lies far behind");
     try {
         app.parse(argc, argv);

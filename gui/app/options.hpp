@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "gui/app/contour_option.hpp"
 #include "gui/render/looks.hpp"
 
 namespace tact {
@@ -15,7 +17,8 @@ struct GuiOptions {
     int width_px = 1280, height_px = 720;
     bool hidden = false;
     bool plain = false;
-    MoleculeLook look;  // of all bodies at the start
+    MoleculeLook look;                    // of all bodies at the start
+    std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;
     double fps_max = -1.0;  // 0: no limit; below: 60 where the display does not pace
 };

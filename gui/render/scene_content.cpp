@@ -57,6 +57,7 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
         content->mesh = std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
     if (file.count({'G', 'R', 'I', 'D'}) > 0) {
         content->grid = read_grid(file);
+        content->scale = ContourScale(content->grid, content->meta.map_mean, content->meta.map_sigma);
         content->box_min_model_m = content->grid.origin_m;
         for (int axis = 0; axis < 3; ++axis)
             content->box_max_model_m[axis] =

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gui/render/bonds.hpp"
+#include "ipc/assets/contour_scale.hpp"
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
@@ -24,6 +25,7 @@ struct SceneContent {
     std::string note;
     std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
     DensityGrid grid;                       // empty: none
+    ContourScale scale;                     // what a level of it means
     std::vector<Structure> bodies;
     std::vector<Codebook> codebooks;       // one per body
     std::vector<std::vector<Bond>> bonds;  // one list per body

@@ -48,9 +48,11 @@ std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt) 
     return best;
 }
 
-SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& programs)
-    : content_(std::move(content)), programs_(programs), molecules_(content_, programs) {
-    if (content_->mesh) surface_ = std::make_unique<Surface>(*content_->mesh);
+SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine)
+    : content_(std::move(content)),
+      programs_(programs),
+      molecules_(content_, programs),
+      contours_(content_, programs, std::move(refine)) {
     for (const Codebook& codebook : content_->codebooks) {
         codebooks_.emplace_back();
         for (const Codebook::Level& level : codebook.levels) codebooks_.back().push_back(make_points(level));
@@ -91,12 +93,6 @@ SceneView::Points SceneView::make_points(const Codebook::Level& level) {
     return points;
 }
 
-void SceneView::approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
-    if (surface_) surface_->approach(wanted, budget_s);
-}
-
-std::size_t SceneView::upload() { return surface_ ? surface_->upload() : 0; }
-
 float SceneView::radius_a() const { return static_cast<float>(content_->radius_m / kAngstromM); }
 
 float SceneView::arrow_a_per_n() const {
@@ -111,11 +107,13 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
+    const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
+    if (options.surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     if (options.codebook || options.graph) draw_codebook(pass);
     if (options.box) draw_box(pass);
-    if (options.surface && surface_) draw_surface(pass);
+    if (options.surface) contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
     glDisable(GL_BLEND);
     if (options.force) draw_force(pass);
     glDisable(GL_DEPTH_TEST);
@@ -175,22 +173,6 @@ void SceneView::draw_box(const Pass& pass) {
     programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, kBoxRgba);
     glBindVertexArray(box_.array.get());
     glDrawElements(GL_LINES, box_.edge_indices, GL_UNSIGNED_INT, nullptr);
-}
-
-void SceneView::draw_surface(const Pass& pass) {
-    const bool glass = pass.options.style == SurfaceStyle::glass;
-    programs_.use_lit(pass.eye_from_scene * scene_from_model(content_->centre_model_m), pass.projection,
-                      pass.haze, {.glass = glass});
-    // Glass is not sorted: all of it has one colour, so the order hardly shows, and one pass costs half of
-    // two.
-    if (glass)
-        glDepthMask(GL_FALSE);
-    else
-        glDisable(GL_BLEND);
-    if (pass.options.style == SurfaceStyle::wire) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    surface_->draw();
-    if (pass.options.style == SurfaceStyle::wire) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glDepthMask(GL_TRUE);
 }
 
 }  // namespace tact

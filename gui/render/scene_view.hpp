@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "gui/render/camera.hpp"
+#include "gui/render/contours.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
-#include "gui/render/surface.hpp"
 #include "gui/render/triangle_buffers.hpp"
 
 namespace tact {
@@ -37,23 +37,26 @@ struct ViewFrame {
 
 class SceneView {
 public:
-    SceneView(std::shared_ptr<const SceneContent> content, Programs& programs);
+    // `refine` makes the final surface of a contour that was moved (ContourWorker); without it they stay
+    // plain.
+    SceneView(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine = {});
 
     [[nodiscard]] const SceneContent& content() const { return *content_; }
-    // Of the surface; as far as `budget_s` of this frame allows, see Surface.
-    void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
-    std::size_t upload();
+    // Of all surfaces together; as far as `budget_s` of this frame allows, see Surface.
+    void approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
+        contours_.approach_vertices(wanted, budget_s);
+    }
+    std::size_t upload() { return contours_.upload(); }
     void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
+    // What a person chose of bodies and surfaces.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
+    [[nodiscard]] Contours& contours() { return contours_; }
 
-    [[nodiscard]] std::uint32_t vertices() const { return surface_ ? surface_->cut().vertices() : 0; }
-    [[nodiscard]] std::uint32_t triangles() const { return surface_ ? surface_->cut().triangles() : 0; }
-    [[nodiscard]] std::uint32_t vertices_max() const {
-        return content_->mesh ? content_->mesh->vertices() : 0;
-    }
-    [[nodiscard]] double error_m() const {
-        return surface_ ? static_cast<double>(surface_->cut().error_m()) : 0.0;
-    }
+    [[nodiscard]] std::uint32_t vertices() const { return contours_.vertices(); }
+    [[nodiscard]] std::uint32_t triangles() const { return contours_.triangles(); }
+    [[nodiscard]] std::uint32_t vertices_min() const { return contours_.vertices_min(); }
+    [[nodiscard]] std::uint32_t vertices_max() const { return contours_.vertices_max(); }
+    [[nodiscard]] double error_m() const { return contours_.error_m(); }
     [[nodiscard]] float radius_a() const;
     // What the arrow stands for: its length in ångström for one newton.
     [[nodiscard]] float arrow_a_per_n() const;
@@ -69,13 +72,12 @@ private:
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
     void draw_box(const Pass& pass);
-    void draw_surface(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;
-    std::unique_ptr<Surface> surface_;
     Molecules molecules_;
+    Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
     TriangleBuffers arrow_;
     Points box_;

@@ -46,9 +46,9 @@ std::size_t Surface::upload() {
     return sent;
 }
 
-void Surface::draw() {
+void Surface::draw(const Eigen::Vector3f& colour) {
     glBindVertexArray(array_.get());
-    glVertexAttrib4f(2, 0.66F, 0.80F, 0.95F, 1.0F);
+    glVertexAttrib4f(2, colour.x(), colour.y(), colour.z(), 1.0F);
     draw_count_.clear();
     draw_first_.clear();
     for (const MeshRange& range : cut_.draws()) {
@@ -58,6 +58,30 @@ void Surface::draw() {
     }
     glMultiDrawElements(GL_TRIANGLES, draw_count_.data(), GL_UNSIGNED_INT, draw_first_.data(),
                         static_cast<GLsizei>(draw_count_.size()));
+    glBindVertexArray(0);
+}
+
+std::size_t PlainSurface::fill(const PlainMesh& mesh) {
+    const std::size_t vertex_bytes = mesh.vertex.size() * sizeof(MeshVertex);
+    const std::size_t index_bytes = mesh.index.size() * sizeof(std::uint32_t);
+    glBindVertexArray(array_.get());
+    glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertex_bytes), mesh.vertex.data(), GL_STREAM_DRAW);
+    attribute(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), 0);
+    attribute(1, 4, GL_SHORT, GL_TRUE, sizeof(MeshVertex), 12);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(index_bytes), mesh.index.data(),
+                 GL_STREAM_DRAW);
+    glBindVertexArray(0);
+    vertex_count_ = static_cast<std::uint32_t>(mesh.vertex.size());
+    index_count_ = static_cast<std::uint32_t>(mesh.index.size());
+    return vertex_bytes + index_bytes;
+}
+
+void PlainSurface::draw(const Eigen::Vector3f& colour) {
+    glBindVertexArray(array_.get());
+    glVertexAttrib4f(2, colour.x(), colour.y(), colour.z(), 1.0F);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(index_count_), GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
 }
 

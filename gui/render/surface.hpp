@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gui/render/contour_extract.hpp"
 #include "gui/render/gl.hpp"
 #include "gui/render/mesh_pace.hpp"
 #include "ipc/assets/mesh_cut.hpp"
@@ -22,7 +23,7 @@ public:
     void approach(std::uint32_t wanted, double budget_s) noexcept;
     // Bytes sent.
     std::size_t upload();
-    void draw();  // with a program in use
+    void draw(const Eigen::Vector3f& colour);  // with a program in use
     [[nodiscard]] const MeshCut& cut() const { return cut_; }
 
 private:
@@ -34,6 +35,20 @@ private:
     std::vector<const void*> draw_first_;
     GlVertexArray array_;
     GlBuffer vertices_, indices_;
+};
+
+// A surface without levels of detail, sent as a whole.
+class PlainSurface {
+public:
+    std::size_t fill(const PlainMesh& mesh);  // bytes sent
+    void draw(const Eigen::Vector3f& colour);
+    [[nodiscard]] std::uint32_t vertices() const { return vertex_count_; }
+    [[nodiscard]] std::uint32_t triangles() const { return index_count_ / 3; }
+
+private:
+    GlVertexArray array_;
+    GlBuffer vertices_, indices_;
+    std::uint32_t vertex_count_ = 0, index_count_ = 0;
 };
 
 }  // namespace tact

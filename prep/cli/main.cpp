@@ -7,6 +7,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "prep/bake/bake_contour.hpp"
 #include "prep/bake/bake_docking.hpp"
 #include "prep/cli/bench_command.hpp"
 #include "prep/cli/console.hpp"
@@ -25,9 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string map, scene;
+    std::string map, scene, source;
     std::vector<std::string> models;
     std::optional<double> contour, resolution_a, felt_resolution_a;
+    double level = 0.0;
     std::uint32_t vertices_max = 1'000'000;
     bool json = false;
 };
@@ -129,6 +131,18 @@ void bake(const Options& o, bool demo) {
     }
 }
 
+void contour(const Options& o) {
+    check_target("write contour", o.scene, {o.source});
+    Console console;
+    SceneWriter out;
+    const BakedContour baked =
+        bake_contour(SceneFile::open(o.source), o.level, o.vertices_max, out, console.progress());
+    out.write(o.scene);
+    console.clear();
+    std::printf("%s: level %g, %zu vertices found, %u kept, down to %u; %u triangles\n", o.scene.c_str(),
+                o.level, baked.vertices_found, baked.vertices, baked.vertices_min, baked.triangles);
+}
+
 void info(const Options& o) {
     const SceneFile file = SceneFile::open(o.scene);
     const std::string text =
@@ -173,6 +187,12 @@ int run(int argc, char** argv) {
     CLI::App *simplify_parsed = nullptr, *bench_parsed = nullptr;
     const auto simplify_file = add_simplify(app, simplify_parsed);
     const auto bench = add_bench(app, bench_parsed);
+    CLI::App* const level = app.add_subcommand("contour", "the surface of a scene's map at another level");
+    level->add_option("scene", o.source, "a baked scene")->required();
+    level->add_option("--level", o.level, "in the map's unit")->required();
+    level->add_option("-o,--output", o.scene, "the file to write")->required();
+    level->add_option("--vertices-max", o.vertices_max, "most vertices of the surface; 0: all")
+        ->capture_default_str();
     CLI::App* const show = app.add_subcommand("info", "what a scene holds; checks all of it");
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");
@@ -188,6 +208,8 @@ int run(int argc, char** argv) {
         bench();
     } else if (show->parsed()) {
         info(o);
+    } else if (level->parsed()) {
+        contour(o);
     } else if (dock->parsed() || demo->parsed()) {
         bake(o, demo->parsed());
     }

@@ -1,1 +1,4 @@
 # Benches of gui.
+if(TACT_GUI)
+    tact_bench(bench/draw_bench.cpp USES gui_app gui_panels gui_render assets base)
+endif()

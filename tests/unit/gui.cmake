@@ -1,5 +1,6 @@
 # Tests of gui.
 if(TACT_GUI)
+    find_package(CLI11 REQUIRED)
     tact_test(unit/gui_plot_series_test.cpp USES gui_panels)
     tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
     tact_test(unit/gui_link_test.cpp USES gui_link gui_panels topics shm base)
@@ -10,6 +11,10 @@ if(TACT_GUI)
     add_dependencies(gui_window_test tact-gui)
     set_tests_properties(gui_window_test PROPERTIES RUN_SERIAL ON)
     tact_test(unit/gui_shapes_test.cpp USES gui_render assets base)
+    tact_test(unit/gui_contour_test.cpp USES gui_app gui_render prep_mesh topics shm assets base
+        SYSTEM CLI11::CLI11 TIMEOUT 300)
+    target_compile_definitions(gui_contour_test PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
+    add_dependencies(gui_contour_test tact-prep)
     tact_test(unit/gui_draw_test.cpp USES gui_app gui_panels gui_render launch prep_mesh topics shm assets base
         TIMEOUT 300)
 endif()

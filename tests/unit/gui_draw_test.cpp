@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
@@ -10,6 +11,7 @@
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_fake.hpp"
+#include "tests/unit/gui_wait.hpp"
 
 // Graphics drivers and X libraries keep memory to the end on purpose.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
@@ -233,14 +235,14 @@ protected:
 };
 
 TEST_F(GuiDrawScene, EachStyleDrawsSomethingOfItsOwn) {
-    std::set<std::vector<std::uint8_t>> pictures;
+    std::set<std::string> pictures;
     for (const auto style :
          {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
         for (const auto colouring : {Colouring::chain, Colouring::body}) {
             view_->molecules().set_look({style, colouring});
             const Image image = picture(std::array{home_});
             EXPECT_GT(drawn(image), 100U);
-            pictures.insert(image.rgb);
+            pictures.insert({image.rgb.begin(), image.rgb.end()});
         }
     EXPECT_EQ(pictures.size(), 8U);
 }
@@ -270,6 +272,67 @@ TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {
     view_->molecules().set_shapes_max(content_->bodies[0].size() - 1);
     EXPECT_EQ(picture(std::array{copy}).rgb, tube.rgb);
     EXPECT_EQ(view_->molecules().left_out(), 1U);
+}
+
+TEST_F(GuiDrawScene, ContoursShareTheVerticesAndStayUntilBetterOnesCome) {
+    const auto refine = [this](double level, const std::function<bool()>&) {
+        return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
+    };
+    view_.emplace(content_, *programs_, refine);
+    options_.surface = true;
+    const double own = content_->meta.contour;
+    EXPECT_EQ(view_->vertices_max(), content_->mesh->vertices());
+    view_->approach_vertices(view_->vertices_max(), 1e9);
+    view_->upload();
+    options_.style = SurfaceStyle::solid;
+    const Image alone = picture({});
+    std::array<Contour, 3> contours;
+    contours[0].level = own;
+    contours[1].level = 0.6 * own;
+    contours[2].level = 1.4 * own;
+    view_->contours().set(contours);
+    EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
+    EXPECT_EQ(picture({}).rgb, alone.rgb);
+    ASSERT_TRUE(test::wait_for([&] {
+        view_->upload();
+        return view_->contours().state(1).final && view_->contours().state(2).final;
+    }));
+    EXPECT_EQ(view_->contours().state(1).level, 0.6 * own);
+    EXPECT_NE(picture({}).rgb, alone.rgb);  // the outer one hides it
+    const std::uint32_t most = view_->vertices_max();
+    EXPECT_GT(most, content_->mesh->vertices());
+    EXPECT_EQ(view_->vertices(), most);
+    view_->approach_vertices(most / 2, 1e9);
+    EXPECT_NEAR(static_cast<double>(view_->vertices()), 0.5 * most, 3.0);
+    // Hidden ones are not drawn and not counted.
+    contours[1].shown = contours[2].shown = false;
+    view_->contours().set(contours);
+    view_->approach_vertices(view_->vertices_max(), 1e9);
+    view_->upload();
+    EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
+    EXPECT_EQ(picture({}).rgb, alone.rgb);
+}
+
+TEST_F(GuiDrawScene, AMovedContourIsSeenAtEveryStyleAndOpacity) {
+    options_.surface = true;
+    std::set<std::string> pictures;
+    Contour contour;
+    contour.level = 0.8 * content_->meta.contour;
+    view_->contours().set(std::array{contour});
+    ASSERT_TRUE(test::wait_for([&] {
+        view_->upload();
+        return view_->contours().state(0).level == contour.level;
+    }));
+    for (const auto style : {SurfaceStyle::glass, SurfaceStyle::solid, SurfaceStyle::wire})
+        for (const float opacity : {0.4F, 1.0F}) {
+            contour.style = style;
+            contour.opacity = opacity;
+            view_->contours().set(std::array{contour});
+            const Image image = picture({});
+            EXPECT_GT(drawn(image), 200U);
+            pictures.insert({image.rgb.begin(), image.rgb.end()});
+        }
+    EXPECT_EQ(pictures.size(), 6U);
 }
 
 }  // namespace

@@ -145,6 +145,19 @@ TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
     }
 }
 
+TEST_F(GuiWindow, StartsWithTheLooksOfTheCommandLine) {
+    const std::string picture = folder_ + "/looks.png";
+    EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1", "--screenshot", picture, "--molecule", "spheres",
+                   "--colour", "element", "--no-depth-cue", "--contour", "0.5", "0.3:ff8000:0.5:wire"})
+                  ->wait(),
+              0)
+        << log();
+    EXPECT_GT(colours(picture, 640, 480).size(), 100U) << log();
+    EXPECT_NE(gui({scene(), "--contour", "half"})->wait(), 0);
+    EXPECT_NE(log().find("half"), std::string::npos) << log();
+    EXPECT_NE(gui({scene(), "--molecule", "ribbon"})->wait(), 0);
+}
+
 TEST_F(GuiWindow, TheFrameAfterALevelChangeDrawsThatManyVertices) {
     fake::Controller controller("t", scene(), checksum_);
     const auto process = gui({});

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "ipc/assets/contour_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "tests/unit/prep_samples.hpp"
 
@@ -105,6 +106,21 @@ TEST_F(Program, BakesTheDemoAndTellsWhatIsInIt) {
     EXPECT_EQ(nlohmann::json::parse(info.out)["checksum"], json["checksum"]);
     EXPECT_NE(run({"info", scene}).out.find("world per model: "), std::string::npos);
     EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Program, BakesAnotherContourOfAScene) {
+    const std::string scene = folder_ / "ring.tact", out = folder_ / "c.tact";
+    ASSERT_EQ(run({"demo", "dock", "-o", scene}).code, 0);
+    const SceneFile file = SceneFile::open(scene);
+    const double level = 1.25 * read_meta(file).contour;
+    char text[40];
+    std::snprintf(text, sizeof text, "--level=%.17g", level);
+    const Ended e = run({"contour", scene, text, "-o", out, "--vertices-max", "500"});
+    ASSERT_EQ(e.code, 0) << e.err;
+    EXPECT_EQ(read_contour(SceneFile::open(out), {file.checksum(), level})->vertices(), 500U);
+    expect_refused({"contour", scene, "--level", "1e9", "-o", folder_ / "s.tact"}, {"no surface", "1e+09"});
+    expect_refused({"contour", out, "--level", "1", "-o", folder_ / "s.tact"}, {"GRID"});
+    expect_refused({"contour", scene, "--level", "1", "-o", scene}, {"input"});
 }
 
 TEST_F(Program, BakesAMapAndAStructureFromFiles) {

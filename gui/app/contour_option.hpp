@@ -1,0 +1,29 @@
+// A contour as it is written on a command line: LEVEL[:RRGGBB][:OPACITY][:STYLE].
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gui/render/contours.hpp"
+
+namespace tact {
+
+enum class LevelUnit { map, sigma, volume };  // volume: fraction of the map's box that is inside
+
+struct ContourOption {
+    double value = 0.0;
+    LevelUnit unit = LevelUnit::map;
+    std::optional<Eigen::Vector3f> colour;
+    float opacity = 1.0F;
+    std::optional<SurfaceStyle> style;
+};
+
+// "1.5", "2.5s", "8%", "0.7:ffc259:0.5:solid". Throws CLI::ValidationError in words.
+[[nodiscard]] ContourOption read_contour_option(const std::string& text);
+[[nodiscard]] double level_of(const ContourOption& option, const ContourScale& scale);
+[[nodiscard]] std::vector<Contour> contours_of(std::span<const ContourOption> options,
+                                               const ContourScale& scale);
+
+}  // namespace tact

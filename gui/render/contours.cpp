@@ -1,0 +1,212 @@
+#include "gui/render/contours.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact {
+
+Eigen::Vector3f contour_colour(std::size_t contour) {
+    // Cold and pale first, as what is looked through; the inner ones warm.
+    static const std::array<Eigen::Vector3f, kContoursMax> kColours{
+        {{0.66F, 0.80F, 0.95F}, {0.98F, 0.76F, 0.35F}, {0.55F, 0.86F, 0.62F}, {0.93F, 0.60F, 0.78F}}};
+    return kColours[contour % kContoursMax];
+}
+
+Contours::Contours(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine)
+    : content_(std::move(content)), programs_(programs) {
+    if (!content_->grid.values.empty())
+        worker_ = std::make_unique<ContourWorker>(content_, std::move(refine));
+    Contour own;
+    own.level = content_->meta.contour;
+    if (content_->mesh || worker_) set(std::array{own});
+}
+
+void Contours::set(std::span<const Contour> contours) {
+    wanted_.assign(contours.begin(),
+                   contours.begin() + static_cast<std::ptrdiff_t>(std::min(contours.size(), kContoursMax)));
+    for (std::size_t i = 0; i < kContoursMax; ++i) {
+        Slot& slot = slot_[i];
+        const bool want = i < wanted_.size() && wanted_[i].shown;
+        const bool own = want && content_->mesh && wanted_[i].level == content_->meta.contour;
+        std::optional<double> ask;
+        if (want && !own && !(slot.surface && slot.state.level == wanted_[i].level)) ask = wanted_[i].level;
+        if (worker_ && ask != slot.asked) worker_->wish(i, ask);
+        slot.asked = ask;
+        if (own && !(slot.surface && slot.mesh.get() == content_->mesh.get()))
+            show_mesh(slot, {content_, content_->mesh.get()}, wanted_[i].level);
+    }
+}
+
+ContourState Contours::state(std::size_t contour) const {
+    return contour < kContoursMax ? slot_[contour].state : ContourState{};
+}
+
+void Contours::show_mesh(Slot& slot, std::shared_ptr<const ProgressiveMesh> mesh, double level) {
+    slot.surface.reset();
+    slot.mesh = std::move(mesh);
+    slot.surface = std::make_unique<Surface>(*slot.mesh);
+    // At once: its base would be seen for a moment otherwise.
+    slot.surface->approach(static_cast<std::uint32_t>(std::round(share_ * slot.mesh->vertices())), 1e9);
+    slot.plain = PlainSurface();
+    slot.plain_full = 0;
+    slot.state = ContourState{};
+    slot.state.level = level;
+    slot.state.final = true;
+}
+
+void Contours::take_news(std::size_t contour, std::size_t& bytes) {
+    std::optional<ContourOutcome> news = worker_->take(contour);
+    Slot& slot = slot_[contour];
+    if (!news || !slot.asked) return;
+    if (news->mesh) {
+        show_mesh(slot, std::move(news->mesh), news->level);
+    } else if (news->plain) {
+        slot.surface.reset();
+        slot.mesh.reset();
+        bytes += slot.plain.fill(*news->plain);
+        slot.plain_full = news->vertices_full;
+        slot.state = ContourState{};
+        slot.state.level = news->level;
+        slot.state.stride = news->stride;
+        slot.state.final = news->plain->empty();
+    }
+    slot.state.error = std::move(news->error);
+    slot.state.extract_s = news->extract_s;
+}
+
+std::size_t Contours::upload() {
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; worker_ && i < kContoursMax; ++i) take_news(i, bytes);
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i) && slot_[i].surface) bytes += slot_[i].surface->upload();
+    return bytes;
+}
+
+bool Contours::shown(std::size_t contour) const { return contour < wanted_.size() && wanted_[contour].shown; }
+
+std::uint32_t Contours::full(const Slot& slot) const {
+    return slot.mesh ? slot.mesh->vertices() : slot.plain_full;
+}
+
+void Contours::approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
+    const std::uint32_t most = vertices_max();
+    share_ = most > 0 ? std::min(1.0, static_cast<double>(wanted) / most) : 1.0;
+    apply_share(budget_s);
+}
+
+void Contours::apply_share(double budget_s) noexcept {
+    const auto surfaces = static_cast<double>(std::max<std::size_t>(wanted_.size(), 1));
+    double plain = 0.0;
+    for (std::size_t i = 0; i < kContoursMax; ++i) {
+        if (!shown(i)) continue;
+        const double part = std::round(share_ * full(slot_[i]));
+        if (slot_[i].surface)
+            slot_[i].surface->approach(static_cast<std::uint32_t>(part), budget_s / surfaces);
+        else
+            plain = std::max(plain, part);
+    }
+    // A surface of fewer vertices than this tells nothing of the shape.
+    constexpr double kLeast = 3000.0;
+    if (worker_)
+        worker_->set_vertices_max(share_ >= 1.0 ? ContourWorker::kPlainVerticesMax
+                                                : static_cast<std::uint32_t>(std::clamp(plain, kLeast, 1e9)));
+}
+
+std::uint32_t Contours::vertices() const {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i))
+            sum += slot_[i].surface ? slot_[i].surface->cut().vertices() : slot_[i].plain.vertices();
+    return sum;
+}
+
+std::uint32_t Contours::triangles() const {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i))
+            sum += slot_[i].surface ? slot_[i].surface->cut().triangles() : slot_[i].plain.triangles();
+    return sum;
+}
+
+std::uint32_t Contours::vertices_min() const {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i) && slot_[i].mesh) sum += slot_[i].mesh->vertices_min();
+    return sum;
+}
+
+std::uint32_t Contours::vertices_max() const {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i)) sum += full(slot_[i]);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(sum, 1U << 30U));
+}
+
+double Contours::error_m() const {
+    double most = 0.0;
+    for (std::size_t i = 0; i < kContoursMax; ++i)
+        if (shown(i) && slot_[i].surface)
+            most = std::max(most, static_cast<double>(slot_[i].surface->cut().error_m()));
+    return most;
+}
+
+bool Contours::opaque(const Contour& contour, SurfaceStyle otherwise) const {
+    return contour.style.value_or(otherwise) != SurfaceStyle::glass && contour.opacity >= 1.0F;
+}
+
+void Contours::draw_opaque(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
+                           SurfaceStyle otherwise) {
+    glDisable(GL_BLEND);
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+        if (shown(i) && opaque(wanted_[i], otherwise)) draw(i, eye, projection, haze, otherwise);
+}
+
+void Contours::draw_clear(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
+                          SurfaceStyle otherwise) {
+    std::vector<std::size_t> inside_first;
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+        if (shown(i) && !opaque(wanted_[i], otherwise)) inside_first.push_back(i);
+    std::sort(inside_first.begin(), inside_first.end(),
+              [this](std::size_t a, std::size_t b) { return wanted_[a].level > wanted_[b].level; });
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    for (const std::size_t i : inside_first) draw(i, eye, projection, haze, otherwise);
+    glDisable(GL_BLEND);
+}
+
+void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection,
+                    const Haze& haze, SurfaceStyle otherwise) {
+    const Contour& contour = wanted_[i];
+    Slot& slot = slot_[i];
+    const SurfaceStyle style = contour.style.value_or(otherwise);
+    programs_.use_lit(
+        eye, projection, haze,
+        {.glass = style == SurfaceStyle::glass, .opacity = std::clamp(contour.opacity, 0.0F, 1.0F)});
+    const auto triangles = [&] {
+        if (slot.surface)
+            slot.surface->draw(contour.colour);
+        else
+            slot.plain.draw(contour.colour);
+    };
+    if (style == SurfaceStyle::wire) {
+        glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+        triangles();
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    } else if (style == SurfaceStyle::glass) {
+        glDepthMask(GL_FALSE);
+        triangles();
+        glDepthMask(GL_TRUE);
+    } else if (contour.opacity < 1.0F) {
+        // Its nearest layer alone, as a person expects of one thing: first the depth, then the colour on it.
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        triangles();
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthFunc(GL_LEQUAL);
+        triangles();
+        glDepthFunc(GL_LESS);
+    } else {
+        triangles();
+    }
+}
+
+}  // namespace tact

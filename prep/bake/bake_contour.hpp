@@ -1,0 +1,20 @@
+// The surface of a baked scene's map at another level, as a file of its own (ipc/assets/contour_mesh.hpp).
+//
+// Fails by  StartupError: the scene has no map, or no surface lies at the level. Cancelled from progress.
+#pragma once
+
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/base/progress.hpp"
+
+namespace tact {
+
+struct BakedContour {
+    std::size_t vertices_found = 0;
+    std::uint32_t vertices = 0, vertices_min = 0, triangles = 0;
+};
+
+// vertices_max 0: all of them.
+BakedContour bake_contour(const SceneFile& scene, double level, std::uint32_t vertices_max, SceneWriter& out,
+                          const Progress& progress = {});
+
+}  // namespace tact

@@ -1,0 +1,114 @@
+// Time of one picture: bodies by style, as many atoms as a large complex has; contours being extracted.
+//
+// Size      960 x 540 pixels, 27,000 atoms in a ball as dense as a protein, which fills the height.
+// Measured  see gui/README.md.
+// Skipped   where there is no display.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "gui/app/window.hpp"
+#include "gui/render/scene_view.hpp"
+
+namespace tact {
+namespace {
+
+constexpr int kWidth = 960, kHeight = 540;
+
+Structure ball_of_atoms(std::size_t atoms) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    // 20 cubic ångström an atom, hydrogens being left out.
+    const double radius_m = 1e-10 * std::cbrt(20.0 * static_cast<double>(atoms) * 0.75 / 3.14159265);
+    Structure s;
+    while (s.size() < atoms) {
+        const Vec3 p(unit(random), unit(random), unit(random));
+        if (p.norm() > 1.0) continue;
+        s.x_m.push_back(static_cast<float>(radius_m * p.x()));
+        s.y_m.push_back(static_cast<float>(radius_m * p.y()));
+        s.z_m.push_back(static_cast<float>(radius_m * p.z()));
+    }
+    s.element.assign(atoms, 6);
+    s.residue.assign(atoms, 1);
+    s.chain.assign(atoms, 0);
+    s.trace.resize(atoms);
+    for (std::size_t i = 0; i < atoms; i += 8) s.trace[i] = 1;
+    return s;
+}
+
+void draw(benchmark::State& state) {
+    if (std::getenv("DISPLAY") == nullptr) {
+        state.SkipWithError("no display");
+        return;
+    }
+    Window window(kWidth, kHeight, true);
+    OffscreenTarget target(kWidth, kHeight);
+    target.bind();
+    auto content = std::make_shared<SceneContent>();
+    content->bodies.push_back(ball_of_atoms(27000));
+    content->bonds.push_back(find_bonds(content->bodies[0]));
+    content->codebooks.emplace_back();
+    content->radius_m = 52e-10;
+    Programs programs;
+    SceneView view(content, programs);
+    Camera camera;
+    camera.frame(view.radius_a());
+    view.molecules().set_look({static_cast<MoleculeStyle>(state.range(0)), Colouring::chain});
+    const std::array bodies{DrawnBody{Pose{Vec3::Zero(), Quat::Identity()}, 0, 1, false}};
+    ViewFrame frame{};
+    frame.width_px = kWidth;
+    frame.height_px = kHeight;
+    frame.bodies = bodies;
+    frame.active = 1;
+    glViewport(0, 0, kWidth, kHeight);
+    for (auto _ : state) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        camera.rotate(3.0F, 0.0F, kHeight);
+        view.draw(camera, {}, frame);
+        glFinish();
+    }
+    state.SetLabel(window.renderer());
+}
+BENCHMARK(draw)
+    ->ArgName("style: trace, tube, sticks, spheres")
+    ->DenseRange(0, 3)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+DensityGrid blobs(std::uint32_t n) {
+    DensityGrid grid;
+    grid.size = {n, n, n};
+    grid.spacing_m = Vec3::Constant(1e-10);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> unit(0.25, 0.75);
+    std::vector<Vec3> centre;
+    for (int i = 0; i < 40; ++i) centre.emplace_back(n * unit(random), n * unit(random), n * unit(random));
+    const double width = 0.07 * n;
+    for (std::uint32_t z = 0; z < n; ++z)
+        for (std::uint32_t y = 0; y < n; ++y)
+            for (std::uint32_t x = 0; x < n; ++x) {
+                double sum = 0.0;
+                for (const Vec3& c : centre)
+                    sum += std::exp(-(Vec3(x, y, z) - c).squaredNorm() / (width * width));
+                grid.values.push_back(static_cast<float>(sum));
+            }
+    return grid;
+}
+
+void extract(benchmark::State& state) {
+    const DensityGrid grid = blobs(100);
+    const DensityGrid thin = thinned(grid, static_cast<std::uint32_t>(state.range(0)));
+    double level = 0.5;
+    std::size_t vertices = 0;
+    for (auto _ : state) {
+        vertices = extract_contour(thin, level).vertex.size();
+        level = level > 1.5 ? 0.5 : level + 0.01;
+    }
+    state.counters["vertices"] = static_cast<double>(vertices);
+}
+BENCHMARK(extract)->ArgName("stride, of 100^3")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tact
