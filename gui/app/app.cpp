@@ -9,20 +9,23 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <future>
 #include <memory>
 #include <vector>
 
+#include "gui/app/body_list.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/contour_child.hpp"
+#include "gui/app/contour_rows.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/describe.hpp"
-#include "gui/app/fit_worker.hpp"
+#include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
+#include "gui/app/grounds.hpp"
 #include "gui/app/mesh_level.hpp"
 #include "gui/app/png.hpp"
-#include "gui/app/pose_predictor.hpp"
 #include "gui/app/region_checks.hpp"
+#include "gui/app/scene_loader.hpp"
+#include "gui/app/show_controller.hpp"
 #include "gui/app/window.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/error.hpp"
@@ -42,8 +45,6 @@ void catch_signals() {
     sigaction(SIGHUP, &action, nullptr);
 }
 
-constexpr std::size_t kEventsKept = 100;
-constexpr std::size_t kEventsPerFrame = 64;
 // Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
 // (tests/bench/draw_bench.cpp).
 constexpr std::size_t kShapesMaxInSoftware = 8000;
@@ -78,7 +79,7 @@ public:
         for (bool last = false; !last;) {
             const Instant now = Monotonic::now();
             // A picture is asked for to see the scene, so the time is not over before it is there.
-            const bool picture_waits = !options_.screenshot.empty() && loading_.valid();
+            const bool picture_waits = !options_.screenshot.empty() && loader_.running();
             last = stop_signal != 0 || window_.close_wanted() ||
                    (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
             frame(now, last && !options_.screenshot.empty());
@@ -98,6 +99,7 @@ private:
         follow_controller(now_ns);
         follow_scene();
         handle_input();
+        if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
         obey_level();
         clock_.end_part(FramePart::adapt);
         if (view_) view_->upload();
@@ -121,7 +123,7 @@ private:
         }
         if (news.arrived) {
             spdlog::info("attached to the controller of session {}", options_.session);
-            for (PosePredictor& p : predictors_) p.clear();
+            list_.forget_motion();
             commands_.forget();
             std::string path = controller_.scene_path();
             if (options_.scene.empty() && !path.empty() &&
@@ -129,72 +131,26 @@ private:
                 start_loading(path);
         }
         const Controller::Fresh fresh = controller_.read();
-        if (fresh.bodies) {
-            for (std::uint32_t i = 0; i < controller_.bodies.count; ++i) {
-                const BodyPlace& b = controller_.bodies.body[i];
-                Quat q(b.quat_model_body_xyzw[3], b.quat_model_body_xyzw[0], b.quat_model_body_xyzw[1],
-                       b.quat_model_body_xyzw[2]);
-                predictors_[i].add(
-                    controller_.bodies.taken_at_ns,
-                    {Vec3(b.pos_model_m[0], b.pos_model_m[1], b.pos_model_m[2]), q.normalized()});
-            }
-        }
-        if (fresh.health) add_health(controller_.health);
+        if (fresh.bodies) list_.follow(controller_.bodies);
+        if (fresh.health) add_health(controller_.health, state_.history);
         if (controller_.have_health) commands_.update(controller_.health, now_ns);
-        EventTopic event;
-        for (std::size_t i = 0; i < kEventsPerFrame && controller_.next_event(event); ++i) {
-            EventLine line = describe(event);
-            // What repeats, such as a limit that is reached again and again, must not push the rest out.
-            if (!state_.events.empty() && state_.events.front().code == line.code &&
-                line.grade == Grade::watch) {
-                line.count = state_.events.front().count + 1;
-                state_.events.front() = std::move(line);
-                continue;
-            }
-            state_.events.push_front(std::move(line));
-            if (state_.events.size() > kEventsKept) state_.events.pop_back();
-        }
-        state_.attached = controller_.attached();
-        state_.link_text = controller_.status_text();
-        state_.have_health = controller_.have_health;
-        state_.have_levels = controller_.have_levels;
-        state_.health = controller_.health;
-        state_.levels = controller_.levels;
-        state_.refused_records = controller_.refused();
-        state_.events_missed = controller_.events_missed();
-        state_.command_text = commands_.text();
-        using Stage = CommandSender::Stage;
-        state_.command_grade = commands_.stage() == Stage::done   ? Grade::good
-                               : commands_.stage() == Stage::sent ? Grade::unknown
-                                                                  : Grade::watch;
-    }
-
-    void add_health(const HealthTopic& h) {
-        History& to = state_.history;
-        to.rate_hz.add(to.now_s, h.force_rate_hz);
-        to.lateness_p50_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_p50_ns));
-        to.lateness_p99_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_p99_ns));
-        to.lateness_max_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_max_ns));
-        to.cycle_cost_s.add(to.now_s, 1e-9 * static_cast<double>(h.cycle_cost_p50_ns));
+        show_controller(controller_, commands_, state_);
     }
 
     void start_loading(const std::string& path) {
-        if (loading_.valid()) return;  // the newest is asked for again when this one is done
-        state_.scene.status = "Loading " + path + " ...";
-        loading_ = std::async(std::launch::async, [path] { return load_scene(path); });
-        loading_path_ = path;
+        if (loader_.start(path)) state_.scene.status = "Loading " + path + " ...";
     }
 
     void follow_scene() {
-        if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-            try {
-                content_ = loading_.get();
+        if (auto loaded = loader_.poll()) {
+            if (loaded->content) {
+                content_ = std::move(loaded->content);
                 use_scene();
-            } catch (const StartupError& e) {
-                spdlog::error("{}", e.what());
+            } else {
+                spdlog::error("{}", loaded->error);
                 const SceneFacts before = state_.scene;
                 state_.scene = content_ ? before : SceneFacts{};
-                state_.scene.status = e.what();
+                state_.scene.status = loaded->error;
             }
         }
         if (!content_ || !controller_.attached()) {
@@ -202,7 +158,7 @@ private:
             return;
         }
         const std::uint64_t running = controller_.scene_checksum();
-        state_.scene.warning = running != 0 && running != content_->checksum && !loading_.valid()
+        state_.scene.warning = running != 0 && running != content_->checksum && !loader_.running()
                                    ? "The controller runs another scene: " + controller_.scene_path()
                                    : std::string();
     }
@@ -214,16 +170,16 @@ private:
             view_->contours().set(contours_of(options_.contours, content_->scale));
         view_->approach_vertices(view_->vertices_max(), 1e9);  // at once: nothing is drawn yet
         vertices_share_ = 1.0;
-        view_->molecules().set_look(options_.look);
         if (window_.software()) view_->molecules().set_shapes_max(kShapesMaxInSoftware);
+        state_.toggles.molecule = static_cast<int>(options_.look.style);
+        state_.toggles.colouring = static_cast<int>(options_.look.colouring);
+        begin_contours(view_->contours(), content_->scale, state_.contours);
         camera_.frame(view_->radius_a());
-        fit_.reset();
-        outcome_ = FitOutcome{};
-        state_.fit = FitFacts{};
-        if (content_->grid.count() == 0 || content_->grid.values.empty() || content_->bodies.empty())
-            state_.fit.status = "The scene has no map or no structure to compare.";
-        else
-            fit_ = std::make_unique<FitWorker>(content_);
+        std::vector<Pose> homes;
+        for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
+        list_.start(homes);
+        if (controller_.have_bodies) list_.follow(controller_.bodies);
+        desk_.use(content_);
         state_.scene = describe(*content_);
         window_.set_title(std::string("Tact: ") + state_.scene.title);
         spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
@@ -236,7 +192,9 @@ private:
             const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y).view.height;
             if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
-            if (io.MouseWheel != 0.0F && !io.KeyAlt && !io.KeyCtrl && !io.KeyShift)
+            if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
+                nudge_contour(state_.contours, content_->scale, static_cast<double>(io.MouseWheel));
+            else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
                 camera_.zoom(io.MouseWheel);
         }
         for (const Key key : window_.take_keys()) {
@@ -244,9 +202,30 @@ private:
             if (key == Key::home) camera_.home();
             if (key == Key::style) state_.toggles.style = (state_.toggles.style + 1) % 3;
             if (key == Key::picture) picture_wanted_ = true;
+            if (key == Key::raise && content_) nudge_contour(state_.contours, content_->scale, 1.0);
+            if (key == Key::lower && content_) nudge_contour(state_.contours, content_->scale, -1.0);
             if (key == Key::help) state_.show_keys = !state_.show_keys;
-            if (key == Key::escape) state_.show_keys = false;
+            if (key == Key::escape && state_.show_keys)
+                state_.show_keys = false;
+            else
+                fitting_key(key);
         }
+    }
+
+    void fitting_key(Key key) {
+        const auto active = list_.active();
+        const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
+        const auto wish = [&](FitAct act) { state_.fit_wishes.push_back({act, held, {}}); };
+        if (key == Key::escape) wish(FitAct::revert);
+        if (key == Key::accept) wish(FitAct::accept);
+        if (key == Key::undo) wish(FitAct::undo);
+        if (key == Key::redo) wish(FitAct::redo);
+        if (key == Key::refine && held != 0) wish(FitAct::refine);
+        if (key < Key::body_0 || !controller_.attached()) return;
+        const auto digit = static_cast<std::size_t>(key) - static_cast<std::size_t>(Key::body_0);
+        if (digit == 0) state_.wishes.push_back({CommandKind::select_body, 0.0, {}, kNoBody});
+        if (digit >= 1 && digit <= list_.bodies().size())
+            state_.wishes.push_back({CommandKind::select_body, 0.0, {}, list_.bodies()[digit - 1].id});
     }
 
     void obey_level() {
@@ -263,42 +242,20 @@ private:
         state_.scene.mesh_error_m = view_->error_m();
     }
 
-    std::size_t body_count() const { return std::min(content_->bodies.size(), kBodiesMax); }
-
-    void place_bodies(std::int64_t now_ns) {
-        places_.clear();
-        state_.fit.pose_known = false;
-        for (std::size_t i = 0; i < body_count(); ++i) {
-            const bool live =
-                controller_.have_bodies && i < controller_.bodies.count && predictors_[i].known();
-            places_.push_back(live ? predictors_[i].at(now_ns) : content_->bodies[i].home());
-        }
-        const std::size_t active = active_body();
-        if (active < places_.size() && controller_.have_bodies) {
-            state_.fit.pose_known = true;
-            state_.fit.from_file_m = (places_[active].p_m - content_->bodies[active].home_com_model_m).norm();
-            state_.fit.from_file_rad = rotation_vector_rad(places_[active].q).norm();
-        }
+    void follow_bodies(std::int64_t now_ns) {
+        list_.predict(now_ns);
+        const BodiesTopic* const topic =
+            controller_.attached() && controller_.have_bodies ? &controller_.bodies : nullptr;
+        std::vector<Command> commands;
+        for (const auto& [id, hidden] : state_.hide_wishes) list_.set_hidden(id, hidden);
+        for (const FitWish& wish : state_.fit_wishes) desk_.act(wish, list_, commands);
+        state_.hide_wishes.clear();
+        state_.fit_wishes.clear();
+        desk_.follow(list_, topic, commands);
+        if (topic != nullptr)
+            for (const Command& command : commands) commands_.send(command, now_ns);
+        desk_.describe(list_, topic, state_.fitting, state_.fit);
     }
-
-    void follow_fit() {
-        if (!fit_) return;
-        fit_->wish(places_);
-        if (!fit_->take(outcome_)) return;
-        FitFacts& f = state_.fit;
-        f.known = outcome_.good;
-        f.status = outcome_.error;
-        f.cc_zero = outcome_.metrics.cc_zero;
-        f.cc_mean = outcome_.metrics.cc_mean;
-        f.mean_density_sigma = outcome_.metrics.mean_density_sigma;
-        f.fraction_inside = outcome_.metrics.fraction_inside;
-        f.region_voxels = outcome_.metrics.region_voxels;
-        f.resolution_m = outcome_.resolution_m;
-        f.resolution_assumed = outcome_.resolution_assumed;
-        f.region = kFitRegion;
-    }
-
-    std::size_t active_body() const { return controller_.have_bodies ? controller_.bodies.active : 0; }
 
     void draw_scene(std::int64_t now_ns) {
         const Window::Size size = window_.size();
@@ -320,17 +277,12 @@ private:
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < 3; ++k) state_.eye_axes[i][k] = axes(k, i);
         if (!view_) return;
-        place_bodies(now_ns);
-        follow_fit();
-        drawn_.clear();
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            const bool live = controller_.have_bodies && i < controller_.bodies.count;
-            const auto number = static_cast<std::uint32_t>(i);
-            drawn_.push_back({places_[i], live ? controller_.bodies.body[i].structure : number,
-                              live ? controller_.bodies.body[i].id : number + 1});
-        }
-        view.bodies = drawn_;
-        view.active = active_body();
+        follow_bodies(now_ns);
+        shown_.clear();
+        for (const ShownBody& b : list_.bodies())
+            shown_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
+        view.bodies = shown_;
+        view.active = list_.active().value_or(shown_.size());
         const PathLevel* const force =
             controller_.have_levels ? find_path(controller_.levels, kDockingPath) : nullptr;
         view.points_felt = force != nullptr ? force->items : 0;
@@ -348,6 +300,9 @@ private:
         view_options_.force = t.force;
         view_options_.box = t.box;
         view_options_.style = static_cast<SurfaceStyle>(t.style);
+        view_options_.depth_cue = t.depth_cue;
+        view_->molecules().set_look(
+            {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
         view_->draw(camera_, view_options_, view);
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
@@ -357,29 +312,12 @@ private:
         }
     }
 
-    void paint_grounds(const Layout& layout, float to_px, int height_px) {
-        glDisable(GL_SCISSOR_TEST);
-        const auto clear = [](ImU32 c, GLbitfield what) {
-            const ImVec4 v = ImGui::ColorConvertU32ToFloat4(c);
-            glClearColor(v.x, v.y, v.z, 1.0F);
-            glClear(what);
-        };
-        clear(colour::kGround, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        glEnable(GL_SCISSOR_TEST);
-        for (const PixelRect& card : layout.cards()) {
-            const auto px = [to_px](float v) { return static_cast<int>(std::lround(v * to_px)); };
-            glScissor(px(card.x), height_px - px(card.y + card.height), px(card.width), px(card.height));
-            clear(colour::kPanel, GL_COLOR_BUFFER_BIT);
-        }
-        glDisable(GL_SCISSOR_TEST);
-    }
-
     void draw_panels() {
         const ImGuiIO& io = ImGui::GetIO();
         draw_dashboard(theme_, state_, io.DisplaySize.x, io.DisplaySize.y);
         window_.draw_panels();
         for (const Wish& wish : state_.wishes)
-            if (!commands_.send(wish.kind, wish.value, wish.text, state_.now_ns))
+            if (!commands_.send({wish.kind, wish.value, wish.text, wish.body, {}}, state_.now_ns))
                 spdlog::warn("a command with a text too long was not sent");
         state_.wishes.clear();
     }
@@ -418,12 +356,8 @@ private:
         load.vertices_max = view_ ? view_->vertices_max() : 0;
         region_->load.publish(load);
         state_.load = load;
-        History& to = state_.history;
-        to.frame_s.add(to.now_s, load.frame_s);
-        to.busy_s.add(to.now_s, load.busy_s);
-        if (controller_.have_levels && controller_.attached())
-            for (std::uint32_t i = 0; i < controller_.levels.count; ++i)
-                to.level[i].add(to.now_s, static_cast<double>(controller_.levels.path[i].level));
+        const bool levels = controller_.have_levels && controller_.attached();
+        add_load(load, levels ? &controller_.levels : nullptr, state_.history);
     }
 
     const GuiOptions options_;
@@ -441,16 +375,13 @@ private:
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
-    std::unique_ptr<FitWorker> fit_;
-    FitOutcome outcome_;
+    FitDesk desk_;
+    BodyList list_;
+    std::vector<DrawnBody> shown_;
     ViewOptions view_options_;
     Camera camera_;
-    PosePredictor predictors_[kBodiesMax];
-    std::vector<Pose> places_;
-    std::vector<DrawnBody> drawn_;
+    SceneLoader loader_;
     std::size_t left_out_ = 0;
-    std::future<std::shared_ptr<const SceneContent>> loading_;
-    std::string loading_path_;
     bool picture_wanted_ = false, picture_failed_ = false;
 };
 

@@ -1,24 +1,29 @@
 #include "gui/app/command_sender.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "ipc/topics/text.hpp"
 
 namespace tact {
 
-bool CommandSender::send(CommandKind kind, double value, const std::string& text, std::int64_t now_ns) {
+bool CommandSender::send(const Command& wanted, std::int64_t now_ns) {
     CommandTopic command{};
-    if (text.size() >= sizeof command.text) return false;
+    if (wanted.text.size() >= sizeof command.text) return false;
     command.sequence = ++sequence_;
     command.taken_at_ns = now_ns;
-    command.value = value;
-    command.kind = static_cast<std::uint16_t>(kind);
-    std::memcpy(command.text, text.data(), text.size());
+    command.value = wanted.value;
+    command.kind = static_cast<std::uint16_t>(wanted.kind);
+    command.body = wanted.body;
+    const Eigen::Vector4d q = wanted.T_model_body.q.coeffs();  // x, y, z, w
+    std::copy_n(wanted.T_model_body.p_m.data(), 3, command.pos_model_m);
+    std::copy_n(q.data(), 4, command.quat_model_body_xyzw);
+    std::memcpy(command.text, wanted.text.data(), wanted.text.size());
     ring_.push(command);
-    kind_ = kind;
+    kind_ = wanted.kind;
     sent_at_ns_ = now_ns;
     stage_ = Stage::sent;
-    text_ = std::string(command_kind_text(kind)) + ": sent";
+    text_ = std::string(command_kind_text(wanted.kind)) + ": sent";
     return true;
 }
 

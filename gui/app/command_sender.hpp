@@ -6,11 +6,20 @@
 #include <cstdint>
 #include <string>
 
+#include "ipc/base/pose.hpp"
 #include "ipc/shm/ring.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
+
+struct Command {
+    CommandKind kind = CommandKind::none;
+    double value = 0.0;
+    std::string text{};
+    std::uint32_t body = 0;  // id; for add_body the index of a structure
+    Pose T_model_body{};     // place_body, add_body
+};
 
 class CommandSender {
 public:
@@ -20,7 +29,7 @@ public:
     explicit CommandSender(Ring<CommandTopic, 64>& ring) : ring_(ring) {}
 
     // A text longer than the topic holds is refused: false, and nothing is sent.
-    bool send(CommandKind kind, double value, const std::string& text, std::int64_t now_ns);
+    bool send(const Command& wanted, std::int64_t now_ns);
     // What the controller said last.
     void update(const HealthTopic& health, std::int64_t now_ns);
     // A new controller knows nothing of what the old one was sent.

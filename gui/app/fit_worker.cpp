@@ -5,18 +5,18 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 
 #include "ipc/base/units.hpp"
 
 namespace tact {
 
-bool moved(std::span<const Pose> a, std::span<const Pose> b) {
-    if (a.size() != b.size()) return true;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if ((a[i].p_m - b[i].p_m).norm() > 0.01 * kAngstromM ||
-            a[i].q.angularDistance(b[i].q) > 0.01 * kDegreeRad)
-            return true;
-    return false;
+bool moved(std::span<const FitBody> a, std::span<const FitBody> b) {
+    return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FitBody& x, const FitBody& y) {
+        return x.id == y.id && x.structure == y.structure &&
+               (x.T_model_body.p_m - y.T_model_body.p_m).norm() <= 0.01 * kAngstromM &&
+               x.T_model_body.q.angularDistance(y.T_model_body.q) <= 0.01 * kDegreeRad;
+    });
 }
 
 FitWorker::FitWorker(std::shared_ptr<const SceneContent> content, Duration pause)
@@ -31,10 +31,12 @@ FitWorker::~FitWorker() {
     thread_.join();
 }
 
-void FitWorker::wish(std::span<const Pose> T_model_body) {
+void FitWorker::wish(std::span<const FitBody> bodies) {
     {
         const std::lock_guard lock(mutex_);
-        wished_.assign(T_model_body.begin(), T_model_body.end());
+        wished_.clear();
+        std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(wished_),
+                     [&](const FitBody& b) { return b.structure < content_->bodies.size(); });
     }
     changed_.notify_all();
 }
@@ -49,7 +51,7 @@ bool FitWorker::take(FitOutcome& outcome) {
 void FitWorker::work() {
     // Nice values belong to threads on Linux. That it may fail (it never does upwards) changes nothing.
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
-    std::vector<Pose> places;
+    std::vector<FitBody> places;
     std::unique_lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [&] { return stop_ || (!wished_.empty() && moved(wished_, places)); });
@@ -67,7 +69,7 @@ void FitWorker::work() {
     }
 }
 
-FitOutcome FitWorker::compute(const std::vector<Pose>& places) const {
+FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
     FitOutcome outcome;
     const Instant begun = Monotonic::now();
     outcome.resolution_m = content_->meta.resolution_m;
@@ -76,14 +78,16 @@ FitOutcome FitWorker::compute(const std::vector<Pose>& places) const {
         outcome.resolution_assumed = true;
     }
     std::vector<PlacedStructure> placed;
-    for (std::size_t i = 0; i < std::min(places.size(), content_->bodies.size()); ++i)
-        placed.push_back({&content_->bodies[i], places[i]});
+    for (const FitBody& b : bodies) placed.push_back({&content_->bodies[b.structure], b.T_model_body});
+    outcome.body = std::move(bodies);
     try {
-        outcome.metrics = fit_metrics(content_->grid, placed,
-                                      {.resolution_m = outcome.resolution_m,
-                                       .contour = content_->meta.contour,
-                                       .background = content_->meta.map_background,
-                                       .sigma = content_->meta.map_sigma});
+        FitOfBodies fit = fit_of_bodies(content_->grid, placed,
+                                        {.resolution_m = outcome.resolution_m,
+                                         .contour = content_->meta.contour,
+                                         .background = content_->meta.map_background,
+                                         .sigma = content_->meta.map_sigma});
+        outcome.all = fit.all;
+        outcome.of = std::move(fit.body);
         outcome.good = true;
     } catch (const std::exception& e) {
         outcome.error = e.what();

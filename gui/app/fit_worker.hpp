@@ -19,10 +19,19 @@
 
 namespace tact {
 
+// A body of the scene: which of the content's structures, and where.
+struct FitBody {
+    std::uint32_t id = 0;
+    std::uint16_t structure = 0;
+    Pose T_model_body;
+};
+
 struct FitOutcome {
     bool good = false;
-    std::string error;  // where not good
-    FitMetrics metrics;
+    std::string error;           // where not good
+    FitMetrics all;              // of all bodies together
+    std::vector<FitBody> body;   // those that were measured, where they were
+    std::vector<FitMetrics> of;  // each of them by itself
     double resolution_m = 0.0;
     bool resolution_assumed = false;  // three voxels, as the scene does not say
     double compute_s = 0.0;
@@ -38,26 +47,27 @@ public:
     FitWorker(const FitWorker&) = delete;
     FitWorker& operator=(const FitWorker&) = delete;
 
-    void wish(std::span<const Pose> T_model_body);
+    // Bodies of structures that the content does not have are left out.
+    void wish(std::span<const FitBody> bodies);
     // True when there is one newer than outcome.number.
     [[nodiscard]] bool take(FitOutcome& outcome);
 
 private:
     void work();
-    [[nodiscard]] FitOutcome compute(const std::vector<Pose>& places) const;
+    [[nodiscard]] FitOutcome compute(std::vector<FitBody> bodies) const;
 
     const std::shared_ptr<const SceneContent> content_;
     const Duration pause_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<Pose> wished_;
+    std::vector<FitBody> wished_;
     FitOutcome outcome_;
     bool stop_ = false;
     std::thread thread_;
 };
 
-// Whether a difference between two poses can be seen in the numbers: a hundredth of an ångström or of a
+// Whether a difference can be seen in the numbers: other bodies, or a hundredth of an ångström or of a
 // degree.
-[[nodiscard]] bool moved(std::span<const Pose> a, std::span<const Pose> b);
+[[nodiscard]] bool moved(std::span<const FitBody> a, std::span<const FitBody> b);
 
 }  // namespace tact

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "ipc/base/error.hpp"
@@ -25,11 +26,23 @@ std::vector<Key>& keys_of(GLFWwindow* window) {
     return *static_cast<std::vector<Key>*>(glfwGetWindowUserPointer(window));
 }
 
-void on_key(GLFWwindow* window, int key, int, int action, int) {
+void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     if (action != GLFW_PRESS) return;
+    if ((modifiers & GLFW_MOD_CONTROL) != 0) {
+        // By the letter printed on it: where Z lies depends on the keyboard.
+        const char* const name = glfwGetKeyName(key, scancode);
+        if (name == nullptr) return;
+        const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+        if (std::strcmp(name, "z") == 0) keys_of(window).push_back(shift ? Key::redo : Key::undo);
+        if (std::strcmp(name, "y") == 0) keys_of(window).push_back(Key::redo);
+        return;
+    }
     for (const auto& [which, what] : {std::pair{GLFW_KEY_HOME, Key::home},
                                       {GLFW_KEY_S, Key::style},
                                       {GLFW_KEY_P, Key::picture},
+                                      {GLFW_KEY_R, Key::refine},
+                                      {GLFW_KEY_ENTER, Key::accept},
+                                      {GLFW_KEY_KP_ENTER, Key::accept},
                                       {GLFW_KEY_ESCAPE, Key::escape}})
         if (key == which) keys_of(window).push_back(what);
 }
@@ -37,6 +50,10 @@ void on_key(GLFWwindow* window, int key, int, int action, int) {
 // A character, not a key: where '?' lies depends on the keyboard.
 void on_char(GLFWwindow* window, unsigned int character) {
     if (character == '?') keys_of(window).push_back(Key::help);
+    if (character == '+') keys_of(window).push_back(Key::raise);
+    if (character == '-') keys_of(window).push_back(Key::lower);
+    if (character >= '0' && character <= '9')
+        keys_of(window).push_back(static_cast<Key>(static_cast<int>(Key::body_0) + (character - '0')));
 }
 
 }  // namespace

@@ -15,7 +15,21 @@ struct GLFWwindow;
 
 namespace tact {
 
-enum class Key { home, style, picture, help, escape };
+enum class Key {
+    home,
+    style,
+    picture,
+    help,
+    escape,
+    accept,
+    undo,
+    redo,
+    refine,
+    raise,
+    lower,
+    body_0,
+    body_9 = body_0 + 9
+};
 
 class Window {
 public:

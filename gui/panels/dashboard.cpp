@@ -15,10 +15,10 @@ Layout layout_for(const Theme& theme, float width_px, float height_px) {
     Layout l;
     l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
 
-    // The controller's card gets what the other two, whose content is of known height, leave.
+    // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
     const float usable = height_px - 4.0F * gap;
-    const float fit = std::round(std::min(theme.px(172.0F), 0.25F * usable));
-    const float scene = std::round(std::min(theme.px(216.0F), 0.33F * usable));
+    const float health = std::round(std::min(theme.px(262.0F), 0.4F * usable));
+    const float fit = std::round(std::min(theme.px(196.0F), 0.27F * usable));
     const float inner = at_least_one(left - 2.0F * gap);
     float y = gap;
     const auto card = [&](float height) {
@@ -26,9 +26,9 @@ Layout layout_for(const Theme& theme, float width_px, float height_px) {
         y += height + gap;
         return rect;
     };
-    l.health = card(usable - fit - scene);
+    l.health = card(health);
     l.fit = card(fit);
-    l.scene = card(scene);
+    l.scene = card(usable - health - fit);
 
     const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
     const float top = l.view.height, height = at_least_one(below - gap);

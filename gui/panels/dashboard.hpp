@@ -8,10 +8,13 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/panels/plot_series.hpp"
 #include "gui/panels/theme.hpp"
+#include "ipc/assets/fit_metrics.hpp"
+#include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
@@ -24,11 +27,43 @@ struct Wish {
     CommandKind kind = CommandKind::none;
     double value = 0.0;
     std::string text;
+    std::uint32_t body = 0;  // id
+};
+
+// What a person asked to be done with the bodies that takes more than one command.
+enum class FitAct : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
+struct FitWish {
+    FitAct act = FitAct::undo;
+    std::uint32_t body = 0;  // id: copy, refine, revert
+    std::string text;        // name of a snapshot
+};
+
+struct BodyFacts {
+    std::uint32_t id = 0;
+    std::string name;
+    std::size_t atoms = 0;
+    bool in_hand = false, fixed = false, hidden = false;
+    ImU32 colour = colour::kText;
+};
+
+struct FittingFacts {
+    std::vector<BodyFacts> bodies;
+    std::uint32_t options = 0;  // DockingOption, as felt now
+    bool building = false;      // the controller prepares another density
+    bool refining = false, saving = false;
+    bool can_undo = false, can_redo = false;
+    std::size_t gestures = 0;  // that can be undone
+    std::vector<std::string> snapshots;
+    std::string said;  // what the last act did
+    Grade said_grade = Grade::unknown;
 };
 
 struct SceneToggles {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
     int style = 0;  // glass, solid, wire
+    bool depth_cue = true;
+    int molecule = 1;   // trace, tube, sticks, spheres
+    int colouring = 0;  // by chain, element, body
 };
 
 struct SceneFacts {
@@ -43,16 +78,41 @@ struct SceneFacts {
     std::string warning;  // the controller runs another scene, ...
 };
 
+// What the metrics of a fit mean: ipc/assets/fit_metrics.hpp.
 struct FitFacts {
     bool known = false;
     std::string status;  // "computing", or why there is none
-    double cc_zero = 0.0, cc_mean = 0.0, mean_density_sigma = 0.0, fraction_inside = 0.0;
-    std::uint64_t region_voxels = 0;
+    FitMetrics all;      // of all bodies together
+    std::size_t bodies = 0;
+    std::uint32_t body_id = 0;  // of the one in the hand; 0: none
+    FitMetrics body;
     double resolution_m = 0.0;
     bool resolution_assumed = false;
-    const char* region = "";
     bool pose_known = false;
     double from_file_m = 0.0, from_file_rad = 0.0;
+};
+
+struct ContourRow {
+    // What a person chose.
+    double level = 0.0;  // in the map's unit
+    float colour[3] = {1.0F, 1.0F, 1.0F};
+    float opacity = 1.0F;
+    int style = 0;  // as the view, glass, solid, wire
+    bool shown = true;
+    // What it means and how far it is.
+    double sigma = 0.0, fraction_inside = 0.0;
+    bool final = true;
+    std::string error;
+};
+
+struct ContourFacts {
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    std::vector<ContourRow> row;
+    std::size_t rows_max = 1;
+    std::vector<std::uint64_t> histogram;  // voxels, bins of equal width from least to greatest
+    double least = 0.0, greatest = 0.0;    // of the map, in its unit
+    bool changed = false, add = false;     // what a person did; for the application to take
+    std::size_t dragged = kNone, removed = kNone;
 };
 
 struct EventLine {
@@ -83,6 +143,8 @@ struct DashboardState {
     Grade command_grade = Grade::unknown;
     SceneFacts scene;
     FitFacts fit;
+    FittingFacts fitting;
+    ContourFacts contours;
     History history;
     std::deque<EventLine> events;  // newest first
     std::uint64_t events_missed = 0;
@@ -97,7 +159,11 @@ struct DashboardState {
     SceneToggles toggles;
     int span_choice = 0;  // of the plots
     bool show_keys = false;
-    std::vector<Wish> wishes;  // emptied by the application
+    int tab = 0;  // of the scene card
+    // Emptied by the application.
+    std::vector<Wish> wishes;
+    std::vector<FitWish> fit_wishes;
+    std::vector<std::pair<std::uint32_t, bool>> hide_wishes;  // id, hidden
 };
 
 struct PixelRect {
@@ -129,9 +195,16 @@ inline constexpr KeyHelp kKeyHelp[] = {
     {"wheel", "zoom"},
     {"Home", "home view"},
     {"S", "surface: glass, solid, wire"},
+    {"Alt+wheel, + -", "contour level"},
+    {"1 ... 9", "take that body into the hand"},
+    {"0", "let go of all bodies"},
+    {"Ctrl+Z", "undo the last gesture"},
+    {"Ctrl+Y", "redo it"},
+    {"R", "refine the body in the hand"},
+    {"Enter", "accept: undo goes back no farther"},
+    {"Esc", "back to the last accepted places"},
     {"P", "save a picture"},
     {"?", "this table"},
-    {"Esc", "close this table"},
 };
 
 }  // namespace tact

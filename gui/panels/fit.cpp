@@ -5,21 +5,40 @@
 
 namespace tact {
 
+namespace {
+
+void metrics(const Theme& theme, const FitMetrics& m) {
+    row(theme, "Correlation", format("%.4f", m.cc_zero), "about zero");
+    row(theme, "", format("%.4f", m.cc_mean), "about the mean");
+    row(theme, "Density", format("%.2f σ", m.mean_density_sigma),
+        format("%.4g, mean over atoms", m.mean_density));
+    row(theme, "Inside", format("%.1f %%", 100.0 * m.fraction_inside), "of atoms above contour");
+    row(theme, "Overlap", format("%.4g", m.overlap), "map unit · Z");
+}
+
+}  // namespace
+
 void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card) {
     begin_card(theme, "Fit", card);
     const FitFacts& f = state.fit;
+    if (f.known) {
+        ImGui::SameLine(0.0F, theme.px(10.0F));
+        text_coloured(colour::kText, f.body_id != 0 ? format("body %u, in the hand", f.body_id)
+                                                    : format("all %zu bodies", f.bodies));
+    }
     if (f.pose_known)
         row(theme, "Distance",
             format("%.2f Å, %.1f°", f.from_file_m / kAngstromM, f.from_file_rad / kDegreeRad),
             "from file position");
     if (f.known) {
-        row(theme, "Correlation", format("%.4f", f.cc_zero), "about zero");
-        row(theme, "", format("%.4f", f.cc_mean), "about the mean");
-        row(theme, "Density", format("%.2f σ", f.mean_density_sigma), "mean over atoms");
-        row(theme, "Inside", format("%.1f %%", 100.0 * f.fraction_inside), "of atoms above contour");
+        metrics(theme, f.body_id != 0 ? f.body : f.all);
+        if (f.body_id != 0 && f.bodies > 1)
+            row(theme, "All bodies", format("%.4f", f.all.cc_zero),
+                format("about zero, %.4f mean", f.all.cc_mean));
+        const FitMetrics& m = f.body_id != 0 ? f.body : f.all;
         text_small(theme, colour::kDim,
-                   format("Region: %s, %s voxels. Simulated at %.1f Å%s, Gaussians, weight Z.", f.region,
-                          grouped(f.region_voxels).c_str(), f.resolution_m / kAngstromM,
+                   format("Region: %s, %s voxels. Simulated at %.1f Å%s, Gaussians, weight Z.", kFitRegion,
+                          grouped(m.region_voxels).c_str(), f.resolution_m / kAngstromM,
                           f.resolution_assumed ? " (assumed: 3 voxels)" : ""));
     }
     if (!f.status.empty()) text_small(theme, colour::kDim, f.status);

@@ -14,14 +14,7 @@ constexpr std::array<ImU32, 4> kPathColours{colour::kAccent, colour::kOrange, co
 void span_choice(const Theme& theme, DashboardState& state) {
     static constexpr std::array<const char*, kSpans_s.size()> kNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
     ImGui::PushFont(theme.small);
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-        if (i > 0) ImGui::SameLine(0.0F, theme.px(8.0F));
-        const bool on = state.span_choice == static_cast<int>(i);
-        ImGui::PushStyleColor(ImGuiCol_Text, on ? colour::kAccent : colour::kDim);
-        if (ImGui::Selectable(kNames[i], false, 0, ImGui::CalcTextSize(kNames[i])))
-            state.span_choice = static_cast<int>(i);
-        ImGui::PopStyleColor();
-    }
+    choose(theme, kNames, state.span_choice);
     ImGui::PopFont();
 }
 

@@ -81,6 +81,20 @@ void row(const Theme& theme, const char* what, const std::string& value, const s
     text_coloured(colour::kDim, note);
 }
 
+void choose(const Theme& theme, std::span<const char* const> words, int& chosen) {
+    ImGui::PushStyleColor(ImGuiCol_HeaderHovered, colour::kPanelEdge);
+    ImGui::PushStyleColor(ImGuiCol_HeaderActive, colour::kPanelEdge);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0.0F, theme.px(10.0F));
+        const bool on = chosen == static_cast<int>(i);
+        ImGui::PushStyleColor(ImGuiCol_Text, on ? colour::kAccent : colour::kDim);
+        if (ImGui::Selectable(words[i], false, 0, ImGui::CalcTextSize(words[i])))
+            chosen = static_cast<int>(i);
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopStyleColor(2);
+}
+
 std::string format(const char* pattern, ...) {
     char text[256];
     va_list arguments;

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <span>
 #include <string>
 
 #include "gui/panels/dashboard.hpp"
@@ -21,6 +22,9 @@ void row(const Theme& theme, const char* what, const std::string& value,
          const std::string& unit_or_note = "");
 void text_coloured(ImU32 c, const std::string& text);
 void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap = true);
+
+// Words in a line, one of them chosen.
+void choose(const Theme& theme, std::span<const char* const> words, int& chosen);
 
 [[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 // "1 234 567"

@@ -26,33 +26,50 @@ std::shared_ptr<SceneContent> content() {
     return c;
 }
 
+std::vector<FitBody> at_home(const SceneContent& c) { return {{1, 0, c.bodies[0].home()}}; }
+
 TEST(FitWorker, GivesTheNumbersOfTheNewestPlace) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
-    const std::vector<Pose> home{c->bodies[0].home()};
+    const std::vector<FitBody> home = at_home(*c);
     worker.wish(home);
-    const FitOutcome at_home = next(worker, {});
-    ASSERT_TRUE(at_home.good) << at_home.error;
-    const PlacedStructure placed[] = {{&c->bodies[0], home[0]}};
+    const FitOutcome first = next(worker, {});
+    ASSERT_TRUE(first.good) << first.error;
+    const PlacedStructure placed[] = {{&c->bodies[0], home[0].T_model_body}};
     const FitMetrics direct = fit_metrics(
         c->grid, placed, {.resolution_m = 12e-10, .contour = 0.5, .background = 0.0, .sigma = 1.0});
-    EXPECT_DOUBLE_EQ(at_home.metrics.cc_zero, direct.cc_zero);
-    EXPECT_DOUBLE_EQ(at_home.metrics.cc_mean, direct.cc_mean);
-    EXPECT_FALSE(at_home.resolution_assumed);
+    EXPECT_DOUBLE_EQ(first.all.cc_zero, direct.cc_zero);
+    EXPECT_DOUBLE_EQ(first.all.cc_mean, direct.cc_mean);
+    EXPECT_FALSE(first.resolution_assumed);
 
-    std::vector<Pose> away = home;
-    away[0].p_m.x() += 8e-10;
+    std::vector<FitBody> away = home;
+    away[0].T_model_body.p_m.x() += 8e-10;
     worker.wish(away);
-    const FitOutcome moved_away = next(worker, at_home);
+    const FitOutcome moved_away = next(worker, first);
     ASSERT_TRUE(moved_away.good);
-    EXPECT_EQ(moved_away.number, at_home.number + 1);
-    EXPECT_LT(moved_away.metrics.cc_mean, at_home.metrics.cc_mean);
+    EXPECT_EQ(moved_away.number, first.number + 1);
+    EXPECT_LT(moved_away.all.cc_mean, first.all.cc_mean);
+}
+
+TEST(FitWorker, MeasuresEachBodyAndLeavesOutWhatTheSceneDoesNotHave) {
+    const auto c = content();
+    FitWorker worker(c, Duration(0));
+    std::vector<FitBody> three = at_home(*c);
+    three.push_back({7, 0, {three[0].T_model_body.p_m + Vec3(6e-10, 0.0, 0.0), Quat::Identity()}});
+    three.push_back({8, 1, three[0].T_model_body});  // no such structure
+    worker.wish(three);
+    const FitOutcome outcome = next(worker, {});
+    ASSERT_TRUE(outcome.good) << outcome.error;
+    ASSERT_EQ(outcome.body.size(), 2U);
+    ASSERT_EQ(outcome.of.size(), 2U);
+    EXPECT_EQ(outcome.body[1].id, 7U);
+    EXPECT_GT(outcome.of[0].cc_mean, outcome.of[1].cc_mean);
 }
 
 TEST(FitWorker, RestsWhileNothingMoves) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
-    const std::vector<Pose> home{c->bodies[0].home()};
+    const std::vector<FitBody> home = at_home(*c);
     worker.wish(home);
     FitOutcome outcome = next(worker, {});
     for (int i = 0; i < 50; ++i) {
@@ -66,7 +83,7 @@ TEST(FitWorker, SaysWhenItHadToAssumeTheResolution) {
     const auto c = content();
     c->meta.resolution_m = 0.0;
     FitWorker worker(c, Duration(0));
-    worker.wish(std::vector<Pose>{c->bodies[0].home()});
+    worker.wish(at_home(*c));
     const FitOutcome outcome = next(worker, {});
     EXPECT_TRUE(outcome.resolution_assumed);
     EXPECT_NEAR(outcome.resolution_m, 3.0 * 40.0 / 23.0 * 1e-10, 1e-15);
@@ -75,17 +92,20 @@ TEST(FitWorker, SaysWhenItHadToAssumeTheResolution) {
 TEST(FitWorker, EndsAtOnceWithoutAWish) { const FitWorker worker(content()); }
 
 TEST(Moved, IsAboutWhatCanBeSeenInTheNumbers) {
-    const std::vector<Pose> a(1), none;
-    std::vector<Pose> b(1);
+    const std::vector<FitBody> a(1), none;
+    std::vector<FitBody> b(1);
     EXPECT_FALSE(moved(a, b));
-    b[0].p_m.x() = 0.005e-10;
+    b[0].T_model_body.p_m.x() = 0.005e-10;
     EXPECT_FALSE(moved(a, b));
-    b[0].p_m.x() = 0.05e-10;
+    b[0].T_model_body.p_m.x() = 0.05e-10;
     EXPECT_TRUE(moved(a, b));
     b = a;
-    b[0].q = Quat(Eigen::AngleAxisd(0.1 * kDegreeRad, Vec3::UnitX()));
+    b[0].T_model_body.q = Quat(Eigen::AngleAxisd(0.1 * kDegreeRad, Vec3::UnitX()));
     EXPECT_TRUE(moved(a, b));
     EXPECT_TRUE(moved(a, none));
+    b = a;
+    b[0].structure = 1;
+    EXPECT_TRUE(moved(a, b));
 }
 
 }  // namespace

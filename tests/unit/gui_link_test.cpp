@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "gui/app/body_list.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/mesh_level.hpp"
@@ -162,8 +163,8 @@ TEST(CommandSender, NumbersCommandsAndTellsWhatBecameOfThem) {
     OwnedRegion<GuiRegion> region;
     CommandSender sender(region->commands);
     using Stage = CommandSender::Stage;
-    ASSERT_TRUE(sender.send(CommandKind::arm, 0.0, "", 100));
-    ASSERT_TRUE(sender.send(CommandKind::set_law, 0.0, "fixed", 200));
+    ASSERT_TRUE(sender.send({.kind = CommandKind::arm}, 100));
+    ASSERT_TRUE(sender.send({.kind = CommandKind::set_law, .text = "fixed"}, 200));
     RingCursor cursor;
     CommandTopic command{};
     ASSERT_TRUE(region->commands.next(cursor, command));
@@ -184,7 +185,7 @@ TEST(CommandSender, NumbersCommandsAndTellsWhatBecameOfThem) {
     health.command_result = static_cast<std::uint32_t>(CommandResult::refused_value);
     sender.update(health, 400);
     EXPECT_EQ(sender.stage(), Stage::refused);
-    EXPECT_FALSE(sender.send(CommandKind::set_law, 0.0, std::string(32, 'x'), 500));
+    EXPECT_FALSE(sender.send({.kind = CommandKind::set_law, .text = std::string(32, 'x')}, 500));
     EXPECT_EQ(sender.sequence(), 2U);
 }
 
@@ -215,6 +216,74 @@ TEST(Verdict, EveryGradeComesWithWords) {
     health.allocations = 1;
     EXPECT_EQ(memory_verdict(health).grade, Grade::bad);
     EXPECT_NE(memory_verdict(health).words.find("1 allocation,"), std::string::npos);
+}
+
+TEST(CommandSender, CarriesTheBodyAndItsPlace) {
+    Ring<CommandTopic, 64> ring;
+    CommandSender sender(ring);
+    Command place{.kind = CommandKind::place_body, .body = 7};
+    place.T_model_body = {Vec3(1e-9, 2e-9, -3e-9), Quat(0.5, 0.5, -0.5, 0.5)};
+    ASSERT_TRUE(sender.send(place, 100));
+    RingCursor cursor;
+    CommandTopic command{};
+    ASSERT_TRUE(ring.next(cursor, command));
+    EXPECT_EQ(command.body, 7U);
+    EXPECT_EQ(command.pos_model_m[2], -3e-9);
+    EXPECT_EQ(command.quat_model_body_xyzw[1], -0.5);
+    EXPECT_EQ(command.quat_model_body_xyzw[3], 0.5);
+}
+
+BodiesTopic topic_of(std::initializer_list<std::pair<std::uint32_t, std::uint16_t>> bodies) {
+    BodiesTopic t{};
+    for (const auto& [id, structure] : bodies) {
+        BodyPlace& place = t.body[t.count++];
+        place.id = id;
+        place.structure = structure;
+        place.quat_model_body_xyzw[3] = 1.0;
+        place.pos_model_m[0] = 1e-10 * id;
+    }
+    return t;
+}
+
+TEST(BodyList, ShowsTheStructuresAtHomeUntilAControllerSpeaks) {
+    BodyList list;
+    const std::vector<Pose> homes(3, {Vec3(0, 0, 4e-9), Quat::Identity()});
+    list.start(homes);
+    ASSERT_EQ(list.bodies().size(), 3U);
+    EXPECT_EQ(list.bodies()[2].structure, 2U);
+    EXPECT_EQ(list.active(), 0U);
+    list.predict(0);
+    EXPECT_EQ(list.bodies()[1].T_model_body.p_m.z(), 4e-9);
+}
+
+TEST(BodyList, FollowsBodiesByIdWhileOthersComeAndGo) {
+    BodyList list;
+    list.start(std::vector<Pose>(2));
+    BodiesTopic t = topic_of({{1, 0}, {2, 0}, {5, 1}});
+    t.active = 2;
+    list.follow(t);
+    list.set_hidden(5, true);
+    BodiesTopic fewer = topic_of({{2, 0}, {5, 1}});
+    fewer.active = kNoBody;
+    list.follow(fewer);
+    ASSERT_EQ(list.bodies().size(), 2U);
+    EXPECT_TRUE(list.bodies()[1].hidden);
+    EXPECT_FALSE(list.bodies()[0].hidden);
+    EXPECT_FALSE(list.active().has_value());
+    EXPECT_EQ(list.find(1), nullptr);
+    ASSERT_NE(list.find(5), nullptr);
+    EXPECT_EQ(list.find(5)->newest.p_m.x(), 5e-10);
+}
+
+TEST(BodyList, LeavesOutBodiesOfStructuresThatTheSceneDoesNotHave) {
+    BodyList list;
+    list.start(std::vector<Pose>(1));
+    BodiesTopic t = topic_of({{1, 9}, {2, 0}});
+    t.active = 1;
+    list.follow(t);
+    ASSERT_EQ(list.bodies().size(), 1U);
+    EXPECT_EQ(list.bodies()[0].id, 2U);
+    EXPECT_EQ(list.active(), 0U);  // its place among those that are shown
 }
 
 }  // namespace

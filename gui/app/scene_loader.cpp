@@ -1,0 +1,24 @@
+#include "gui/app/scene_loader.hpp"
+
+#include <chrono>
+#include <exception>
+
+namespace tact {
+
+bool SceneLoader::start(const std::string& path) {
+    if (running()) return false;
+    loading_ = std::async(std::launch::async, [path] { return load_scene(path); });
+    return true;
+}
+
+std::optional<SceneLoader::Outcome> SceneLoader::poll() {
+    if (!running() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return std::nullopt;
+    try {
+        return Outcome{loading_.get(), {}};
+    } catch (const std::exception& e) {
+        return Outcome{nullptr, e.what()};
+    }
+}
+
+}  // namespace tact

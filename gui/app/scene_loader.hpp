@@ -1,0 +1,30 @@
+// Reads a scene beside the frame loop.
+//
+// Thread   frame thread; the reading on one of its own.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gui/render/scene_content.hpp"
+
+namespace tact {
+
+class SceneLoader {
+public:
+    struct Outcome {
+        std::shared_ptr<const SceneContent> content;  // null: it failed
+        std::string error;
+    };
+    // While another is being read, nothing: the newest is asked for again when that one is done.
+    bool start(const std::string& path);
+    [[nodiscard]] bool running() const { return loading_.valid(); }
+    [[nodiscard]] std::optional<Outcome> poll();  // once, when it is done
+
+private:
+    std::future<std::shared_ptr<const SceneContent>> loading_;
+};
+
+}  // namespace tact

@@ -1,0 +1,65 @@
+#include "gui/app/show_controller.hpp"
+
+#include <algorithm>
+
+#include "gui/app/describe.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kEventsKept = 100;
+constexpr std::size_t kEventsPerFrame = 64;
+
+void take_events(Controller& controller, DashboardState& state) {
+    EventTopic event;
+    for (std::size_t i = 0; i < kEventsPerFrame && controller.next_event(event); ++i) {
+        EventLine line = describe(event);
+        // What repeats, such as a limit that is reached again and again, must not push the rest out.
+        const bool repeats = !state.events.empty() && state.events.front().code == line.code;
+        if (repeats && (line.grade == Grade::watch ||
+                        line.code == static_cast<std::uint16_t>(EventCode::level_changed))) {
+            line.count = state.events.front().count + 1;
+            state.events.front() = std::move(line);
+            continue;
+        }
+        state.events.push_front(std::move(line));
+        if (state.events.size() > kEventsKept) state.events.pop_back();
+    }
+}
+
+}  // namespace
+
+void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state) {
+    take_events(controller, state);
+    state.attached = controller.attached();
+    state.link_text = controller.status_text();
+    state.have_health = controller.have_health;
+    state.have_levels = controller.have_levels;
+    state.health = controller.health;
+    state.levels = controller.levels;
+    state.refused_records = controller.refused();
+    state.events_missed = controller.events_missed();
+    state.command_text = commands.text();
+    using Stage = CommandSender::Stage;
+    state.command_grade = commands.stage() == Stage::done   ? Grade::good
+                          : commands.stage() == Stage::sent ? Grade::unknown
+                                                            : Grade::watch;
+}
+
+void add_health(const HealthTopic& h, History& to) {
+    to.rate_hz.add(to.now_s, h.force_rate_hz);
+    to.lateness_p50_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_p50_ns));
+    to.lateness_p99_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_p99_ns));
+    to.lateness_max_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_max_ns));
+    to.cycle_cost_s.add(to.now_s, 1e-9 * static_cast<double>(h.cycle_cost_p50_ns));
+}
+
+void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to) {
+    to.frame_s.add(to.now_s, load.frame_s);
+    to.busy_s.add(to.now_s, load.busy_s);
+    if (levels == nullptr) return;
+    for (std::uint32_t i = 0; i < levels->count; ++i)
+        to.level[i].add(to.now_s, static_cast<double>(levels->path[i].level));
+}
+
+}  // namespace tact

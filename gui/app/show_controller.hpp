@@ -1,0 +1,17 @@
+// What the panels show of the controller: its newest records, events and the fate of the last command.
+//
+// Thread   frame thread.
+#pragma once
+
+#include "gui/app/command_sender.hpp"
+#include "gui/app/controller.hpp"
+#include "gui/panels/dashboard.hpp"
+
+namespace tact {
+
+void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state);
+// One more sample of the plots.
+void add_health(const HealthTopic& health, History& to);
+void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to);
+
+}  // namespace tact
