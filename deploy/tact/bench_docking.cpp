@@ -102,12 +102,13 @@ Times measure(const DockingModel& model, float fidelity, int steps) {
 
 }  // namespace
 
-DockingBench bench_docking() {
+DockingBench bench_docking(const DockingBenchSettings& settings) {
     const DockingModel model = make_model();
     DockingBench bench;
     bench.kernel = model.map().kernel_name();
     bench.map_bytes = model.map().bytes();
-    const Times reduced = measure(model, 0.0F, 20000), all = measure(model, 1.0F, 400);
+    const Times reduced = measure(model, 0.0F, settings.steps_n200),
+                all = measure(model, 1.0F, settings.steps_atoms100k);
     bench.force_us_n200_p50 = reduced.p50_us;
     bench.force_us_n200_p99 = reduced.p99_us;
     bench.force_us_atoms100k_p50 = all.p50_us;

@@ -21,6 +21,10 @@ struct DockingBench {
     std::uint64_t map_bytes = 0;  // of coefficients in memory
 };
 
-[[nodiscard]] DockingBench bench_docking();
+struct DockingBenchSettings {
+    int steps_n200 = 20000, steps_atoms100k = 400;
+};
+
+[[nodiscard]] DockingBench bench_docking(const DockingBenchSettings& settings = {});
 
 }  // namespace tact

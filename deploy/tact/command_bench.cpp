@@ -4,6 +4,7 @@
 
 #include "deploy/tact/bench_docking.hpp"
 #include "deploy/tact/bench_ipc.hpp"
+#include "deploy/tact/bench_mesh.hpp"
 #include "deploy/tact/bench_prep.hpp"
 #include "deploy/tact/bench_servo.hpp"
 #include "deploy/tact/commands.hpp"
@@ -48,6 +49,7 @@ json servo() {
 
 json docking() {
     const DockingBench b = bench_docking();
+    const MeshBench m = bench_mesh();
     return {{"force_kernel", b.kernel},
             {"force_us_n200_p50", b.force_us_n200_p50},
             {"force_us_n200_p99", b.force_us_n200_p99},
@@ -55,7 +57,13 @@ json docking() {
             {"force_us_atoms100k_p99", b.force_us_atoms100k_p99},
             {"force_ns_per_point_n200", b.ns_per_point_n200},
             {"force_ns_per_point_atoms100k", b.ns_per_point_atoms},
-            {"force_map_bytes", b.map_bytes}};
+            {"force_map_bytes", b.map_bytes},
+            {"jump_1m_ms", m.jump_ms},
+            {"jump_1m_back_ms", m.jump_back_ms},
+            {"jump_1m_copy_ms", m.copy_ms},
+            {"ns_per_vertex_contraction", m.ns_per_contraction},
+            {"ns_per_vertex_split", m.ns_per_vertex_split},
+            {"mesh_bytes_per_vertex", m.bytes_per_vertex}};
 }
 
 json docking_and_meshes() {
@@ -66,7 +74,7 @@ json docking_and_meshes() {
 
 constexpr Measure kMeasures[] = {
     {"servo", "how late a cycle of 1 ms begins", &servo},
-    {"docking", "one force of the docking model; how fast and well meshes are simplified",
+    {"docking", "one force of the docking model; changing the detail of a surface, and simplifying meshes",
      &docking_and_meshes},
     {"ipc", "publishing and reading the state of a servo cycle", &ipc},
 };

@@ -13,7 +13,7 @@ unset DISPLAY WAYLAND_DISPLAY
 export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 
 # The hand is armed when the window has drawn; a busy machine, or one with sanitizers, may need longer for that.
-for seconds in 4 15 60; do
+for seconds in 4 15 60 150; do
     "$bin/tact" demo dock --headless --seconds "$seconds" --session e2e --size 960x600 --out "$scratch/out" \
         >"$scratch/said" 2>&1
     code=$?

@@ -165,7 +165,7 @@ TEST(Eval, FailsInWordsAndLeavesNoHalfFile) {
 }
 
 TEST(BenchDocking, MeasuresSomething) {
-    const DockingBench bench = bench_docking();
+    const DockingBench bench = bench_docking({.steps_n200 = 1000, .steps_atoms100k = 20});
     EXPECT_GT(bench.force_us_n200_p50, 0.0);
     EXPECT_GT(bench.force_us_atoms100k_p50, bench.force_us_n200_p50);
     EXPECT_GE(bench.force_us_atoms100k_p99, bench.force_us_atoms100k_p50);
