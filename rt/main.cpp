@@ -170,6 +170,15 @@ struct ServoThread {
     int thread_id = 0;
     std::uint64_t faults_at_start = 0;
     pthread_t handle{};
+    bool started = false;
+
+    // Where the house fails, the servo ends in order before anything that it uses goes.
+    ~ServoThread() {
+        if (!started) return;
+        int none = 0;
+        mail.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
+        join();
+    }
 
     static void* body(void* self) {
         ServoThread& t = *static_cast<ServoThread*>(self);
@@ -193,9 +202,13 @@ struct ServoThread {
         pthread_attr_destroy(&attributes);
         if (error != 0)
             throw StartupError("starting the servo thread", std::strerror(error), "free some memory");
+        started = true;
         running.wait(0, std::memory_order_acquire);
     }
-    void join() const { pthread_join(handle, nullptr); }
+    void join() {
+        started = false;
+        pthread_join(handle, nullptr);
+    }
 };
 
 void say_how_it_went(const RtRegion& region) {

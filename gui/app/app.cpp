@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gui/app/body_list.hpp"
@@ -85,6 +86,7 @@ public:
             frame(now, last && !options_.screenshot.empty());
             if (!last) clock_.pace(fps_max_);
         }
+        desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
         if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
         return picture_failed_ ? 1 : 0;
     }
@@ -138,7 +140,10 @@ private:
     }
 
     void start_loading(const std::string& path) {
-        if (loader_.start(path)) state_.scene.status = "Loading " + path + " ...";
+        if (loader_.start(path))
+            state_.scene.status = "Loading " + path + " ...";
+        else
+            next_scene_ = path;
     }
 
     void follow_scene() {
@@ -153,6 +158,7 @@ private:
                 state_.scene.status = loaded->error;
             }
         }
+        if (!next_scene_.empty() && !loader_.running()) start_loading(std::exchange(next_scene_, {}));
         if (!content_ || !controller_.attached()) {
             state_.scene.warning.clear();
             return;
@@ -381,6 +387,7 @@ private:
     ViewOptions view_options_;
     Camera camera_;
     SceneLoader loader_;
+    std::string next_scene_;  // asked for while another was being read
     std::size_t left_out_ = 0;
     bool picture_wanted_ = false, picture_failed_ = false;
 };

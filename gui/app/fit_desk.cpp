@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
@@ -101,6 +102,8 @@ void FitDesk::follow(const BodyList& list, const BodiesTopic* topic, std::vector
                 say(Grade::bad, done->error);
             else if (done->result.end == RefineEnd::no_density)
                 say(Grade::watch, "refine: the map is flat here; move the body closer");
+            else if (topic == nullptr)
+                say(Grade::watch, "refine: no controller is there to move the body");
             else if (list.find(done->start.id) != nullptr) {
                 commands.push_back(placement(done->start.id, done->result.T_model_body));
                 say(Grade::good, end_text(*done));
@@ -112,6 +115,15 @@ void FitDesk::follow(const BodyList& list, const BodiesTopic* topic, std::vector
             say(Grade::good, "saved in " + saving_to_);
         else
             say(Grade::bad, "saving failed: " + saved->output);
+    }
+}
+
+void FitDesk::finish_saving(Duration patience) {
+    const Instant end = Monotonic::now() + patience;
+    while (saving_.running() && Monotonic::now() < end) {
+        if (const auto saved = saving_.poll(); saved && !saved->good())
+            spdlog::error("saving failed: {}", saved->output);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
 }
 
@@ -167,9 +179,15 @@ void FitDesk::save(const BodyList& list) {
     if (!content_ || saving_.running()) return;
     saving_to_ = folder_name();
     try {
-        std::filesystem::create_directory(saving_to_);
+        if (!std::filesystem::create_directory(saving_to_))
+            throw StartupError("saving in " + saving_to_, "it is there already", "save again in a second");
         const std::string poses = saving_to_ + "/poses.json";
-        std::ofstream(poses) << poses_json(list, *content_).dump(2) << '\n';
+        std::ofstream out(poses);
+        out << poses_json(list, *content_)
+                   .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << '\n'
+            << std::flush;
+        if (!out) throw StartupError("writing " + poses, "it failed", "check the space of the disk");
         saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
     } catch (const std::exception& e) {
         say(Grade::bad, e.what());
@@ -190,7 +208,7 @@ void FitDesk::describe(const BodyList& list, const BodiesTopic* topic, FittingFa
         f.in_hand = active == i;
         f.fixed = (b.flags & kBodyFixed) != 0;
         f.hidden = b.hidden;
-        f.colour = kBodyColours[i % kBodyColours.size()];
+        f.colour = kBodyColours[b.id % kBodyColours.size()];
         facts.bodies.push_back(std::move(f));
     }
     facts.options = topic != nullptr ? topic->options : 0;

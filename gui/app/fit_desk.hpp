@@ -26,6 +26,8 @@ public:
     // Once a frame; topic: of the attached controller, or null. Commands that became due are added.
     void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);
     void act(const FitWish& wish, const BodyList& list, std::vector<Command>& commands);
+    // At the end: a save under way is let end, for so long at the most.
+    void finish_saving(Duration patience);
     // For the panels.
     void describe(const BodyList& list, const BodiesTopic* topic, FittingFacts& facts, FitFacts& fit) const;
 

@@ -111,7 +111,7 @@ FitHistory::Places FitHistory::revert() {
 FitHistory::Places FitHistory::go(const Places& to) {
     Places moves = difference(now_, to);
     if (!moves.empty()) {
-        awaited_ = boundary_.placements + moves.size();
+        awaited_ = (patience_ > 0 ? awaited_ : boundary_.placements) + moves.size();
         patience_ = kPatience;
         base_ = now_ = to;
     }

@@ -44,10 +44,12 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--colour", options.look.colouring, "bodies by chain, element or body")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{
             {"chain", Colouring::chain}, {"element", Colouring::element}, {"body", Colouring::body}}));
-    app.add_option("--contour",
-                   "a surface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four: the level in the map's unit, "
-                   "with s in sigma, with % of the map's volume; styles glass, solid, wire")
-        ->expected(1, static_cast<int>(kContoursMax))
+    app.add_option(
+           "--contour",
+           "a surface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four times: the level in the map's unit, "
+           "with s in sigma, with % of the map's volume; styles glass, solid, wire")
+        ->expected(1)
+        ->take_all()  // repeated, as what follows may be the scene
         ->type_name("CONTOUR")
         ->each(
             [&options](const std::string& text) { options.contours.push_back(read_contour_option(text)); });

@@ -18,7 +18,7 @@ public:
         std::shared_ptr<const SceneContent> content;  // null: it failed
         std::string error;
     };
-    // While another is being read, nothing: the newest is asked for again when that one is done.
+    // False, and nothing is begun, while another is being read.
     bool start(const std::string& path);
     [[nodiscard]] bool running() const { return loading_.valid(); }
     [[nodiscard]] std::optional<Outcome> poll();  // once, when it is done

@@ -27,6 +27,7 @@ namespace tact {
 namespace {
 
 constexpr double kCutSigmas = 5.0;
+constexpr double kSigmaVoxelsMax = 1000.0;  // 200 A, the widest that is baked, in voxels of 0.05 A
 constexpr double kSigmaVoxelsMin = 0.5;  // finer than that the samples of a Gaussian no longer stand for it
 
 struct Tables {
@@ -62,8 +63,8 @@ std::vector<float> filtered(const std::vector<float>& in, const std::array<std::
                             std::size_t axis, const std::vector<double>& half) {
     std::vector<float> out(in.size(), 0.0F);
     const std::size_t nx = size[0], rows = std::size_t{size[1]} * size[2];
-    const auto radius = static_cast<std::ptrdiff_t>(half.size()) - 1;
     const auto n = static_cast<std::ptrdiff_t>(size[axis]);
+    const auto radius = std::min(static_cast<std::ptrdiff_t>(half.size()), n) - 1;  // beyond there is nothing
     for (std::size_t row = 0; row < rows; ++row) {
         float* const to = out.data() + row * nx;
         const auto place = static_cast<std::ptrdiff_t>(axis == 1 ? row % size[1] : row / size[1]);
@@ -99,7 +100,13 @@ DensityGrid laplacian_map(const DensityGrid& grid, double background, double res
     const double sigma_m = kSigmaPerResolution * resolution_m;
     std::array<Tables, 3> axis;
     for (std::size_t a = 0; a < 3; ++a) {
-        axis[a] = tables(sigma_m / grid.spacing_m[static_cast<Eigen::Index>(a)]);
+        const double sigma_voxels = sigma_m / grid.spacing_m[static_cast<Eigen::Index>(a)];
+        if (!(sigma_voxels <= kSigmaVoxelsMax)) {
+            throw StartupError("filtering the map for its contours",
+                               "its voxels are far finer than its resolution",
+                               "bin the map and bake it again");
+        }
+        axis[a] = tables(sigma_voxels);
     }
     std::vector<float> bent = filtered(out.values, grid.size, 0, axis[0].bend);
     std::vector<float> smooth = filtered(out.values, grid.size, 0, axis[0].smooth);

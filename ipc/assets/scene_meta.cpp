@@ -47,6 +47,7 @@ SceneMeta read_meta(const SceneFile& file) {
     for (const double c : meta.centre_model_m) within("centre_model_m", c, -1e6, 1e6);
     within("resolution_m", meta.resolution_m, 0.0, 1.0);
     if (meta.kind == SceneKind::docking) {
+        within("resolution_m", meta.resolution_m, 0.0, 1e-7);
         within("energy_j_per_sigma", meta.energy_j_per_sigma, 1e-12, 1e6);
         within("map_sigma", meta.map_sigma, 1e-30, 1e30);
         if (meta.body_count == 0 || meta.body_count > kSceneBodiesMax) {

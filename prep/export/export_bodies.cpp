@@ -1,5 +1,7 @@
 #include "prep/export/export_bodies.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -181,12 +183,15 @@ std::string csv_row(const PlacedBody& body, const std::string& name, const std::
                          static_cast<unsigned long long>(m.clashes));
 }
 
-// A, B, … Z, a … z, 0 … 9, then AA, AB, … which only mmCIF has room for.
+// A, B, … Z, a … z, 0 … 9, then AA, AB, … ZZ, AAA, … which only mmCIF has room for.
 std::string chain_id(std::size_t n) {
     constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
     if (n < kLetters.size()) return std::string(1, kLetters[n]);
-    n -= kLetters.size();
-    return {kLetters[(n / 26) % 26], kLetters[n % 26]};
+    std::string id;
+    for (n = n - kLetters.size() + 26;; n = n / 26 - 1) {
+        id.insert(id.begin(), kLetters[n % 26]);
+        if (n < 26) return id;
+    }
 }
 
 // The first model of every body, in the order of the bodies.
@@ -221,13 +226,17 @@ std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::v
 
 // Beside the target first, so that it is whole or absent.
 void write_whole(const fs::path& path, const std::string& text) {
-    const fs::path part = path.string() + ".part";
+    const fs::path part = path.string() + ".part" + std::to_string(::getpid());
+    std::error_code ignored;
+    fs::remove(part, ignored);  // also a link
     {
         std::ofstream out(part, std::ios::binary | std::ios::trunc);
         out << text << std::flush;
-        if (!out)
+        if (!out) {
+            fs::remove(part, ignored);
             throw StartupError(kAttempt, part.string() + " cannot be written",
                                "check the space and the permissions of the folder");
+        }
     }
     std::error_code failed;
     fs::rename(part, path, failed);

@@ -149,14 +149,16 @@ std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name
         }
         gemmi::cif::Table adp = block.find("_atom_site_anisotrop.", {"id", "U[1][1]", "U[2][2]", "U[3][3]",
                                                                      "U[1][2]", "U[1][3]", "U[2][3]"});
-        std::size_t next = 0;  // both tables are in the same order
+        const std::unordered_map<std::string, std::size_t> atom_of(ids.begin(), ids.end());
         for (gemmi::cif::Table::Row r : adp) {
-            while (next < ids.size() && ids[next].first != r[0]) ++next;
-            if (next == ids.size()) break;
+            const auto at = atom_of.find(gemmi::cif::as_string(r[0]));
+            bool known = at != atom_of.end();
+            for (std::size_t k = 1; k <= 6; ++k) known = known && r.has2(k);  // neither '.' nor '?'
+            if (!known) continue;
             Adp u{};
             for (int k = 0; k < 6; ++k)
                 u[static_cast<std::size_t>(k)] = file_number(r[k + 1], "U", name, "atom_site_anisotrop");
-            atoms[ids[next].second].adp_u = u;
+            atoms[at->second].adp_u = u;
         }
         break;
     }

@@ -109,7 +109,7 @@ void Servo::obey(CycleState& c, const ServoOrder& order) noexcept {
         case CommandKind::set_level:
             return answer(governor_.set_level(order.index, order.value));
         case CommandKind::set_fidelity_auto:
-            governor_.set_law(kDefaultLaw);
+            governor_.set_law(settings_.governor.law == Law::fixed ? kDefaultLaw : settings_.governor.law);
             return answer(true);
         case CommandKind::none:  // refused by the house thread, which says why in the index
             return acknowledge(order, static_cast<CommandResult>(order.index));

@@ -39,9 +39,11 @@ std::unique_ptr<DockingModel> two_structures() {
         big.mass_fraction.push_back(1.0F / static_cast<float>(10 * helix.size()));
     }
     const Codebook book = read_codebook(scene, 0);
+    Codebook finer = book;  // 30, 240 and all 2400: it starts in the middle
+    finer.levels.push_back({helix.x_m, helix.y_m, helix.z_m, helix.mass_fraction, {}, 0.0});
     return std::make_unique<DockingModel>(read_meta(scene), read_felt_grid(scene),
                                           std::vector<Structure>{helix, big},
-                                          std::vector<Codebook>{book, book}, DockingSettings{});
+                                          std::vector<Codebook>{book, finer}, DockingSettings{});
 }
 
 // The loop in lockstep with a wandering hand; it owns whatever model it ends with.
@@ -158,7 +160,8 @@ TEST(BodiesScenario, a_body_of_another_structure_enters_at_a_level_that_fits_and
     EXPECT_FLOAT_EQ(loop.level(), grown);
     EXPECT_EQ(loop.order(CommandKind::select_body, 0.0, 2), CommandResult::done);
     EXPECT_FLOAT_EQ(loop.level(), loop.servo_->state().hand[0].model->knob().start);
-    EXPECT_LE(loop.servo_->state().hand[0].step.load.items, 2400U);
+    EXPECT_LT(loop.level(), grown);
+    EXPECT_LE(loop.servo_->state().hand[0].step.load.items, 240U);
 }
 
 TEST(BodiesScenario, ids_stay_with_their_bodies_and_are_never_given_again) {

@@ -67,6 +67,21 @@ TEST(FitHistory, UndoGoesBackOneGestureAndRedoForthAgain) {
     EXPECT_EQ(s.history.redoable(), 0U);
 }
 
+TEST(FitHistory, TwoUndosBeforeTheControllerObeyedTheFirstAreTwo) {
+    Scene s;
+    for (const double x : {3.0, 6.0}) {
+        s.drag(1, x);
+        s.grip();
+    }
+    FitHistory::Places moves = s.history.undo();
+    for (const Move& m : s.history.undo()) moves.push_back(m);
+    ASSERT_EQ(moves.size(), 2U);
+    s.obey(moves);
+    EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
+    EXPECT_EQ(s.history.undoable(), 0U);
+    EXPECT_EQ(s.history.redoable(), 2U);
+}
+
 TEST(FitHistory, AGripWithoutAMoveIsNoGesture) {
     Scene s;
     for (int i = 0; i < 5; ++i) s.grip();

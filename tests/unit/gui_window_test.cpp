@@ -147,10 +147,11 @@ TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
 
 TEST_F(GuiWindow, StartsWithTheLooksOfTheCommandLine) {
     const std::string picture = folder_ + "/looks.png";
-    EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1", "--screenshot", picture, "--molecule", "spheres",
-                   "--colour", "element", "--no-depth-cue", "--contour", "0.5", "0.3:ff8000:0.5:wire"})
-                  ->wait(),
-              0)
+    EXPECT_EQ(
+        gui({scene(), "--hidden", "--seconds", "1", "--screenshot", picture, "--molecule", "spheres",
+             "--colour", "element", "--no-depth-cue", "--contour", "0.5", "--contour", "0.3:ff8000:0.5:wire"})
+            ->wait(),
+        0)
         << log();
     EXPECT_GT(colours(picture, 640, 480).size(), 100U) << log();
     EXPECT_NE(gui({scene(), "--contour", "half"})->wait(), 0);

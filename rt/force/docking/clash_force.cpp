@@ -112,7 +112,8 @@ ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_p
     SeededRandom random(20261121);
     double most = 0.0;
     std::size_t one = 0, two = 0;
-    for (int k = 0; k < kEncounters; ++k) {
+    const int pairs = static_cast<int>(fields.size() * (fields.size() + 1) / 2);
+    for (int k = 0; k < std::max(kEncounters, 6 * pairs); ++k) {
         const ClashBody other{&fields[two], {Vec3::Zero(), random.rotation()}};
         const Vec3 side = random.direction();
         const Pose start{Vec3::Zero(), random.rotation()};

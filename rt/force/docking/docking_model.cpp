@@ -329,9 +329,13 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
         body.p_m = parts_->meta.to_model(hand.p_m + com_from_tool_world_m_);
         body.q = (hand.q * q_tool_body_).normalized();
     }
+    StepResult clash;  // first: where time runs out, only the density can do with less
+    add_clash(body, clash);
     StepResult result = evaluate_density(body, budget);
     audit(result, body);
-    add_clash(body, result);
+    result.wrench_world.force_n += clash.wrench_world.force_n;
+    result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
+    result.load.cost += clash.load.cost;
     const double gain = ramp_gain(ramp_);
     result.wrench_world.force_n *= gain;
     result.wrench_world.torque_n_m *= gain;
@@ -434,13 +438,18 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
     com_from_tool_world_m_ = before.com_from_tool_world_m_;
     q_tool_body_ = before.q_tool_body_;
     clutched_ = before.clutched_;  // the same gesture goes on
+    error_scale_ = before.error_scale_;
     fade(before.shown_);
     static_cast<void>(choose_density());
     return true;
 }
 
 void DockingModel::give_up() noexcept {
-    bodies_.list().options_asked = whole_->options | (bodies_.list().options_asked & kOptionClash);
+    // What is felt goes on, unless it was made for another body in the hand or for other neighbours.
+    const bool stays = (felt_->options & kOptionSubtraction) == 0 ||
+                       (felt_->active_id == bodies_.active_id() && felt_->others == bodies_.list().others);
+    const std::uint32_t felt = stays ? felt_->options : whole_->options;
+    bodies_.list().options_asked = felt | (bodies_.list().options_asked & kOptionClash);
     if (choose_density()) fade(shown_);
 }
 
