@@ -36,7 +36,7 @@ void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& 
             row(theme, "All bodies", format("%.4f", f.all.cc_zero),
                 format("about zero, %.4f mean", f.all.cc_mean));
         const FitMetrics& m = f.body_id != 0 ? f.body : f.all;
-        if (f.bodies > 1) row(theme, "Clashes", grouped(m.clashes), "pairs of atoms, with other bodies");
+        if (f.bodies > 1) row(theme, "Clashes", grouped(m.clashes), "atom pairs with other bodies");
         text_small(theme, colour::kDim,
                    format("Region: %s, %s voxels. Simulated at %.1f Å%s, Gaussians, weight Z.", kFitRegion,
                           grouped(m.region_voxels).c_str(), f.resolution_m / kAngstromM,

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ipc/topics/bodies.hpp"
+
 namespace tact {
 namespace {
 
@@ -253,6 +255,7 @@ std::string event_text(const EventTopic& event) {
         case EventCode::device_watchdog:
             return what + ": " + a + " ms without a cycle";
         case EventCode::body_selected:
+            if (event.a == static_cast<double>(kNoBody)) return "no body in the hand";
             return what + ": body " + a + ", " + b + " points";
         case EventCode::bodies_changed:
             return what + ": " + a + " now";

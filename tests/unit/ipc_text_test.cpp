@@ -46,6 +46,8 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.5, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
+    EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
+    EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }
 
