@@ -21,7 +21,7 @@ constexpr std::uint32_t kSide = 1024, kBaseSide = 8;
 // Grid numbers in the order in which they go, and where each goes.
 struct Contractions {
     std::vector<std::uint32_t> gone;
-    std::vector<std::uint32_t> into = std::vector<std::uint32_t>(kSide * kSide);
+    std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kSide} * kSide);
 };
 
 Contractions contractions() {
@@ -53,7 +53,8 @@ Contractions contractions() {
 }
 
 MeshVertex torus_vertex(std::uint32_t at) {
-    const double u = 2.0 * std::numbers::pi * (at / kSide) / kSide;
+    const std::uint32_t row = at / kSide;
+    const double u = 2.0 * std::numbers::pi * row / kSide;
     const double v = 2.0 * std::numbers::pi * (at % kSide) / kSide;
     const double ring = 1.0 + 0.3 * std::cos(v);
     const auto pack = [](double x) { return static_cast<std::int16_t>(std::lround(32767.0 * x)); };

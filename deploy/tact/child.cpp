@@ -36,7 +36,7 @@ struct Image {
             if (!replaced) variables.emplace_back(entry);
         }
         for (const auto& [key, value] : settings.environment)
-            if (!value.empty()) variables.push_back(key + "=" + value);
+            if (!value.empty()) variables.emplace_back(key).append("=").append(value);
         for (auto& w : words) argv.push_back(w.data());
         for (auto& v : variables) envp.push_back(v.data());
         argv.push_back(nullptr);
@@ -84,7 +84,7 @@ std::string Ending::text() const {
     return t;
 }
 
-Child::Child(std::string name, const std::filesystem::path& program, ChildSettings settings)
+Child::Child(std::string name, const std::filesystem::path& program, const ChildSettings& settings)
     : name_(std::move(name)), grace_(settings.grace) {
     const Image image(program.string(), settings);
     cpu_set_t cores;
@@ -168,7 +168,7 @@ std::filesystem::path find_in_path(const std::string& name) {
     std::string_view rest = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
     while (!rest.empty()) {
         const auto end = rest.find(':');
-        const std::filesystem::path candidate = std::filesystem::path(rest.substr(0, end)) / name;
+        std::filesystem::path candidate = std::filesystem::path(rest.substr(0, end)) / name;
         if (candidate.is_absolute() && access(candidate.c_str(), X_OK) == 0) return candidate;
         rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
     }

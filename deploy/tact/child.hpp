@@ -42,7 +42,7 @@ struct ChildSettings {
 class Child {
 public:
     // Throws StartupError where the program cannot be started.
-    Child(std::string name, const std::filesystem::path& program, ChildSettings settings);
+    Child(std::string name, const std::filesystem::path& program, const ChildSettings& settings);
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     ~Child();  // kills and reaps what is still running
