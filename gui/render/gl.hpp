@@ -75,7 +75,9 @@ inline void set_uniform(GLint place, const Eigen::Matrix4f& m) {
 // An attribute of interleaved data; offset in bytes.
 inline void attribute(GLuint place, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                       std::size_t offset) {
-    glVertexAttribPointer(place, size, type, normalized, stride, reinterpret_cast<const void*>(offset));
+    // OpenGL takes the offset in the guise of a pointer.
+    const void* const at = reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)
+    glVertexAttribPointer(place, size, type, normalized, stride, at);
     glEnableVertexAttribArray(place);
 }
 

@@ -121,6 +121,7 @@ private:
         add_list(level, true);
         // Where the patch changes lists: spread evenly over the octave by the golden ratio.
         const double phase = std::fmod((patch + 0.5) * 0.6180339887498949, 1.0);
+        // NOLINTNEXTLINE(cert-flp30-c): it is halved, not counted
         for (double next = level * std::exp2(-phase); !member_.empty(); next *= 0.5) {
             const auto to = static_cast<std::uint32_t>(next);
             if (to <= data_.base_vertices) break;

@@ -14,7 +14,7 @@ ModelBuilder::ModelBuilder(ServoMail& mail, int servo_thread_id)
     : mail_(mail), servo_thread_id_(servo_thread_id) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, 1024 * 1024);  // it is locked as a whole
+    pthread_attr_setstacksize(&attributes, std::size_t{1} << 20);  // it is locked as a whole
     const int error = pthread_create(&thread_, &attributes, &body, this);
     pthread_attr_destroy(&attributes);
     if (error != 0)
