@@ -8,9 +8,8 @@
 //           elsewhere, comes into the hand. With the clutch held the body stays and the tool moves alone; so
 //           it does with a fixed body in the hand, of which nothing is felt.
 // Clash     with kOptionClash bodies push each other apart, clash_force.hpp; a constant-time order, as its
-// fields
-//           are made with the model. It is no part of the knob: a wall that comes and goes with the load
-//           would be worse than one that always costs.
+//           fields are made with the model. It is no part of the knob: a wall that comes and goes with the
+//           load would be worse than one that always costs.
 // Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
 //           fade to zero; only then does the new one fade in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
@@ -34,24 +33,14 @@
 #include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
+#include "rt/force/docking/docking_start.hpp"
 #include "rt/force/docking/error_audit.hpp"
 #include "rt/force/docking/felt_density.hpp"
+#include "rt/force/docking/force_fade.hpp"
+#include "rt/force/docking/level_blend.hpp"
 #include "rt/force/force_model.hpp"
 
 namespace tact {
-
-struct DockingSettings {
-    // Where the first body starts, away from its home: a distance in a random direction, an angle about a
-    // random axis.
-    double start_offset_m = 0.0;
-    double start_rotation_rad = 0.0;
-    std::uint64_t seed = 1;
-    double force_scale = 1.0;  // times the scene's gain
-    // In place of one body of each structure at home; the offset and rotation above are then not used.
-    std::vector<StartBody> bodies{};
-    // Behind the others.
-    std::vector<StartBody> more_bodies{};
-};
 
 class DockingModel final : public ForceModel {
 public:
@@ -85,38 +74,22 @@ public:
 
     static constexpr const char* kKnobPath = "docking.force";
     // Steps over which the force fades in after a grip, and out when the clutch is pressed.
-    static constexpr int kRampSteps = 256;
+    static constexpr int kRampSteps = ForceFade::kRampSteps;
 
 private:
-    struct Plan {  // levels to be summed for a fidelity: (1 - blend) * lower + blend * upper
-        std::size_t lower, upper;
-        double blend;
-    };
-
     DockingModel(const DockingModel& like, const ModelBodies& bodies);  // rebuilt
 
     [[nodiscard]] double newtons_per_gradient() const noexcept {
         return energy_j_per_sigma_ / parts_->meta.world_per_model;
     }
-    [[nodiscard]] const std::vector<PointSet>& levels() const noexcept {
-        return parts_->levels[bodies_.structure()];
-    }
-    [[nodiscard]] const std::vector<LevelFigures>& figures() const noexcept {
-        return felt_->figures[bodies_.structure()];
-    }
-    [[nodiscard]] double error_n(std::size_t level) const noexcept;
-    [[nodiscard]] Plan plan(float fidelity) const noexcept;
-    [[nodiscard]] bool sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
-                                 DensitySums& sums) const noexcept;
-    [[nodiscard]] Wrench wrench(const DensitySums& sums) const noexcept;
-    [[nodiscard]] StepResult evaluate_density(const Pose& T_model_body, const Budget& budget) const noexcept;
+    [[nodiscard]] LevelBlend blend() const noexcept;  // of the structure in the hand
     void add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
     void show_options() noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
-    void fade(const Wrench& shown) noexcept;
-    void let_go(const Wrench& shown) noexcept;
+    void fade(const ForceFade& shown) noexcept;
+    void let_go() noexcept;
     bool choose_density() noexcept;
 
     std::shared_ptr<const DockingParts> parts_;
@@ -131,9 +104,8 @@ private:
     // rotation.
     Vec3 com_from_tool_world_m_ = Vec3::Zero();
     Quat q_tool_body_ = Quat::Identity();
-    int ramp_ = 0;            // 0: no force, kRampSteps: all of it
-    bool clutched_ = true;    // until the first good step, which takes the grip where the tool then is
-    Wrench shown_, leaving_;  // of the last step; of what was in the hand before, on its way to zero
+    bool clutched_ = true;  // until the first good step, which takes the grip where the tool then is
+    ForceFade fade_;
     ErrorAudit audit_;
     std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
 };

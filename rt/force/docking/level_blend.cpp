@@ -1,0 +1,129 @@
+// Derivation. A body has points x_i = c + q b_i with weights w_i, sum w_i = 1, b_i from its centre of mass,
+// so c is that centre. With U = -k_E sum w_i rho(x_i), a displacement dc and a small rotation dphi (model
+//     axes) give dU = -k_E sum w_i grad rho(x_i) . (dc + dphi x (x_i - c))
+//        = -k_E [ (sum w_i grad rho) . dc + (sum w_i (x_i - c) x grad rho) . dphi ].
+// The seed prints the torque as w_i x grad rho; the lever arm is from the centre of mass, as here. World axes
+// are parallel to model axes and dx_world = S dx_model (S = world_per_model), so what the hand feels is
+//     F_world = (k_E / S) sum w_i grad rho,    Q_world = k_E sum w_i (x_i - c) x grad rho,
+// which is the derivative of the same U by the tool's place and rotation: whatever path the hand takes, no
+// energy is gained. As the weights sum to one, neither depends on how many points stand for the body.
+//
+// Between two levels the wrenches are blended linearly. A blend is the derivative of the blended energies:
+// still conservative while the knob stands still, and continuous when it turns.
+#include "rt/force/docking/level_blend.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/force/docking/docking_parts.hpp"
+
+namespace tact {
+
+namespace {
+
+// Points between two looks at the clock: some 25 us here.
+constexpr std::size_t kChunk = 2048;
+// Where the level asked for is bigger, one of at most 1/kSafeShare of it is summed first, to fall back on.
+constexpr std::size_t kSafeShare = 16;
+constexpr double kOnLevel = 1e-5;  // of the way to the next level
+
+bool is_over(Instant deadline) { return deadline != Instant::max() && Monotonic::now() >= deadline; }
+
+}  // namespace
+
+float LevelBlend::start_fidelity() const noexcept {
+    std::size_t start = 0;
+    while (start + 1 < levels.size() && levels[start].size() < 200) ++start;  // as in the seed
+    return levels.size() > 1 ? static_cast<float>(start) / static_cast<float>(levels.size() - 1) : 1.0F;
+}
+
+LevelBlend::Plan LevelBlend::plan(float fidelity) const noexcept {
+    const double f = fidelity > 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;
+    const std::size_t last = levels.size() - 1;
+    double place = f * static_cast<double>(last);
+    // A level's own fidelity is seldom a float; a hair above it the next level would be summed for nothing.
+    if (std::abs(place - std::round(place)) < kOnLevel) place = std::round(place);
+    const auto lower = std::min(static_cast<std::size_t>(place), last);
+    const double blend = place - static_cast<double>(lower);
+    return {lower, blend > 0.0 ? lower + 1 : lower, blend};
+}
+
+std::uint32_t LevelBlend::items(float fidelity) const noexcept {
+    return static_cast<std::uint32_t>(levels[plan(fidelity).upper].size());
+}
+
+double LevelBlend::error_n(std::size_t level) const noexcept { return error_scale * figures[level].error_n; }
+
+PathLoad LevelBlend::predict(float fidelity) const noexcept {
+    const Plan p = plan(fidelity);
+    PathLoad load;
+    load.cost_predicted = figures[p.lower].cost + (p.upper != p.lower ? figures[p.upper].cost : Duration{0});
+    load.error = (1.0 - p.blend) * error_n(p.lower) + p.blend * error_n(p.upper);
+    load.items = static_cast<std::uint32_t>(levels[p.upper].size());
+    return load;
+}
+
+bool LevelBlend::sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
+                           DensitySums& sums) const noexcept {
+    sums = DensitySums{};
+    const std::size_t n = points.size();
+    for (std::size_t begin = 0; begin < n; begin += kChunk) {
+        if (n > DockingParts::kAlways && is_over(deadline)) return false;
+        const DensitySums part = map.sum(points.view(begin, std::min(kChunk, n - begin)), T_model_body);
+        sums.density_sigma += part.density_sigma;
+        sums.gradient += part.gradient;
+        sums.moment += part.moment;
+    }
+    return true;
+}
+
+Wrench LevelBlend::wrench(const DensitySums& sums) const noexcept {
+    return {newtons_per_gradient * sums.gradient, energy_j_per_sigma * sums.moment};
+}
+
+StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
+    const Instant begin = Monotonic::now();
+    StepResult result;
+    if (!T_model_body.finite()) {
+        result.status = StepStatus::out_of_range;
+        return result;
+    }
+    result.load = predict(budget.fidelity);
+    const Plan p = plan(budget.fidelity);
+    const auto use = [&](std::size_t level, const DensitySums& sums) {
+        result.wrench_world = wrench(sums);
+        result.load.error = error_n(level);
+        result.load.items = static_cast<std::uint32_t>(levels[level].size());
+    };
+    DensitySums lower, upper;
+    const std::size_t wanted = levels[p.lower].size();
+    if (wanted > DockingParts::kAlways) {  // something to fall back on, small beside the whole
+        std::size_t safe = 0;
+        while (levels[safe + 1].size() <= std::min(DockingParts::kAlways, wanted / kSafeShare)) ++safe;
+        if (sum_level(levels[safe], T_model_body, Instant::max(), lower)) use(safe, lower);
+    }
+    if (!sum_level(levels[p.lower], T_model_body, budget.deadline, lower)) {
+        result.status = StepStatus::out_of_time;
+    } else {
+        use(p.lower, lower);
+        if (p.upper != p.lower) {
+            if (is_over(budget.deadline) ||
+                !sum_level(levels[p.upper], T_model_body, budget.deadline, upper)) {
+                result.status = StepStatus::out_of_time;
+            } else {
+                const Wrench a = wrench(lower), b = wrench(upper);
+                result.wrench_world.force_n = (1.0 - p.blend) * a.force_n + p.blend * b.force_n;
+                result.wrench_world.torque_n_m = (1.0 - p.blend) * a.torque_n_m + p.blend * b.torque_n_m;
+                const PathLoad promised = predict(budget.fidelity);
+                result.load.error = promised.error;
+                result.load.items = promised.items;
+            }
+        } else if (is_over(budget.deadline)) {
+            result.status = StepStatus::out_of_time;  // complete, but too late
+        }
+    }
+    result.load.cost = Monotonic::now() - begin;
+    return result;
+}
+
+}  // namespace tact

@@ -1,0 +1,29 @@
+// Which poses of the tool and of bodies are taken for real.
+//
+// Thread   any; constant time, no allocation.
+#pragma once
+
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+// From the scene's centre, world axes: a hand, and a body, is never farther away.
+inline constexpr double kReachM = 10.0;
+
+// Finite, and with a rotation; it may have to be normalized.
+[[nodiscard]] inline bool is_pose(const Pose& pose) noexcept TACT_RT {
+    const double turn = pose.q.norm();
+    return pose.finite() && turn > 0.9 && turn < 1.1;
+}
+
+[[nodiscard]] inline bool is_in_reach(const Pose& T_world_tool) noexcept TACT_RT {
+    return is_pose(T_world_tool) && T_world_tool.p_m.norm() <= kReachM;
+}
+
+[[nodiscard]] inline bool is_placeable(const SceneMeta& meta, const Pose& T_model_body) noexcept TACT_RT {
+    return is_pose(T_model_body) && meta.to_world(T_model_body.p_m).norm() <= kReachM;
+}
+
+}  // namespace tact
