@@ -201,6 +201,22 @@ TEST(DockingOptions, AClashIsFeltAtOnceWithoutAStepOfTheForce) {
     EXPECT_LT((felt_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
 }
 
+TEST(DockingOptions, AnOrderBetweenTakeOverAndStepDoesNotCutTheForce) {
+    DockingSettings settings;
+    settings.start_offset_m = 6.0 * kA;
+    const auto model = make_model(settings);
+    ToolState tool;
+    model->reset(tool);
+    StepResult before;
+    for (int i = 0; i < 2 * DockingModel::kRampSteps; ++i) before = model->step(tool, Budget{});
+    ASSERT_GT(before.wrench_world.force_n.norm(), 0.1);
+    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    const auto next = rebuilt(*model);
+    ASSERT_TRUE(set_option(*next, kOptionClash, true));
+    const StepResult after = next->step(tool, Budget{});
+    EXPECT_LT((after.wrench_world.force_n - before.wrench_world.force_n).norm(), 0.05);
+}
+
 TEST(DockingOptions, ForceScaleScalesTheClashToo) {
     DockingSettings settings;
     settings.force_scale = 0.5;

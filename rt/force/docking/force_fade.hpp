@@ -47,7 +47,7 @@ public:
     // Between steps: what another fade showed last fades from here, and what is felt instead fades in after
     // it.
     void follow(const ForceFade& before) noexcept TACT_RT {
-        leaving_ = before.shown_;
+        shown_ = leaving_ = before.shown_;
         ramp_ = 0;
     }
     // No force at once.
