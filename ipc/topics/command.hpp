@@ -35,7 +35,6 @@ enum class CommandResult : std::uint16_t {
     refused_state,
     refused_value,
     unknown,
-    refused_busy,  // not by this controller: what is ordered during a build is built after it
 };
 
 struct CommandTopic {

@@ -196,8 +196,6 @@ const char* command_result_text(CommandResult result) noexcept {
             return "refused: value out of range or name not known";
         case CommandResult::unknown:
             return "refused: command not known";
-        case CommandResult::refused_busy:
-            return "refused: the one before is still being prepared; ask again";
     }
     return kUnknown;
 }

@@ -30,7 +30,7 @@ TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(event_code_text, EventCode::bodies_changed, true);
     expect_own_words(level_reason_text, LevelReason::picture_high, false);
     expect_own_words(command_kind_text, CommandKind::set_laplacian, true);
-    expect_own_words(command_result_text, CommandResult::refused_busy, true);
+    expect_own_words(command_result_text, CommandResult::unknown, true);
     expect_own_words(frame_part_text, FramePart::swap, false);
 }
 
