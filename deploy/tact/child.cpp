@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include <cstring>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/parent_death.hpp"
 
 extern "C" char** environ;
 
@@ -52,8 +52,7 @@ struct Image {
         _exit(127);
     };
     setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) _exit(127);  // the parent went before the line above
+    if (!end_with_parent(parent, SIGTERM)) _exit(127);
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);

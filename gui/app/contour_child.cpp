@@ -1,5 +1,7 @@
 #include "gui/app/contour_child.hpp"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -48,7 +50,7 @@ RefineContour refine_by_child(std::shared_ptr<const SceneContent> content, const
         std::snprintf(text, sizeof text, "--level=%.17g", level);
         ChildJob job;  // ends before its folder goes
         job.start(program, {"contour", content->path.string(), text, "-o", out, "--vertices-max",
-                            std::to_string(kContourVerticesMax)});
+                            std::to_string(kContourVerticesMax), "--ends-with", std::to_string(getpid())});
         const Instant until = Monotonic::now() + kPatience;
         std::optional<ChildOutcome> outcome;
         while (!(outcome = job.poll())) {

@@ -1,4 +1,6 @@
 // tact-prep: files in, one baked scene out; or one mesh.
+#include <signal.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -6,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/parent_death.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/bake/bake_contour.hpp"
 #include "prep/bake/bake_docking.hpp"
@@ -31,6 +34,7 @@ struct Options {
     std::optional<double> contour, resolution_a, felt_resolution_a;
     double level = 0.0;
     std::uint32_t vertices_max = 1'000'000;
+    pid_t ends_with = 0;
     bool json = false;
 };
 
@@ -134,6 +138,7 @@ void bake(const Options& o, bool demo) {
 void contour(const Options& o) {
     check_target("write contour", o.scene, {o.source});
     Console console;
+    if (o.ends_with != 0 && !end_with_parent(o.ends_with, SIGTERM)) throw Cancelled{};
     SceneWriter out;
     const BakedContour baked =
         bake_contour(SceneFile::open(o.source), o.level, o.vertices_max, out, console.progress());
@@ -193,6 +198,9 @@ int run(int argc, char** argv) {
     level->add_option("-o,--output", o.scene, "the file to write")->required();
     level->add_option("--vertices-max", o.vertices_max, "most vertices of the surface; 0: all")
         ->capture_default_str();
+    level
+        ->add_option("--ends-with", o.ends_with, "for programs: cancel when process PID, the parent, is gone")
+        ->type_name("PID");
     CLI::App* const show = app.add_subcommand("info", "what a scene holds; checks all of it");
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");

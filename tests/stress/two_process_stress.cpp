@@ -5,7 +5,6 @@
 // usage: two_process_stress [SECONDS]
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "ipc/base/parent_death.hpp"
 #include "ipc/shm/latest.hpp"
 #include "ipc/shm/region.hpp"
 #include "ipc/shm/ring.hpp"
@@ -83,8 +83,7 @@ pid_t start_writer(OwnedRegion<StressRegion>& region) {
     const pid_t parent = getpid();
     const pid_t pid = fork();
     if (pid != 0) return pid;
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() == parent) write_until_killed(*region);
+    if (end_with_parent(parent, SIGKILL)) write_until_killed(*region);
     _exit(0);
 }
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -14,6 +15,7 @@
 #include <random>
 #include <string>
 
+#include "ipc/base/parent_death.hpp"
 #include "ipc/shm/latest.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/shm/ring.hpp"
@@ -105,6 +107,33 @@ TEST(Death, AWriterKilledWhilePublishingLeavesAWholeValueAndTheNextWriterGoesOn)
             << "the reader is at the end whatever the last cell holds";
     }
     EXPECT_GT(cut_short, 0U) << "no kill came between push and publish; the test has proved little";
+}
+
+TEST(Death, AChildThatAskedForItEndsWithItsParent) {
+    std::array<int, 2> life{};
+    ASSERT_EQ(pipe(life.data()), 0);
+    Child parent([&] {
+        const pid_t self = getpid();
+        if (fork() == 0) {
+            if (!end_with_parent(self, SIGKILL)) _exit(1);
+            static_cast<void>(!write(life[1], "x", 1));
+        }
+        for (;;) pause();
+    });
+    close(life[1]);
+    char said = 0;
+    ASSERT_EQ(read(life[0], &said, 1), 1);
+    parent.kill_now();
+    EXPECT_EQ(read(life[0], &said, 1), 0);  // comes back once both are gone
+    close(life[0]);
+}
+
+TEST(Death, AChildThatAskedTooLateIsTold) {
+    const pid_t child = fork();
+    if (child == 0) _exit(end_with_parent(getppid() + 1, SIGKILL) ? 0 : 3);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 class LinkDeath : public ::testing::Test {

@@ -118,6 +118,12 @@ TEST_F(Program, BakesAnotherContourOfAScene) {
     const Ended e = run({"contour", scene, text, "-o", out, "--vertices-max", "500"});
     ASSERT_EQ(e.code, 0) << e.err;
     EXPECT_EQ(read_contour(SceneFile::open(out), {file.checksum(), level})->vertices(), 500U);
+    // A parent that is not there any more cancels.
+    const fs::path late = folder_ / "late.tact";
+    EXPECT_EQ(run({"contour", scene, text, "-o", late, "--ends-with", std::to_string(getpid() + 1)}).code,
+              130);
+    EXPECT_FALSE(fs::exists(late));
+    EXPECT_EQ(run({"contour", scene, text, "-o", late, "--ends-with", std::to_string(getpid())}).code, 0);
     expect_refused({"contour", scene, "--level", "1e9", "-o", folder_ / "s.tact"}, {"no surface", "1e+09"});
     expect_refused({"contour", out, "--level", "1", "-o", folder_ / "s.tact"}, {"GRID"});
     expect_refused({"contour", scene, "--level", "1", "-o", scene}, {"input"});

@@ -14,6 +14,7 @@
 #include <cstring>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/parent_death.hpp"
 
 namespace tact::launch {
 namespace {
@@ -35,12 +36,13 @@ namespace {
 }  // namespace
 
 ExternalLoad::ExternalLoad(int core) {
+    const pid_t parent = getpid();
     pid_ = fork();
     if (pid_ < 0)
         throw StartupError("starting the external load", std::strerror(errno),
                            "raise the limit of processes (ulimit -u)");
     if (pid_ > 0) return;
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (!end_with_parent(parent, SIGKILL)) _exit(0);
     prctl(PR_SET_NAME, "external-load");
     cpu_set_t one;
     CPU_ZERO(&one);

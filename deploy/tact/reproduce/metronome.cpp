@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstddef>
 
+#include "ipc/base/parent_death.hpp"
+
 namespace tact::launch {
 
 Metronome::Metronome(int core) {
@@ -19,9 +21,8 @@ Metronome::Metronome(int core) {
     const pid_t parent = getpid();
     pid_ = fork();
     if (pid_ == 0) {
-        prctl(PR_SET_PDEATHSIG, SIGKILL);
         prctl(PR_SET_NAME, "metronome");
-        if (getppid() != parent) _exit(0);
+        if (!end_with_parent(parent, SIGKILL)) _exit(0);
         cpu_set_t one;
         CPU_ZERO(&one);
         CPU_SET(static_cast<std::size_t>(core), &one);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/signals.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/parent_death.hpp"
 
 namespace tact::launch {
 namespace {
@@ -46,8 +46,7 @@ int in_own_session(const std::function<int(Precedence)>& work) {
         throw StartupError("starting the experiment", std::strerror(errno),
                            "raise the limit of processes (ulimit -u)");
     if (child == 0) {
-        prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (getppid() != parent) _exit(130);
+        if (!end_with_parent(parent, SIGTERM)) _exit(130);
         setsid();
         int code = 1;
         try {
