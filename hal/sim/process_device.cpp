@@ -117,6 +117,7 @@ DeviceInfo ProcessDevice::open() {
         throw StartupError("memory shared with the emulated device", std::strerror(errno),
                            "free some memory");
     shared_ = new (memory) Shared{};
+    const pid_t parent = getpid();
     child_ = fork();
     if (child_ < 0) {
         const std::string why = std::strerror(errno);
@@ -125,21 +126,37 @@ DeviceInfo ProcessDevice::open() {
         throw StartupError("starting the emulated device's process", why,
                            "raise the limit of processes (ulimit -u)");
     }
-    if (child_ == 0) live(settings_);
-    // The first sample says that it lives.
+    if (child_ == 0) live(settings_, parent);
+    wait_for_life();
+    return info;
+}
+
+// The first sample says that it lives.
+void ProcessDevice::wait_for_life() {
     SampleWords first{};
     const Instant end = Monotonic::now() + kStartMax;
-    while (!shared_->sample.read(first) && Monotonic::now() < end) usleep(1000);
-    if (first.sequence == 0) {
-        throw StartupError("starting the emulated device's process", "it gave no sample within 30 s",
-                           "free the processor");
+    while (!shared_->sample.read(first)) {
+        int status = 0;
+        if (waitpid(child_, &status, WNOHANG) == child_) {
+            child_ = -1;
+            throw StartupError("starting the emulated device's process",
+                               WIFSIGNALED(status)
+                                   ? std::string("it died at once: ") + sigdescr_np(WTERMSIG(status))
+                                   : "it ended at once with code " + std::to_string(WEXITSTATUS(status)),
+                               "see the kernel's log (dmesg); memory may have run out");
+        }
+        if (Monotonic::now() >= end) {
+            kill(child_, SIGKILL);  // it may be halted, and would be waited for
+            throw StartupError("starting the emulated device's process", "it gave no sample within 30 s",
+                               "free the processor");
+        }
+        usleep(1000);
     }
-    return info;
 }
 
 // In the child. It keeps nothing of its parent's: above all not the lock file of the session, which would
 // stay locked after the parent's death.
-void ProcessDevice::live(const SimSettings& settings) noexcept {
+void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
     const int log =
         log_path_.empty() ? -1 : ::open(log_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     const int quiet = ::open("/dev/null", O_RDWR);
@@ -156,7 +173,6 @@ void ProcessDevice::live(const SimSettings& settings) noexcept {
     static_cast<void>(device.open());
     ServoClock clock(Duration{0});
     Pacer pacer(kStep, clock.now());
-    const pid_t parent = getppid();
     std::uint64_t heartbeat = 0;
     Instant heard_at = clock.now();
     Instant orphan_since{};

@@ -31,7 +31,8 @@ public:
 
 private:
     struct Shared;
-    [[noreturn]] void live(const SimSettings& settings) noexcept;
+    [[noreturn]] void live(const SimSettings& settings, pid_t parent) noexcept;
+    void wait_for_life();
 
     SimSettings settings_;
     std::string log_path_;

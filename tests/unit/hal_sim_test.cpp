@@ -1,5 +1,7 @@
 // The emulated Phantom and hand: the contract, and the physics against closed forms.
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -36,6 +38,25 @@ INSTANTIATE_TEST_SUITE_P(SimProcess, HapticDeviceContract,
                                                     },
                                                     milliseconds(800), milliseconds(3)}),
                          [](const auto& tested) { return tested.param.name; });
+
+bool die_after_fork = false;
+
+TEST(ProcessDevice, a_process_that_dies_at_once_is_said_and_not_waited_for) {
+    ASSERT_EQ(pthread_atfork(nullptr, nullptr,
+                             [] {
+                                 if (die_after_fork) _exit(7);
+                             }),
+              0);
+    const auto device = make_process();
+    die_after_fork = true;
+    try {
+        (void)device->open();
+        ADD_FAILURE() << "a dead device was opened";
+    } catch (const StartupError& e) {
+        EXPECT_NE(std::string(e.what()).find("ended at once with code 7"), std::string::npos) << e.what();
+    }
+    die_after_fork = false;
+}
 
 constexpr double kMass = 0.25, kDamping = 5.0;
 
