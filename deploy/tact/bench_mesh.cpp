@@ -160,12 +160,12 @@ MeshBench bench_mesh() {
     bench.jump_back_ms = median_ms(
         15, [&] { go(few); }, [&] { go(all); });
     go(few);
-    std::vector<std::byte> copy(sizeof(MeshVertex) * few + std::size_t{12} * cut.triangles());
+    std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
     bench.copy_ms = median_ms(
         15, [] {},
         [&] {
-            std::memcpy(copy.data(), cut.vertex().data(), sizeof(MeshVertex) * few);
-            std::memcpy(copy.data() + sizeof(MeshVertex) * few, cut.index().data(),
+            std::memcpy(copy.data(), cut.vertex().data(), sizeof(PackedVertex) * few);
+            std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
                         std::size_t{12} * cut.triangles());
         });
     // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.

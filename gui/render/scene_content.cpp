@@ -18,13 +18,10 @@ struct Box {
 
 void find_extent(SceneContent& content) {
     Box box;
-    const auto original = [&](std::uint32_t i) {
-        const auto& p = content.mesh->vertex(i).position_m;
-        return Vec3(p[0], p[1], p[2]);
+    const auto at = [](const PackedVertex& v) {
+        return Vec3(v.position_m[0], v.position_m[1], v.position_m[2]);
     };
-    if (content.mesh) {
-        for (std::uint32_t i = 0; i < content.mesh->vertices(); ++i) box.add(original(i));
-    }
+    if (content.mesh) content.mesh->each_original([&](const PackedVertex& v) { box.add(at(v)); });
     for (const Structure& s : content.bodies)
         for (std::size_t i = 0; i < s.size(); ++i)
             box.add(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
@@ -35,9 +32,7 @@ void find_extent(SceneContent& content) {
     content.centre_model_m = 0.5 * (box.low + box.high);
     double most = 1e-10;  // one ångström at least
     const auto reach = [&](const Vec3& p) { most = std::max(most, (p - content.centre_model_m).norm()); };
-    if (content.mesh) {
-        for (std::uint32_t i = 0; i < content.mesh->vertices(); ++i) reach(original(i));
-    }
+    if (content.mesh) content.mesh->each_original([&](const PackedVertex& v) { reach(at(v)); });
     for (const Structure& s : content.bodies)
         for (std::size_t i = 0; i < s.size(); ++i)
             reach(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));

@@ -5,10 +5,10 @@ namespace tact {
 Surface::Surface(const ProgressiveMesh& mesh) : cut_(mesh) {
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(MeshVertex) * mesh.vertices()), nullptr,
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(PackedVertex) * mesh.vertices()), nullptr,
                  GL_DYNAMIC_DRAW);
-    attribute(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), 0);
-    attribute(1, 4, GL_SHORT, GL_TRUE, sizeof(MeshVertex), 12);
+    attribute(0, 3, GL_FLOAT, GL_FALSE, sizeof(PackedVertex), 0);
+    attribute(1, 4, GL_INT_2_10_10_10_REV, GL_TRUE, sizeof(PackedVertex), 12);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.get());
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(sizeof(std::uint32_t) * 3 * mesh.triangles()), nullptr,
@@ -38,7 +38,7 @@ std::size_t Surface::upload() {
             sent += bytes;
         }
     };
-    send(vertices_.get(), changes.vertex, cut_.vertex().data(), sizeof(MeshVertex));
+    send(vertices_.get(), changes.vertex, cut_.vertex().data(), sizeof(PackedVertex));
     send(indices_.get(), changes.index, cut_.index().data(), sizeof(std::uint32_t));
     glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
     if (drawn_) pace_.took(cut_.cost_ns(), to_s(moving_ + (Monotonic::now() - begin)));

@@ -1,25 +1,28 @@
 // Two ways to move. Steps: contraction k writes its parent and about three corners; a split writes the same
 // ones back and two triangles at their birth. Rebuild: the version of each vertex that the level shows is
-// copied, the collapse map of the level is one pass over the contracted vertices (parents come first), and
-// every patch looks the vertices of its list up in it.
+// copied, the collapse map of the level is one pass over the vertices contracted since the lists were made
+// (parents come first), and every patch looks the vertices of its list up in it.
 //
-// Measured 2026-11-21, a million vertices, one core with the other kept free, medians; in brackets what this
-// replaced, in the same minutes: one list of triangles sorted by their death, each level a prefix of it.
-//   100 % -> 28 %           6.4 ms (11.8), where a plain copy of the result takes 0.9
-//   28 % -> 100 %           11.9 ms (27), where a plain copy takes 4.4
-//   1000 steps              0.026 ms down, 0.028 up (0.012, 0.017); over new stretches 0.11 (0.11, 0.03)
-//   vertices transformed    1.3 to 1.5 per vertex drawn; below 100 %, 44 % of degenerate triangles on top
-//   memory of the mesh      147 bytes a vertex (163)
+// Measured 2026-11-21, a million vertices, medians of processor time while compilers kept both cores busy; in
+// brackets what this replaced, in alternation: vertices of 20 bytes, all versions of a vertex together,
+// places of triangles written at each rebuild.
+//   100 % -> 28 %           5.4 ms (12.3), where a plain copy of the result takes 2.0
+//   28 % -> 100 %           10.5 ms (24.4)
+//   1000 steps              0.09 ms down, 0.10 up (0.10, 0.11)
+//   memory of the mesh      165 bytes a vertex (149)
+// and with one core left free what was replaced took 6.4 and 11.9 ms, and 0.026 and 0.028 for the steps.
 //
-// The machine was one where reading memory at random is slow: what this replaced had taken 5.5 ms on another.
-// Tried: fetching the memory of coming steps ahead changed nothing; versions listed per contraction instead
-// of per vertex wrote to memory at random, 14 ms instead of 3 for the vertices alone; a branch for dead
-// triangles when looking up 2.7 ms instead of 2.1; marks as bits 0.030 ms instead of 0.022 per 1000 steps.
+// Nothing is far from what the memory gives: 15 MB are written and 18 MB read for the 28 %. Vertices drawn
+// are transformed 1.3 to 1.5 times; below 100 %, 44 % of degenerate triangles come on top. Tried: fetching
+// the memory of coming steps or patches ahead changed nothing, and so did writing vertices past the caches;
+// versions listed per contraction instead of per vertex wrote to memory at random, 14 ms instead of 3 for the
+// vertices alone; a branch for dead triangles when looking up 2.7 ms instead of 2.1; marks as bits 0.030 ms
+// instead of 0.022 per 1000 steps.
 #include "ipc/assets/mesh_cut.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <numeric>
 
 namespace tact {
 namespace {
@@ -27,19 +30,28 @@ namespace {
 constexpr std::uint32_t kVertexShift = 3, kVertexJoin = 3;
 constexpr std::uint32_t kIndexShift = 5, kIndexJoin = 4;
 
-constexpr std::uint32_t kFetchAhead = 24;  // versions
+constexpr std::uint32_t kListed = 1024;  // versions at a time
 
 // ProgressiveMesh::Birth: corner of the child, of the parent, of the other vertex.
 constexpr std::uint8_t kTurn[8][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
 
 // Nanoseconds, with nothing else on the core.
 constexpr double kStepNs = 70.0;     // over a stretch not visited lately; 20 over a warm one
-constexpr double kScanNs = 1.3;      // a version of the vertices of the level
-constexpr double kCopyNs = 5.0;      // a vertex of the level
-constexpr double kTriangleNs = 4.0;  // a triangle of the level, with its share of dead ones
+constexpr double kScanNs = 1.0;      // a version of the vertices of the level
+constexpr double kCopyNs = 3.5;      // a vertex of the level
+constexpr double kTriangleNs = 3.0;  // a triangle of the level, with its share of dead ones
 // To send what changed: a step is two or three short ranges until they join; at most all of it goes.
 constexpr double kSendStepNs = 350.0;
 constexpr double kSendByteNs = 0.1;
+
+// Returns whether that was a change, as any bit: bit for bit, as it is uploaded; there is no padding in it.
+std::uint64_t replace(PackedVertex& old, const PackedVertex& now) {
+    std::array<std::uint64_t, 2> a, b;
+    std::memcpy(a.data(), &old, sizeof(a));
+    std::memcpy(b.data(), &now, sizeof(b));
+    std::memcpy(&old, b.data(), sizeof(b));
+    return (a[0] ^ b[0]) | (a[1] ^ b[1]);
+}
 
 }  // namespace
 
@@ -50,10 +62,10 @@ MeshCut::MeshCut(const ProgressiveMesh& mesh)
       next_change_(mesh.patches_.change.size()),
       shown_(mesh.patches_.list_first.begin(), mesh.patches_.list_first.end() - 1),
       draw_(shown_.size()),
+      slot_(shown_.size()),
       vertex_(mesh.vertices()),
       index_(std::size_t{3} * mesh.triangles()),
-      slot_(mesh.triangles()),
-      scratch_(mesh.vertices() + kListSlack),
+      map_(mesh.vertices()),
       vertex_changed_(vertex_.size(), kVertexShift, kVertexJoin),
       index_changed_(index_.size(), kIndexShift, kIndexJoin) {
     std::uint32_t longest = 0;
@@ -94,12 +106,14 @@ std::uint32_t MeshCut::distance(std::uint32_t wanted) const noexcept {
 }
 
 double MeshCut::rebuild_ns(std::uint32_t wanted) const noexcept {
-    return kScanNs * static_cast<double>(mesh_->version_first_[wanted]) + kCopyNs * wanted +
+    const std::uint32_t first = mesh_->span_of(wanted).version_first;
+    const std::uint32_t end = mesh_->coarsest_version(wanted - 1) + 1;
+    return kScanNs * static_cast<double>(end - first) + kCopyNs * wanted +
            kTriangleNs * static_cast<double>(mesh_->triangles(wanted));
 }
 
 double MeshCut::send_ns(std::uint32_t wanted) const noexcept {
-    const double all = static_cast<double>(sizeof(MeshVertex)) * wanted + 12.0 * mesh_->triangles(wanted);
+    const double all = static_cast<double>(sizeof(PackedVertex)) * wanted + 12.0 * mesh_->triangles(wanted);
     return std::min(kSendStepNs * distance(wanted), kSendByteNs * all);
 }
 
@@ -139,7 +153,7 @@ void MeshCut::step_up() noexcept {
         show_previous(m.patches_.change[next_change_++].patch);
     const std::uint32_t child = level_++, k = child - m.base_, parent = m.parent_[k];
     vertex_[parent] = m.version_[m.version_merged_[k] - 1];
-    vertex_[child] = m.version_[m.version_first_[child + 1] - 1];
+    vertex_[child] = m.version_[m.coarsest_version(child)];
     vertex_changed_.mark(parent);
     vertex_changed_.mark(child);
     std::uint32_t* const index = index_.data();
@@ -167,32 +181,32 @@ void MeshCut::rebuild(std::uint32_t wanted) noexcept {
     level_ = wanted;
 }
 
-// The versions that the level shows are one per vertex, in the order of the vertices. They are listed first,
-// then copied where they differ.
+// The versions that the level shows are one per vertex, in the order of the vertices. They are listed a few
+// at a time, then copied; blocks are marked where they differ.
 void MeshCut::rebuild_vertices(std::uint32_t wanted) noexcept {
     const ProgressiveMesh& m = *mesh_;
-    std::uint32_t* const list = scratch_.data();
-    kernels_->list_versions(m.version_level_.data(), m.version_first_[wanted], wanted, list);
-    const std::uint32_t old = std::min(level_, wanted);
-    for (std::uint32_t v = 0; v < old; ++v) {
-        __builtin_prefetch(&m.version_[list[std::min(v + kFetchAhead, wanted - 1)]]);
-        const MeshVertex& now = m.version_[list[v]];
-        // Bit for bit, as it is uploaded; there is no padding in it.
-        if (std::memcmp(&vertex_[v], &now, sizeof(now)) == 0) continue;  // NOLINT(bugprone-*,cert-*)
-        vertex_[v] = now;
-        vertex_changed_.mark(v);
+    const std::uint32_t end = m.coarsest_version(wanted - 1) + 1;
+    std::array<std::uint32_t, kListed + kListSlack> list;
+    std::uint32_t v = 0;
+    for (std::uint32_t at = m.span_of(wanted).version_first; at < end; at += kListed) {
+        const std::uint32_t here = std::min(kListed, end - at);
+        const std::uint32_t count =
+            kernels_->list_versions(m.version_level_.data() + at, here, wanted, list.data());
+        const PackedVertex* const version = m.version_.data() + at;
+        for (std::uint32_t i = 0; i < count;) {
+            const std::uint32_t block = std::min(count - i, (1U << kVertexShift) - v % (1U << kVertexShift));
+            std::uint64_t differ = 0;
+            for (const std::uint32_t stop = i + block; i < stop; ++i, ++v)
+                differ |= replace(vertex_[v], version[list[i]]);
+            if (differ != 0) vertex_changed_.mark(v - 1);
+        }
     }
-    for (std::uint32_t v = old; v < wanted; ++v) {
-        __builtin_prefetch(&m.version_[list[std::min(v + kFetchAhead, wanted - 1)]]);
-        vertex_[v] = m.version_[list[v]];
-    }
-    vertex_changed_.mark(old, wanted);
+    if (wanted > level_) vertex_changed_.mark(level_, wanted);
 }
 
 void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
     const ProgressiveMesh& m = *mesh_;
     const MeshPatches& p = m.patches_;
-    const std::uint32_t base = m.base_;
     std::uint32_t mapped = wanted;
     for (std::uint32_t patch = 0; patch < shown_.size(); ++patch) {
         std::uint32_t list = p.list_first[patch];
@@ -200,14 +214,14 @@ void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
         shown_[patch] = list;
         mapped = std::max(mapped, p.list[list].level);
     }
-    std::uint32_t* const map = scratch_.data();
-    std::iota(map, map + wanted, 0U);
-    for (std::uint32_t v = wanted; v < mapped; ++v) map[v] = map[m.parent_[v - base]];
+    kernels_->follow(m.parent_.data() + (wanted - m.base_), wanted, mapped - wanted, map_.data());
     for (std::uint32_t patch = 0; patch < shown_.size(); ++patch) {
-        const MeshPatches::List& list = p.list[shown_[patch]];
-        const std::uint32_t* const from = p.vertex.data() + list.vertex_first;
-        for (std::uint32_t i = 0; i < list.vertices; ++i) local_[i] = map[from[i]];
-        show_list(patch, shown_[patch], local_.data());
+        const MeshPatches::List& list = place_list(patch, shown_[patch]);
+        kernels_->map_vertices(p.vertex.data() + list.vertex_first, list.vertices, wanted, map_.data(),
+                               local_.data());
+        // Triangles that the level does not have get two equal corners.
+        kernels_->look_up(p.corner.data() + std::size_t{3} * list.first, list.triangles, local_.data(),
+                          index_.data() + draw_[patch].first, true);
     }
     next_change_ = static_cast<std::size_t>(
         std::lower_bound(p.change.begin(), p.change.end(), wanted,
@@ -218,53 +232,38 @@ void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
 // Down to the next list, at its own level, where it has its vertices as they are and nothing is dead.
 void MeshCut::show_next(std::uint32_t patch) noexcept {
     const MeshPatches& p = mesh_->patches_;
-    const std::uint32_t list = place_list(patch, shown_[patch] + 1);
-    const std::uint32_t* const vertex = p.vertex.data() + p.list[list].vertex_first;
-    const std::uint16_t* const corner = p.corner.data() + std::size_t{3} * p.list[list].corner_first;
-    kernels_->look_up(corner, p.list[list].triangles, vertex, index_.data() + draw_[patch].first);
+    const MeshPatches::List& list = place_list(patch, shown_[patch] + 1);
+    kernels_->look_up(p.corner.data() + std::size_t{3} * list.first, list.triangles,
+                      p.vertex.data() + list.vertex_first, index_.data() + draw_[patch].first, false);
 }
 
 // Up to the list before, at the level where this one ends: what lives is in this one, as it is.
 void MeshCut::show_previous(std::uint32_t patch) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& now = p.list[shown_[patch]];
+    const std::uint16_t* const from_slot = slot_[patch];
     place_list(patch, shown_[patch] - 1);
     std::uint32_t* const to = index_.data() + draw_[patch].first;
-    const std::uint16_t* const slot = slot_.data() + (std::size_t{patch} << MeshPatches::kShift);
     const std::uint32_t* const vertex = p.vertex.data() + now.vertex_first;
-    const std::uint16_t* corner = p.corner.data() + std::size_t{3} * now.corner_first;
-    const std::uint16_t* const id = p.id.data() + now.id_first;
+    const std::uint16_t* const corner = p.corner.data() + std::size_t{3} * now.first;
     std::fill_n(to, draw_[patch].count, 0U);
-    for (std::uint32_t s = 0; s < now.triangles; ++s, corner += 3) {
-        std::uint32_t* const at = to + 3 * std::size_t{slot[id[s]]};
-        for (int i = 0; i < 3; ++i) at[i] = vertex[corner[i]];
+    for (std::uint32_t t = 0; t < now.triangles; ++t) {
+        const std::uint16_t* const from = corner + 3 * std::size_t{from_slot[t]};
+        std::uint32_t* const at = to + 3 * std::size_t{slot_[patch][t]};
+        for (int i = 0; i < 3; ++i) at[i] = vertex[from[i]];
     }
-}
-
-// `vertex`: those of the list at the level to be shown; triangles that it does not have get two equal ones.
-void MeshCut::show_list(std::uint32_t patch, std::uint32_t list, const std::uint32_t* vertex) noexcept {
-    const MeshPatches& p = mesh_->patches_;
-    place_list(patch, list);
-    kernels_->look_up(p.corner.data() + std::size_t{3} * p.list[list].corner_first, p.list[list].triangles,
-                      vertex, index_.data() + draw_[patch].first);
 }
 
 // Everything about showing a list but its corners.
-std::uint32_t MeshCut::place_list(std::uint32_t patch, std::uint32_t list) noexcept {
+const MeshPatches::List& MeshCut::place_list(std::uint32_t patch, std::uint32_t list) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& l = p.list[list];
-    const std::size_t first = std::size_t{patch} << MeshPatches::kShift;
-    std::uint16_t* const slot = slot_.data() + first;
-    if (list == p.list_first[patch]) {
-        std::iota(slot, slot + l.triangles, std::uint16_t{0});
-    } else {
-        const std::uint16_t* const id = p.id.data() + l.id_first;
-        for (std::uint32_t s = 0; s < l.triangles; ++s) slot[id[s]] = static_cast<std::uint16_t>(s);
-    }
+    const std::size_t first = std::size_t{3 * MeshPatches::kTriangles} * patch;
     shown_[patch] = list;
-    draw_[patch] = {static_cast<std::uint32_t>(3 * first), 3U * l.triangles};
-    index_changed_.mark(3 * first, 3 * first + draw_[patch].count);
-    return list;
+    slot_[patch] = p.slot.data() + l.first;
+    draw_[patch] = {static_cast<std::uint32_t>(first), 3U * l.triangles};
+    index_changed_.mark(first, first + draw_[patch].count);
+    return l;
 }
 
 }  // namespace tact

@@ -5,7 +5,7 @@
 //           (0, 0, 0). Vertices from vertices() on are not used.
 // Repeats   all that is drawn depends on the vertex count alone, bit for bit, however it was reached.
 // Time      single steps, or a rebuild by the collapse map, whichever its cost model says is cheaper: 20 to
-//           110 ns a step, at most about 12 ns per vertex of the mesh. Nothing is ever allocated.
+//           110 ns a step, at most about 10 ns per vertex of the mesh. Nothing is ever allocated.
 // Thread    a MeshCut belongs to one thread; the mesh may be shared and must outlive it.
 #pragma once
 
@@ -40,13 +40,13 @@ public:
     [[nodiscard]] std::uint32_t vertices() const { return level_; }
     [[nodiscard]] std::uint32_t triangles() const { return mesh_->triangles(level_); }
     [[nodiscard]] float error_m() const { return mesh_->error_m(level_); }
-    [[nodiscard]] std::span<const MeshVertex> vertex() const { return vertex_; }
+    [[nodiscard]] std::span<const PackedVertex> vertex() const { return vertex_; }
     [[nodiscard]] std::span<const std::uint32_t> index() const { return index_; }
     // Parts of index() to draw, rising; some may be empty.
     [[nodiscard]] std::span<const MeshRange> draws() const { return draw_; }
 
     // What differs from the last call of changes(); the spans hold until the next one. Ranges are whole
-    // blocks of 8 vertices (160 bytes) or 32 indices (128 bytes), joined over gaps of up to 512 bytes.
+    // blocks of 8 vertices (128 bytes) or 32 indices (128 bytes), joined over gaps of up to 512 bytes.
     MeshChanges changes() noexcept;
 
 private:
@@ -59,12 +59,13 @@ private:
     void rebuild(std::uint32_t wanted) noexcept;
     void rebuild_vertices(std::uint32_t wanted) noexcept;
     void rebuild_indices(std::uint32_t wanted) noexcept;
-    void show_list(std::uint32_t patch, std::uint32_t list, const std::uint32_t* vertex) noexcept;
-    std::uint32_t place_list(std::uint32_t patch, std::uint32_t list) noexcept;
+    const MeshPatches::List& place_list(std::uint32_t patch, std::uint32_t list) noexcept;
     void show_next(std::uint32_t patch) noexcept;
     void show_previous(std::uint32_t patch) noexcept;
     [[nodiscard]] std::size_t place(std::uint32_t number) const noexcept {
-        return 3 * ((std::size_t{number} & ~std::size_t{MeshPatches::kTriangles - 1}) + slot_[number]);
+        const std::uint32_t patch = number >> MeshPatches::kShift;
+        const std::uint32_t slot = slot_[patch][number & (MeshPatches::kTriangles - 1)];
+        return 3 * ((std::size_t{patch} << MeshPatches::kShift) + slot);
     }
 
     const ProgressiveMesh* mesh_;
@@ -74,11 +75,11 @@ private:
     std::size_t next_change_;           // of the patches: those before it have levels below level_
     std::vector<std::uint32_t> shown_;  // list of each patch
     std::vector<MeshRange> draw_;
-    HugeVector<MeshVertex> vertex_;
+    std::vector<const std::uint16_t*> slot_;  // of each patch: MeshPatches::slot of the list shown
+    HugeVector<PackedVertex> vertex_;
     HugeVector<std::uint32_t> index_;
-    HugeVector<std::uint16_t> slot_;     // of a triangle, by its number: where in its patch it is shown now
-    HugeVector<std::uint32_t> scratch_;  // of rebuild, one per vertex and some
-    std::vector<std::uint32_t> local_;   // the vertices of one list at a level
+    HugeVector<std::uint32_t> map_;     // of rebuild: where the vertices from the level on have gone
+    std::vector<std::uint32_t> local_;  // the vertices of one list at a level
     ChangedBlocks vertex_changed_, index_changed_;
 };
 

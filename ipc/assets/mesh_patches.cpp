@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/vertex_cache.hpp"
@@ -93,6 +94,7 @@ public:
                 corner_.insert(corner_.end(), data_.triangle.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                data_.triangle.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
             }
+            number_members();
             make_lists();
             m.list_first.push_back(static_cast<std::uint32_t>(m.list.size()));
         }
@@ -101,7 +103,7 @@ public:
         });
         m.list.shrink_to_fit();
         m.corner.shrink_to_fit();
-        m.id.shrink_to_fit();
+        m.slot.shrink_to_fit();
         m.vertex.shrink_to_fit();
         m.change.shrink_to_fit();
         return std::move(made_);
@@ -111,14 +113,28 @@ private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
     struct Member {
         std::uint32_t triangle;  // of the data
-        std::uint16_t id;
+        std::uint16_t number;    // within the patch
     };
+
+    // The data has the longest lived first.
+    void number_members() {
+        by_life_.resize(member_.size());
+        std::iota(by_life_.begin(), by_life_.end(), std::uint16_t{0});
+        std::sort(by_life_.begin(), by_life_.end(), [&](std::uint16_t a, std::uint16_t b) {
+            return member_[a].triangle < member_[b].triangle;
+        });
+        for (std::size_t i = 0; i < by_life_.size(); ++i) {
+            Member& member = member_[by_life_[i]];
+            member.number = static_cast<std::uint16_t>(i);
+            made_.number[member.triangle] = made_.patches.patches() << MeshPatches::kShift | member.number;
+        }
+    }
 
     void make_lists() {
         MeshPatches& m = made_.patches;
         const std::uint32_t patch = m.patches();
         std::uint32_t level = static_cast<std::uint32_t>(data_.vertex.size());
-        add_list(level, true);
+        add_list(level);
         // Where the patch changes lists: spread evenly over the octave by the golden ratio.
         const double phase = std::fmod((patch + 0.5) * 0.6180339887498949, 1.0);
         // NOLINTNEXTLINE(cert-flp30-c): it is halved, not counted
@@ -127,7 +143,7 @@ private:
             if (to <= data_.base_vertices) break;
             if (to == level) continue;
             lift(to);
-            add_list(to, false);
+            add_list(to);
             m.change.push_back({to, patch});
             level = to;
         }
@@ -156,7 +172,7 @@ private:
     }
 
     // From member_ and corner_, which it brings into the order of the list; leaves list_corner_ and vertex_.
-    void add_list(std::uint32_t level, bool first) {
+    void add_list(std::uint32_t level) {
         vertex_.clear();
         list_corner_.clear();
         for (const std::uint32_t v : corner_) {
@@ -169,20 +185,16 @@ private:
         for (const std::uint32_t v : vertex_) local_[v] = kNone;
         const auto order = cache_order_.run(list_corner_, vertex_.size());
         MeshPatches& m = made_.patches;
+        const std::size_t slot_first = m.slot.size();
         m.list.push_back(
-            {level, static_cast<std::uint32_t>(m.corner.size() / 3), static_cast<std::uint32_t>(m.id.size()),
-             static_cast<std::uint32_t>(m.vertex.size()), static_cast<std::uint16_t>(member_.size()),
-             static_cast<std::uint16_t>(vertex_.size())});
+            {level, static_cast<std::uint32_t>(slot_first), static_cast<std::uint32_t>(m.vertex.size()),
+             static_cast<std::uint16_t>(member_.size()), static_cast<std::uint16_t>(vertex_.size())});
+        m.slot.resize(slot_first + member_.size());
         moved_.clear();
         for (const std::uint16_t from : order) {
             for (std::size_t c = 0; c < 3; ++c) m.corner.push_back(list_corner_[3 * std::size_t{from} + c]);
-            Member member = member_[from];
-            if (first) {
-                member.id = static_cast<std::uint16_t>(moved_.size());
-                made_.number[member.triangle] = m.patches() << MeshPatches::kShift | member.id;
-            } else {
-                m.id.push_back(member.id);
-            }
+            const Member member = member_[from];
+            m.slot[slot_first + member.number] = static_cast<std::uint16_t>(moved_.size());
             moved_.push_back(member);
         }
         member_.swap(moved_);
@@ -195,6 +207,7 @@ private:
     PatchedMesh made_;
     std::vector<std::uint32_t> local_;  // of a vertex of the mesh
     std::vector<Member> member_, moved_;
+    std::vector<std::uint16_t> by_life_;
     std::vector<std::uint32_t> corner_;       // of the members, numbers of the mesh
     std::vector<std::uint16_t> list_corner_;  // of the members, numbers within vertex_
     std::vector<std::uint32_t> vertex_;
@@ -205,7 +218,7 @@ private:
 
 std::size_t MeshPatches::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return bytes(list_first) + bytes(list) + bytes(corner) + bytes(id) + bytes(vertex) + bytes(change);
+    return bytes(list_first) + bytes(list) + bytes(corner) + bytes(slot) + bytes(vertex) + bytes(change);
 }
 
 PatchedMesh make_patches(const ProgressiveMeshData& data, std::uint64_t lifts_max) {

@@ -7,6 +7,8 @@
 // by a ratio of 2, and each patch changes lists at levels of its own, so that a walk meets the changes one by
 // one.
 //
+// The triangles of a patch are numbered by how long they live, so a list has the first few of them.
+//
 // Frame    none: numbers of vertices and triangles.  Thread   immutable after construction.
 #pragma once
 
@@ -26,8 +28,7 @@ struct MeshPatches {
     struct List {
         std::uint32_t
             level;  // the finest that it serves; the next list of the patch serves from its own down
-        std::uint32_t corner_first;  // of its first triangle, in corner
-        std::uint32_t id_first;      // of its first triangle, in id; the first list of a patch has none
+        std::uint32_t first;         // of its first triangle, in corner and slot
         std::uint32_t vertex_first;  // in vertex
         std::uint16_t triangles, vertices;
     };
@@ -38,7 +39,7 @@ struct MeshPatches {
     std::vector<std::uint32_t> list_first;  // patches + 1, in list
     std::vector<List> list;                 // of a patch in turn, levels falling
     HugeVector<std::uint16_t> corner;       // 3 a triangle, numbers within the vertices of the list
-    HugeVector<std::uint16_t> id;           // of a triangle within its patch: its place in the first list
+    HugeVector<std::uint16_t> slot;         // of triangle i of the patch, at first + i: its place in the list
     HugeVector<std::uint32_t> vertex;       // of the mesh, at the level of the list
     std::vector<Change> change;             // levels rising
 
@@ -46,7 +47,7 @@ struct MeshPatches {
     [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-// number[t], of the data's triangle t: its patch times kTriangles plus its place in the first list of it.
+// number[t], of the data's triangle t: its patch times kTriangles plus its number within that.
 struct PatchedMesh {
     MeshPatches patches;
     std::vector<std::uint32_t> number;

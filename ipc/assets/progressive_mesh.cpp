@@ -75,7 +75,24 @@ void check_content(const ProgressiveMeshData& data) {
         refuse("a vertex is not finite, is further out than 1e6 m or has a damaged normal");
 }
 
+std::uint32_t ten_bits(std::int16_t part) {
+    const long rounded = std::lround(511.0 / 32767.0 * part);
+    return static_cast<std::uint32_t>(std::clamp(rounded, -511L, 511L)) & 1023U;
+}
+
 }  // namespace
+
+PackedVertex pack(const MeshVertex& vertex) {
+    return {vertex.position_m,
+            ten_bits(vertex.normal[0]) | ten_bits(vertex.normal[1]) << 10 | ten_bits(vertex.normal[2]) << 20};
+}
+
+std::array<float, 3> unit_normal(const PackedVertex& vertex) {
+    const auto part = [&](unsigned shift) {  // the sign comes down from the highest bit
+        return static_cast<float>(static_cast<std::int32_t>(vertex.normal << (22 - shift)) >> 22) / 511.0F;
+    };
+    return {part(0), part(10), part(20)};
+}
 
 ProgressiveMesh::ProgressiveMesh(ProgressiveMeshData data) {
     check_counts(data);
@@ -83,26 +100,44 @@ ProgressiveMesh::ProgressiveMesh(ProgressiveMeshData data) {
     base_ = data.base_vertices;
     order_versions(data);
     derive_corners(data);
-    parent_ = std::move(data.parent);
+    parent_.assign(data.parent.begin(), data.parent.end());
     error_m_ = std::move(data.error_m);
     triangle_count_ = std::move(data.triangle_count);
 }
 
+// Each span starts with the vertices as its top shows them. So a level is found among about three halves as
+// many versions as the top has vertices, however far below the original it is.
 void ProgressiveMesh::order_versions(const ProgressiveMeshData& data) {
-    const std::size_t n = data.vertex.size();
-    version_first_.assign(n + 1, 0);
-    for (const std::uint32_t parent : data.parent) ++version_first_[parent + 1];
-    for (std::size_t v = 0; v < n; ++v) version_first_[v + 1] += version_first_[v] + 1;
-    version_.resize(version_first_[n]);
-    version_level_.assign(version_.size() + 1, UINT32_MAX);
+    const auto n = static_cast<std::uint32_t>(data.vertex.size());
+    std::size_t versions = data.parent.size();
+    for (std::uint32_t top = n;; top /= 2) {
+        spans_.push_back({top, 0, 0});
+        versions += top;
+        if (top / 2 <= base_) break;
+    }
+    version_.resize(versions);
+    version_level_.assign(versions + 1, UINT32_MAX);
     version_merged_.resize(data.parent.size());
-    std::vector<std::uint32_t> next(version_first_.begin(), version_first_.end() - 1);
-    for (std::size_t v = 0; v < n; ++v) version_[next[v]++] = data.vertex[v];
-    for (std::size_t k = data.parent.size(); k-- > 0;) {
-        const std::uint32_t to = next[data.parent[k]]++;
-        version_[to] = data.merged[k];
-        version_level_[to] = base_ + static_cast<std::uint32_t>(k);
-        version_merged_[k] = to;
+    version_coarsest_.resize(data.parent.size() + 1);
+    std::vector<PackedVertex> now(n);
+    std::transform(data.vertex.begin(), data.vertex.end(), now.begin(), pack);
+    std::vector<std::uint32_t> length, place(n);
+    std::uint32_t end = 0;
+    for (std::size_t s = 0; s < spans_.size(); ++s) {
+        const std::uint32_t top = spans_[s].top, low = s + 1 < spans_.size() ? spans_[s + 1].top : base_;
+        length.assign(top, 1);
+        for (std::uint32_t v = low; v < top; ++v) ++length[data.parent[v - base_]];
+        spans_[s].version_first = end;
+        for (std::uint32_t v = 0; v < top; end += length[v++]) version_[place[v] = end] = now[v];
+        spans_[s].version_end = end;
+        for (std::uint32_t v = top; v-- > low;) {
+            const std::uint32_t k = v - base_, parent = data.parent[k], to = ++place[parent];
+            version_[to] = now[parent] = pack(data.merged[k]);
+            version_level_[to] = v;
+            version_merged_[k] = to;
+            version_coarsest_[k + 1] = place[v];
+        }
+        version_coarsest_[0] = place[base_ - 1];
     }
 }
 
@@ -181,8 +216,8 @@ ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t number,
 std::size_t ProgressiveMesh::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return bytes(parent_) + bytes(error_m_) + bytes(triangle_count_) + bytes(version_) +
-           bytes(version_level_) + bytes(version_first_) + bytes(version_merged_) + patches_.memory_bytes() +
-           bytes(birth_) + bytes(change_first_) + bytes(change_);
+           bytes(version_level_) + bytes(version_coarsest_) + bytes(version_merged_) +
+           patches_.memory_bytes() + bytes(birth_) + bytes(change_first_) + bytes(change_);
 }
 
 void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData& data) {

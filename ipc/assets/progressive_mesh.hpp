@@ -27,7 +27,8 @@ struct TriangleMesh {
     [[nodiscard]] std::size_t triangles() const { return triangle.size() / 3; }
 };
 
-// As it lies in a vertex buffer: stride 20, position 3 x GL_FLOAT at 0, normal 4 x GL_SHORT normalized at 12.
+// As it lies in a file, and in a buffer of what has one level alone: stride 20, position 3 x GL_FLOAT at 0,
+// normal 4 x GL_SHORT normalized at 12.
 struct MeshVertex {
     std::array<float, 3> position_m;
     std::array<std::int16_t, 4> normal;  // unit vector, outward, times 32767; the last is 0
@@ -35,6 +36,18 @@ struct MeshVertex {
     friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
 static_assert(sizeof(MeshVertex) == 20);
+
+// As it is walked and drawn: stride 16, position 3 x GL_FLOAT at 0, normal GL_INT_2_10_10_10_REV normalized
+// at 12. Four to a line of the cache; a normal is off by at most 0.1 degrees.
+struct PackedVertex {
+    std::array<float, 3> position_m;
+    std::uint32_t normal;  // unit vector, outward, times 511: x in bits 0 to 9, y 10 to 19, z 20 to 29
+
+    friend bool operator==(const PackedVertex&, const PackedVertex&) = default;
+};
+static_assert(sizeof(PackedVertex) == 16);
+[[nodiscard]] PackedVertex pack(const MeshVertex& vertex);
+[[nodiscard]] std::array<float, 3> unit_normal(const PackedVertex& vertex);
 
 // What prep hands over and the section holds. With N vertices, base B: N-B contractions, T triangles.
 struct ProgressiveMeshData {
@@ -59,8 +72,12 @@ public:
     // Of a level n in [vertices_min, vertices].
     [[nodiscard]] std::uint32_t triangles(std::uint32_t n) const { return triangle_count_[n - base_]; }
     [[nodiscard]] float error_m(std::uint32_t n) const { return error_m_[n - base_]; }
-    // Of the original mesh.
-    [[nodiscard]] const MeshVertex& vertex(std::uint32_t v) const { return version_[version_first_[v]]; }
+    // visit(const PackedVertex&) for every vertex of the original mesh in turn.
+    template <class Visit>
+    void each_original(Visit&& visit) const {
+        for (std::uint32_t i = 0; i < spans_[0].version_end; ++i)
+            if (version_level_[i] == UINT32_MAX) visit(version_[i]);
+    }
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
@@ -70,20 +87,35 @@ private:
         std::uint32_t number;          // as PatchedMesh has it
         std::uint32_t other_and_turn;  // the other vertex; from bit 29 on which corner is which, see birth()
     };
+    // A run of levels, at most halved from the first to the last.
+    struct Span {
+        std::uint32_t top;                         // its first level; it ends with the top of the next
+        std::uint32_t version_first, version_end;  // in version_
+    };
     void order_versions(const ProgressiveMeshData& data);
+    [[nodiscard]] const Span& span_of(std::uint32_t level) const {
+        std::size_t i = 0;
+        while (i + 1 < spans_.size() && spans_[i + 1].top >= level) ++i;
+        return spans_[i];
+    }
+    // The version of vertex v that level v+1, its coarsest, shows; for v >= B-1.
+    [[nodiscard]] std::uint32_t coarsest_version(std::uint32_t v) const {
+        return version_coarsest_[v + 1 - base_];
+    }
     void derive_corners(const ProgressiveMeshData& data);
     [[nodiscard]] static Birth birth(std::uint32_t number, const std::array<std::uint32_t, 3>& corners,
                                      std::uint32_t child, std::uint32_t parent);
 
     std::uint32_t base_;
-    std::vector<std::uint32_t> parent_;          // N-B
+    HugeVector<std::uint32_t> parent_;           // N-B
     std::vector<float> error_m_;                 // N-B+1
     std::vector<std::uint32_t> triangle_count_;  // N-B+1
-    // All that a vertex ever looks like, finest first, one vertex after the other: 2N-B versions.
-    HugeVector<MeshVertex> version_;
-    HugeVector<std::uint32_t> version_level_;  // 2N-B+1: the finest level that shows it; UINT32_MAX: original
-    std::vector<std::uint32_t> version_first_;   // N+1: [v] the original of vertex v
-    std::vector<std::uint32_t> version_merged_;  // N-B: [k] what the parent is after contraction k
+    // Span by span, in it one vertex after the other, all that the vertex looks like there, finest first.
+    std::vector<Span> spans_;
+    HugeVector<PackedVertex> version_;         // about 3N
+    HugeVector<std::uint32_t> version_level_;  // and one; the finest level that shows it, UINT32_MAX: the top
+    std::vector<std::uint32_t> version_coarsest_;  // N-B+1, see coarsest_version()
+    std::vector<std::uint32_t> version_merged_;    // N-B: [k] what the parent is after contraction k
     MeshPatches patches_;
     std::vector<Birth> birth_;                 // of all triangles that the base has not, in their order
     std::vector<std::uint32_t> change_first_;  // N-B+1: [k] where the corners that contraction k moves begin

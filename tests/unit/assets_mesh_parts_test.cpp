@@ -3,6 +3,7 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -36,8 +37,28 @@ TEST(MeshKernels, AllInstructionSetsGiveTheSame) {
             for (std::uint32_t i = 0; i < 3 * size; ++i)
                 corner.push_back(static_cast<std::uint16_t>(random.below(vertex.size())));
             std::vector<std::uint32_t> to(3 * size), other(3 * size);
-            slow.look_up(corner.data(), size, vertex.data(), to.data());
-            fast.look_up(corner.data(), size, vertex.data(), other.data());
+            slow.look_up(corner.data(), size, vertex.data(), to.data(), false);
+            fast.look_up(corner.data(), size, vertex.data(), other.data(), false);
+            ASSERT_EQ(to, other);
+            alignas(64) std::array<std::uint32_t, 301> past{};
+            for (const std::size_t first : {0U, 1U}) {  // a line of the cache, and not
+                fast.look_up(corner.data(), size, vertex.data(), &past[first], true);
+                ASSERT_TRUE(std::equal(to.begin(), to.end(), &past[first]));
+            }
+
+            std::vector<std::uint32_t> parent, named;
+            const std::uint32_t first = 1 + static_cast<std::uint32_t>(random.below(50));
+            for (std::uint32_t i = 0; i < 3 * size; ++i) {
+                parent.push_back(static_cast<std::uint32_t>(random.below(first + i)));
+                named.push_back(static_cast<std::uint32_t>(random.below(first + 3 * size)));
+            }
+            slow.follow(parent.data(), first, 3 * size, to.data());
+            fast.follow(parent.data(), first, 3 * size, other.data());
+            ASSERT_EQ(to, other);
+            for (const std::uint32_t v : to) ASSERT_LT(v, first);
+            const std::vector<std::uint32_t> map = to;
+            slow.map_vertices(named.data(), 3 * size, first, map.data(), to.data());
+            fast.map_vertices(named.data(), 3 * size, first, map.data(), other.data());
             ASSERT_EQ(to, other);
         }
     }

@@ -162,9 +162,14 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
 
 TriangleMesh mesh_of(const MeshCut& cut) {
     TriangleMesh m;
-    for (const MeshVertex& v : cut.vertex())
+    for (const PackedVertex& v : cut.vertex().first(cut.vertices()))
         m.position_m.insert(m.position_m.end(), v.position_m.begin(), v.position_m.end());
-    m.triangle.assign(cut.index().begin(), cut.index().end());
+    for (const MeshRange draw : cut.draws()) {
+        const auto index = cut.index().subspan(draw.first, draw.count);
+        for (std::size_t c = 0; c < index.size(); c += 3)
+            if (index[c] != index[c + 1])  // or it is degenerate
+                m.triangle.insert(m.triangle.end(), &index[c], &index[c] + 3);
+    }
     return m;
 }
 
