@@ -1,0 +1,128 @@
+"""Debian's PREEMPT_RT kernel and the few modules that the machine needs, from its package into the build folder.
+
+Nothing is installed: the package is downloaded, unpacked beside the build, and thrown away; what is kept is small.
+"""
+import glob
+import lzma
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+
+# What the machine loads, in this order; what they depend on comes by itself.
+MODULES = ("virtio_pci 9pnet_virtio 9p overlay virtio_rng "  # the host's files
+           "dummy_hcd libcomposite usb_f_fs configfs "       # a USB device out of a program
+           "can can-dev can-raw vcan "                       # a CAN interface
+           "uhid hid-cp2112").split()                        # a USB adapter with eight GPIO lines
+META = "linux-image-rt-amd64"  # stands for the newest real-time kernel of the installed Debian
+SLOW_S = 150                   # longest of any single command here
+PATIENCE = ("-o", "Acquire::http::Timeout=20", "-o", "Acquire::Retries=1")
+
+
+class NotToBeHad(Exception):
+    """Why this machine cannot run the real-time kernel, in one line."""
+
+
+def _said(*command, cwd=None):
+    """(it worked, what it printed) of a command that must not hang."""
+    env = dict(os.environ, LC_ALL="C", PATH=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
+    try:
+        done = subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=SLOW_S, env=env)
+    except OSError as e:
+        raise NotToBeHad(f"{command[0]} cannot be run: {e.strerror}") from e
+    except subprocess.TimeoutExpired as e:
+        raise NotToBeHad(f"{' '.join(command[:2])} took longer than {SLOW_S} s") from e
+    return done.returncode == 0, done.stdout
+
+
+def _package():
+    """The package of the kernel itself: TACT_HIL_KERNEL or what META depends on; None where apt knows none."""
+    name = os.environ.get("TACT_HIL_KERNEL", META)
+    if re.fullmatch(r"linux-image-\d+\.\d+\.\d\S*", name):
+        return name
+    _, text = _said("apt-cache", "depends", name)
+    found = re.search(r"Depends: (linux-image-\d\S*)$", text, re.M)
+    return found.group(1) if found else None
+
+
+def _update_lists():
+    if os.environ.get("TACT_NO_INSTALL") != "1":
+        as_root = [] if os.geteuid() == 0 else ["sudo", "-n"]
+        _said(*as_root, "apt-get", "update", "-qq", *PATIENCE)
+
+
+def _download(package, folder):
+    """(path of the package or None, what apt-get said)"""
+    good, text = _said("apt-get", "download", "-q", *PATIENCE, package, cwd=folder)
+    debs = glob.glob(os.path.join(folder, "*.deb"))
+    return (debs[0] if good and debs else None), text
+
+
+def _unpack(deb, folder, kept):
+    """vmlinuz, the modules and their list in load order, out of the package into the folder `kept`."""
+    tree = os.path.join(folder, "tree")
+    good, text = _said("dpkg", "-x", deb, tree)
+    if not good:
+        raise NotToBeHad(f"the kernel package cannot be unpacked: {text.strip()}")
+    if not os.path.isdir(os.path.join(tree, "lib")):  # Debian 13 ships /usr/lib alone
+        os.symlink("usr/lib", os.path.join(tree, "lib"))
+    version = os.listdir(os.path.join(tree, "lib/modules"))[0]
+    _said("depmod", "-b", tree, version)
+    os.makedirs(os.path.join(kept, "modules"))
+    files = []
+    for module in MODULES:
+        good, text = _said("modprobe", "-d", tree, "-S", version, "--show-depends", module)
+        if not good:
+            raise NotToBeHad(f"the kernel package has no module {module}: {text.strip()}")
+        for line in text.splitlines():
+            if line.startswith("insmod ") and line.split()[1] not in files:
+                files.append(line.split()[1])
+    with open(os.path.join(kept, "modules.list"), "w", encoding="utf-8") as listed:
+        for path in files:
+            name = os.path.basename(path)
+            with (lzma.open if path.endswith(".xz") else open)(path, "rb") as f:
+                data = f.read()
+            name = name.removesuffix(".xz")
+            with open(os.path.join(kept, "modules", name), "wb") as f:
+                f.write(data)
+            listed.write(name + "\n")
+    shutil.copy(os.path.join(tree, "boot/vmlinuz-" + version), os.path.join(kept, "vmlinuz"))
+
+
+def _is_whole(kept):
+    try:
+        with open(os.path.join(kept, "wanted"), encoding="utf-8") as f:
+            return f.read().split() == MODULES
+    except OSError:
+        return False
+
+
+def get(cache):
+    """Folder with vmlinuz, modules.list and modules/; made at the first call, then kept. Raises NotToBeHad."""
+    os.makedirs(cache, exist_ok=True)
+    why = f"apt knows no {os.environ.get('TACT_HIL_KERNEL', META)}"
+    for attempt in range(2):
+        if attempt == 1:  # the lists may be absent, or older than the archive
+            _update_lists()
+        package = _package()
+        if package is None:
+            continue
+        kept = os.path.join(cache, package)
+        if _is_whole(kept):
+            return kept
+        with tempfile.TemporaryDirectory(dir=cache) as folder:
+            print(f"hil: fetching {package}", flush=True)
+            deb, text = _download(package, folder)
+            if deb is None:
+                why = " ".join([f"{package} cannot be downloaded:", *text.split("\n")[-2:]]).strip()
+                continue
+            made = os.path.join(folder, "kept")
+            _unpack(deb, folder, made)
+            with open(os.path.join(made, "wanted"), "w", encoding="utf-8") as f:
+                f.write(" ".join(MODULES))
+            shutil.rmtree(kept, ignore_errors=True)
+            os.rename(made, kept)
+            return kept
+    raise NotToBeHad(why)
