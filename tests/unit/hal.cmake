@@ -1,0 +1,3 @@
+# Tests of hal's drivers.
+tact_test(unit/hal_tracker_dbc_test.cpp USES base tracker)
+tact_test(unit/hal_tracker_frames_test.cpp USES base tracker SYSTEM rapidcheck)

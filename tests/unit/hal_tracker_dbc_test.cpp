@@ -1,0 +1,181 @@
+// tact_tracker.dbc is what other tools read: held to the driver's tables, and its bits to the driver's
+// frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "hal/tracker/pose_frames.hpp"
+
+namespace tact {
+namespace {
+
+struct DbcSignal {
+    unsigned start = 0, bits = 0;
+    bool is_signed = false;
+    double scale = 0.0, low = 0.0, high = 0.0;
+    std::string unit;
+};
+struct DbcMessage {
+    std::string name;
+    unsigned bytes = 0;
+    bool fd = false;
+    std::map<std::string, DbcSignal> signals;
+};
+struct Dbc {
+    std::map<unsigned, DbcMessage> messages;
+    std::map<std::string, std::map<unsigned, std::string>> values;  // "id signal" -> raw -> text
+};
+
+Dbc read_dbc(const std::string& path) {
+    static const std::regex kMessage(R"(^BO_ (\d+) (\w+): (\d+) (\w+)$)");
+    static const std::regex kSignal(
+        R"re(^ SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([-0-9.]+),0\) \[([-0-9.]+)\|([-0-9.]+)\] "(.*)" (\w+)$)re");
+    static const std::regex kFormat(R"(^BA_ "VFrameFormat" BO_ (\d+) 14;$)");
+    static const std::regex kValues(R"(^VAL_ (\d+) (\w+) (.*);$)");
+    static const std::regex kValue(R"re((\d+) "([^"]*)")re");
+    std::ifstream in(path);
+    EXPECT_TRUE(in.good()) << path;
+    Dbc dbc;
+    unsigned id = 0;
+    std::size_t understood = 0, meant = 0;
+    for (std::string line; std::getline(in, line);) {
+        meant += line.rfind("BO_ ", 0) == 0 || line.rfind(" SG_ ", 0) == 0 ? 1 : 0;
+        std::smatch m;
+        if (std::regex_match(line, m, kMessage)) {
+            ++understood;
+            id = static_cast<unsigned>(std::stoul(m[1]));
+            dbc.messages[id].name = m[2];
+            dbc.messages[id].bytes = static_cast<unsigned>(std::stoul(m[3]));
+        } else if (std::regex_match(line, m, kSignal)) {
+            ++understood;
+            dbc.messages[id].signals[m[1]] = {static_cast<unsigned>(std::stoul(m[2])),
+                                              static_cast<unsigned>(std::stoul(m[3])),
+                                              m[4] == "-",
+                                              std::stod(m[5]),
+                                              std::stod(m[6]),
+                                              std::stod(m[7]),
+                                              m[8]};
+        } else if (std::regex_match(line, m, kFormat)) {
+            dbc.messages[static_cast<unsigned>(std::stoul(m[1]))].fd = true;
+        } else if (std::regex_match(line, m, kValues)) {
+            const std::string list = m[3];
+            for (std::sregex_iterator v(list.begin(), list.end(), kValue), end; v != end; ++v)
+                dbc.values[std::string(m[1]) + " " + std::string(m[2])]
+                          [static_cast<unsigned>(std::stoul((*v)[1]))] = (*v)[2];
+        }
+    }
+    EXPECT_EQ(understood, meant);  // no line of a message was passed over
+    return dbc;
+}
+
+const Dbc& file() {
+    static const Dbc dbc = read_dbc("hal/tracker/tact_tracker.dbc");
+    return dbc;
+}
+
+// Bit by bit, as the format's description says.
+double physical(const DbcSignal& s, const CanFrame& f) {
+    double value = 0.0;
+    for (unsigned i = 0; i < s.bits; ++i) {
+        const unsigned bit = s.start + i;
+        if ((f.data[bit / 8] >> (bit % 8) & 1U) == 0) continue;
+        const double weight = std::ldexp(1.0, static_cast<int>(i));
+        value += s.is_signed && i + 1 == s.bits ? -weight : weight;
+    }
+    return value * s.scale;
+}
+
+double physical(const CanFrame& f, const char* signal) {
+    return physical(file().messages.at(f.id).signals.at(signal), f);
+}
+
+TEST(TrackerDbc, has_the_messages_and_signals_of_the_driver_and_no_others) {
+    std::size_t messages = 0;
+    for (const CanMessage& message : kTrackerMessages) {
+        for (unsigned sensor = 0; sensor < message.copies; ++sensor) {
+            ++messages;
+            ASSERT_TRUE(file().messages.contains(message.id + sensor)) << message.name << sensor;
+            const DbcMessage& found = file().messages.at(message.id + sensor);
+            EXPECT_EQ(found.name,
+                      message.copies > 1 ? message.name + std::to_string(sensor) : std::string(message.name));
+            EXPECT_EQ(found.bytes, message.bytes);
+            EXPECT_EQ(found.fd, message.fd);
+            ASSERT_EQ(found.signals.size(), message.signals.size());
+            for (const CanSignal& s : message.signals) {
+                ASSERT_TRUE(found.signals.contains(s.name)) << found.name << "." << s.name;
+                const DbcSignal& g = found.signals.at(s.name);
+                EXPECT_EQ(g.start, s.start) << found.name << "." << s.name;
+                EXPECT_EQ(g.bits, s.bits) << found.name << "." << s.name;
+                EXPECT_EQ(g.is_signed, s.is_signed) << found.name << "." << s.name;
+                EXPECT_NEAR(g.scale, s.scale, 1e-12 * s.scale) << found.name << "." << s.name;
+                EXPECT_EQ(g.unit, s.unit) << found.name << "." << s.name;
+            }
+        }
+    }
+    EXPECT_EQ(file().messages.size(), messages);
+}
+
+TEST(TrackerDbc, signals_fill_their_message_to_the_last_bit_without_overlap) {
+    for (const auto& [id, message] : file().messages) {
+        std::vector<int> used(message.bytes * 8U, 0);
+        for (const auto& [name, s] : message.signals) {
+            ASSERT_LE(s.start + s.bits, used.size()) << message.name << "." << name;
+            for (unsigned i = 0; i < s.bits; ++i) ++used[s.start + i];
+        }
+        for (const int n : used) EXPECT_EQ(n, 1) << message.name;
+    }
+}
+
+TEST(TrackerDbc, names_the_status_as_the_driver_does) {
+    const std::map<unsigned, std::string> expected{
+        {static_cast<unsigned>(TrackerStatus::ok), "ok"},
+        {static_cast<unsigned>(TrackerStatus::starting), "starting"},
+        {static_cast<unsigned>(TrackerStatus::no_source), "no_source"},
+        {static_cast<unsigned>(TrackerStatus::fault), "fault"}};
+    EXPECT_EQ(file().values.at("240 Status"), expected);
+}
+
+// What another tool would read from the driver's frames with this file.
+TEST(TrackerDbc, reads_from_the_driver_s_frames_what_was_put_in) {
+    const Vec3 p_m(-0.4321, 1.2345, 0.00005);
+    const Quat q = quat_from_rotation_vector(Vec3(0.3, -1.1, 0.7));
+
+    const CanFrame sync = encode(SyncFrame{0xBEEF, 0xFEDCBA98, TrackerStatus::no_source});
+    EXPECT_EQ(physical(sync, "Counter"), 0xBEEF);
+    EXPECT_EQ(physical(sync, "Time"), 0xFEDCBA98);
+    EXPECT_EQ(physical(sync, "Status"), 2);
+
+    const CanFrame pos = encode(PosFrame{3, 11, kSensorValid | kSensorFar, p_m});
+    EXPECT_NEAR(physical(pos, "X"), -432.1, 0.0251);
+    EXPECT_NEAR(physical(pos, "Y"), 1234.5, 0.0251);
+    EXPECT_NEAR(physical(pos, "Z"), 0.05, 0.0251);
+    EXPECT_EQ(physical(pos, "Status"), 5);
+    EXPECT_EQ(physical(pos, "Counter"), 11);
+
+    const CanFrame quat = encode(QuatFrame{2, 7, q});
+    EXPECT_NEAR(physical(quat, "Qx"), q.x(), 0.501 / 4095);
+    EXPECT_NEAR(physical(quat, "Qy"), q.y(), 0.501 / 4095);
+    EXPECT_NEAR(physical(quat, "Qz"), q.z(), 0.501 / 4095);
+    EXPECT_NEAR(physical(quat, "Qw"), q.w(), 0.501 / 4095);
+    EXPECT_EQ(physical(quat, "Counter"), 7);
+
+    const CanFrame pose = encode(PoseFrame{1, 200, kSensorValid, 123456789, {p_m, q}, 0.8, 0.2});
+    EXPECT_EQ(physical(pose, "Counter"), 200);
+    EXPECT_EQ(physical(pose, "Sensor"), 1);
+    EXPECT_EQ(physical(pose, "Status"), 1);
+    EXPECT_EQ(physical(pose, "Time"), 123456789);
+    EXPECT_NEAR(physical(pose, "Y"), 1234.5, 0.0251);
+    EXPECT_NEAR(physical(pose, "Qy"), q.y(), 0.501 / 32768);
+    EXPECT_NEAR(physical(pose, "Qw"), q.w(), 0.501 / 32768);
+    EXPECT_NEAR(physical(pose, "Quality"), 0.8, 0.501 / 255);
+    EXPECT_NEAR(physical(pose, "Distortion"), 0.2, 0.501 / 255);
+}
+
+}  // namespace
+}  // namespace tact
