@@ -1,0 +1,85 @@
+// From a CAN bus to the newest pose of each sensor: one bounded round at a time.
+//
+// Round     at most kBatchesMax batches: a flood costs a bounded time, and what lies in the kernel's queue is
+// then
+//           old, refused as stale and counted until the newest is reached
+// Link      down: goes on by itself; gone: reopened every kReopenEvery; bus off: flagged until a good frame
+// or the
+//           controller's "restarted". After each, counters begin anew.
+// Mailbox   samples and counters go out through Latest<>: readers never wait and see whole values
+// Thread    round() on one, its own; read() and health() on another
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "hal/api/tracker.hpp"
+#include "hal/tracker/can_source.hpp"
+#include "hal/tracker/fix_assembler.hpp"
+#include "hal/tracker/tracker_clock.hpp"
+#include "ipc/shm/latest.hpp"
+
+namespace tact {
+
+struct CanTrackerSettings {
+    FixSettings fix;
+    double rate_hz = 240.0;                           // of each sensor
+    Duration latency = std::chrono::milliseconds(4);  // from the motion to the frame on the bus
+};
+
+// The same settings, or StartupError: numbers of sensors, rates and latencies that no tracker has.
+const CanTrackerSettings& checked(const CanTrackerSettings& settings);
+
+// Counters of one kind each, for the health panel and the log.
+struct CanReaderCounts {
+    RefusalCounts refused;
+    std::uint64_t bus_offs = 0, bus_passive = 0, clock_restarts = 0;
+};
+
+class CanReader {
+public:
+    static constexpr std::size_t kBatchesMax = 4;
+    static constexpr Duration kReopenEvery = std::chrono::milliseconds(500);
+    static constexpr Duration kFloodPause = std::chrono::milliseconds(1);
+
+    // Both outlive the reader.
+    CanReader(const CanTrackerSettings& settings, CanSource& source, Clock& clock);
+
+    void opened() noexcept;                  // the source works: after its open()
+    void round(Duration patience) noexcept;  // comes back after about `patience` when nothing comes
+
+    TrackerState read(unsigned sensor, TrackerSample& newest, Instant now) const noexcept TACT_RT;
+    [[nodiscard]] TrackerHealth health() const noexcept TACT_RT;
+    [[nodiscard]] CanReaderCounts counts() const noexcept;  // on the thread of round(), or when it stands
+
+private:
+    struct SampleWords {
+        std::int64_t taken_at_ns;
+        std::uint64_t sequence;
+        double pos_m[3], quat_xyzw[4];
+        double quality, distortion;
+    };
+    struct Mail {
+        std::array<Latest<SampleWords>, kTrackerSensorsMax> samples;
+        Latest<TrackerHealth> health;
+    };
+
+    void take(const CanFrame& frame, Instant arrived) noexcept;
+    void take_error(const CanFrame& frame) noexcept;
+    void link_is(TrackerLink link) noexcept;
+    void publish(const TrackerFix& fix, Instant taken_at) noexcept;
+
+    CanTrackerSettings settings_;
+    CanSource& source_;
+    Clock& clock_;
+    FixAssembler assembler_;
+    std::array<TrackerClock, kTrackerSensorsMax> clocks_;
+    std::array<CanFrame, kCanBatch> frames_;
+    TrackerHealth health_;
+    CanReaderCounts counts_;
+    std::array<std::uint64_t, kTrackerSensorsMax> sequence_{};
+    Instant retry_at_{};
+    std::unique_ptr<Mail> mail_;
+};
+
+}  // namespace tact
