@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/tracker/pose_frames.hpp"
@@ -32,45 +32,52 @@ struct Dbc {
     std::map<std::string, std::map<unsigned, std::string>> values;  // "id signal" -> raw -> text
 };
 
+std::string unquoted(const std::string& word) {
+    EXPECT_TRUE(word.size() >= 2 && word.front() == '"' && word.back() == '"') << word;
+    return word.size() >= 2 ? word.substr(1, word.size() - 2) : word;
+}
+
+// The lines as this file writes them, word by word: punctuation between numbers is a gap.
 Dbc read_dbc(const std::string& path) {
-    static const std::regex kMessage(R"(^BO_ (\d+) (\w+): (\d+) (\w+)$)");
-    static const std::regex kSignal(
-        R"re(^ SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([-0-9.]+),0\) \[([-0-9.]+)\|([-0-9.]+)\] "(.*)" (\w+)$)re");
-    static const std::regex kFormat(R"(^BA_ "VFrameFormat" BO_ (\d+) 14;$)");
-    static const std::regex kValues(R"(^VAL_ (\d+) (\w+) (.*);$)");
-    static const std::regex kValue(R"re((\d+) "([^"]*)")re");
     std::ifstream in(path);
     EXPECT_TRUE(in.good()) << path;
     Dbc dbc;
     unsigned id = 0;
-    std::size_t understood = 0, meant = 0;
     for (std::string line; std::getline(in, line);) {
-        meant += line.rfind("BO_ ", 0) == 0 || line.rfind(" SG_ ", 0) == 0 ? 1 : 0;
-        std::smatch m;
-        if (std::regex_match(line, m, kMessage)) {
-            ++understood;
-            id = static_cast<unsigned>(std::stoul(m[1]));
-            dbc.messages[id].name = m[2];
-            dbc.messages[id].bytes = static_cast<unsigned>(std::stoul(m[3]));
-        } else if (std::regex_match(line, m, kSignal)) {
-            ++understood;
-            dbc.messages[id].signals[m[1]] = {static_cast<unsigned>(std::stoul(m[2])),
-                                              static_cast<unsigned>(std::stoul(m[3])),
-                                              m[4] == "-",
-                                              std::stod(m[5]),
-                                              std::stod(m[6]),
-                                              std::stod(m[7]),
-                                              m[8]};
-        } else if (std::regex_match(line, m, kFormat)) {
-            dbc.messages[static_cast<unsigned>(std::stoul(m[1]))].fd = true;
-        } else if (std::regex_match(line, m, kValues)) {
-            const std::string list = m[3];
-            for (std::sregex_iterator v(list.begin(), list.end(), kValue), end; v != end; ++v)
-                dbc.values[std::string(m[1]) + " " + std::string(m[2])]
-                          [static_cast<unsigned>(std::stoul((*v)[1]))] = (*v)[2];
+        std::string spaced = line;
+        for (char& c : spaced)
+            if (std::string_view(":|@(),[];").find(c) != std::string_view::npos) c = ' ';
+        std::istringstream words(spaced);
+        std::string kind, name, more;
+        words >> kind;
+        if (kind == "BO_") {
+            DbcMessage m;
+            words >> id >> m.name >> m.bytes >> more;
+            EXPECT_TRUE(words && !dbc.messages.contains(id)) << line;
+            dbc.messages[id] = m;
+        } else if (kind == "SG_") {
+            DbcSignal g;
+            double offset = 1.0;
+            std::string order;
+            words >> name >> g.start >> g.bits >> order >> g.scale >> offset >> g.low >> g.high >> g.unit >>
+                more;
+            EXPECT_TRUE(words && offset == 0.0 && (order == "1+" || order == "1-"))
+                << line;  // 1: little endian
+            g.is_signed = order == "1-";
+            g.unit = unquoted(g.unit);
+            EXPECT_TRUE(dbc.messages[id].signals.emplace(name, g).second) << line;
+        } else if (kind == "BA_" && line.find("\"VFrameFormat\"") != std::string::npos) {
+            unsigned message = 0, format = 0;
+            words >> name >> more >> message >> format;
+            EXPECT_TRUE(words && format == 14) << line;  // StandardCAN_FD in the list of the attribute
+            dbc.messages[message].fd = true;
+        } else if (kind == "VAL_") {
+            unsigned message = 0, raw = 0;
+            words >> message >> name;
+            while (words >> raw >> more)
+                dbc.values[std::to_string(message) + " " + name][raw] = unquoted(more);
         }
     }
-    EXPECT_EQ(understood, meant);  // no line of a message was passed over
     return dbc;
 }
 
