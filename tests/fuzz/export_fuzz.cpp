@@ -1,24 +1,17 @@
 // Structure files and places of bodies from anywhere, as saving reads them. The first byte picks which; what
 // is accepted is written with every atom where the motion takes it, and can be read again.
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "ipc/base/error.hpp"
 #include "prep/export/poses_file.hpp"
 #include "prep/export/write_structure_file.hpp"
-#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/format_fuzz.hpp"
 #include "tests/unit/prep_samples.hpp"
 
 namespace tact::fuzz {
 namespace {
 
 enum Kind : unsigned char { kPdb, kCif, kPoses, kKinds };
-
-void require(bool claim) {
-    if (!claim) std::abort();
-}
 
 AtomMove motion() {
     return AtomMove::of({Vec3(1e-9, -2e-9, 3e-9), quat_from_rotation_vector(Vec3(0.3, -0.5, 0.7))},
@@ -47,39 +40,17 @@ void save_mmcif(std::string_view text) {
     same_places(mmcif_atoms(text, "fuzz.cif"), mmcif_atoms(moved, "moved.cif"));
 }
 
-Input seed(Kind kind, const std::string& text) {
-    Input s;
-    s.reserve(1 + text.size());
-    s.push_back(static_cast<std::byte>(kind));
-    const auto bytes = std::as_bytes(std::span(text));
-    s.insert(s.end(), bytes.begin(), bytes.end());
-    return s;
-}
-
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
-    if (input.empty()) return false;
-    const std::string_view text(reinterpret_cast<const char*>(input.data() + 1), input.size() - 1);
-    try {
-        switch (static_cast<unsigned>(input[0]) % kKinds) {
-            case kPdb:
-                save_pdb(text);
-                break;
-            case kCif:
-                save_mmcif(text);
-                break;
-            default:
-                for (const PlacedBody& b : read_poses(text, "fuzz.json", 3)) {
-                    require(b.structure < 3 && b.T_model_body.finite());
-                    require(std::abs(b.T_model_body.q.norm() - 1.0) < 1e-9);
-                }
+    return run_formats(input, kKinds, [](unsigned kind, std::string_view text) {
+        if (kind == kPdb) return save_pdb(text);
+        if (kind == kCif) return save_mmcif(text);
+        for (const PlacedBody& b : read_poses(text, "fuzz.json", 3)) {
+            require(b.structure < 3 && b.T_model_body.finite());
+            require(std::abs(b.T_model_body.q.norm() - 1.0) < 1e-9);
         }
-    } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
-        return false;
-    }
-    return true;
+    });
 }
 
 std::vector<Input> seeds() {

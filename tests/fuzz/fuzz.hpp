@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,10 @@ using Input = std::vector<std::byte>;
 bool run(std::span<const std::byte> input);  // true: the input was accepted
 [[nodiscard]] std::vector<Input>
 seeds();  // made in code, every one accepted; replay checks that they still are
+
+inline void require(bool claim) {
+    if (!claim) std::abort();
+}
 
 // A seed from a plain struct or a string.
 template <class T>

@@ -12,10 +12,6 @@ namespace {
 
 constexpr RegionIdentity kIdentity{"tact.fuzz", 0x1234, 4096};
 
-void require(bool claim) {
-    if (!claim) std::abort();
-}
-
 Input seed(std::byte kind, const Input& rest) {
     Input out(rest.size() + 1);  // sized once: g++ 14 at -O3 sees a wrong delete behind a push_back
     out[0] = kind;

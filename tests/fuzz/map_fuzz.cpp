@@ -1,13 +1,10 @@
-// Maps and structures from anywhere. The first byte picks the format; what is accepted is a grid or a
-// structure whose parts fit together and whose numbers are finite.
+// Maps from anywhere. The first byte picks the format; what is accepted is a grid whose parts fit together
+// and whose numbers are finite.
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "ipc/base/error.hpp"
 #include "prep/map/import_map.hpp"
-#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/format_fuzz.hpp"
 #include "tests/unit/prep_samples.hpp"
 
 namespace tact::fuzz {
@@ -15,44 +12,21 @@ namespace {
 
 enum Kind : unsigned char { kMrc, kSitus, kKinds };
 
-void require(bool claim) {
-    if (!claim) std::abort();
-}
-
 void use(const DensityGrid& grid) {
     require(grid.values.size() == grid.count() && !grid.values.empty());
     require(grid.origin_m.allFinite() && (grid.spacing_m.array() > 0.0).all());
     for (const float v : grid.values) require(std::isfinite(v));
 }
 
-Input seed(Kind kind, const std::string& text) {
-    Input s;
-    s.reserve(1 + text.size());
-    s.push_back(static_cast<std::byte>(kind));
-    const auto bytes = std::as_bytes(std::span(text));
-    s.insert(s.end(), bytes.begin(), bytes.end());
-    return s;
-}
-
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
-    if (input.empty()) return false;
-    const auto* const text = reinterpret_cast<const char*>(input.data() + 1);
-    const std::size_t size = input.size() - 1;
-    try {
-        switch (static_cast<unsigned>(input[0]) % kKinds) {
-            case kMrc:
-                use(import_map_bytes({text, text + size}, "fuzz.mrc", ".mrc").grid);
-                break;
-            default:
-                use(import_map_bytes({text, text + size}, "fuzz.situs", ".situs").grid);
-        }
-    } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
-        return false;
-    }
-    return true;
+    return run_formats(input, kKinds, [](unsigned kind, std::string_view text) {
+        const bool mrc = kind == kMrc;
+        use(import_map_bytes({text.begin(), text.end()}, mrc ? "fuzz.mrc" : "fuzz.situs",
+                             mrc ? ".mrc" : ".situs")
+                .grid);
+    });
 }
 
 std::vector<Input> seeds() {

@@ -1,23 +1,16 @@
 // Meshes from anywhere. The first byte picks the format; what is accepted has its indices in range and finite
 // numbers, and can be simplified.
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "ipc/base/error.hpp"
 #include "prep/mesh/relax.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
-#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/format_fuzz.hpp"
 
 namespace tact::fuzz {
 namespace {
 
 constexpr const char* kEnding[] = {".ply", ".obj", ".stl"};
-
-void require(bool claim) {
-    if (!claim) std::abort();
-}
 
 void use(const TriangleMesh& mesh) {
     require(mesh.triangles() > 0 && mesh.position_m.size() % 3 == 0 && mesh.triangle.size() % 3 == 0);
@@ -29,15 +22,6 @@ void use(const TriangleMesh& mesh) {
     for (const float x : coarse.mesh.position_m) require(std::isfinite(x));
 }
 
-Input seed(std::size_t ending, const std::string& text) {
-    Input s;
-    s.reserve(1 + text.size());
-    s.push_back(static_cast<std::byte>(ending));
-    const auto bytes = std::as_bytes(std::span(text));
-    s.insert(s.end(), bytes.begin(), bytes.end());
-    return s;
-}
-
 template <class T>
 void put(std::string& to, T value) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -46,17 +30,9 @@ void put(std::string& to, T value) {
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
-    if (input.empty()) return false;
-    const auto* const text = reinterpret_cast<const char*>(input.data() + 1);
-    try {
-        use(import_mesh_bytes({text, text + input.size() - 1}, "fuzz",
-                              kEnding[static_cast<unsigned>(input[0]) % std::size(kEnding)])
-                .mesh);
-    } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
-        return false;
-    }
-    return true;
+    return run_formats(input, std::size(kEnding), [](unsigned ending, std::string_view text) {
+        use(import_mesh_bytes({text.begin(), text.end()}, "fuzz", kEnding[ending]).mesh);
+    });
 }
 
 std::vector<Input> seeds() {

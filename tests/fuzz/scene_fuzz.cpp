@@ -20,10 +20,6 @@ namespace {
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'}};
 
-void require(bool claim) {
-    if (!claim) std::abort();
-}
-
 template <class Read>
 std::size_t accepted(Read&& read) {
     try {

@@ -1,23 +1,16 @@
-// Maps and structures from anywhere. The first byte picks the format; what is accepted is a grid or a
-// structure whose parts fit together and whose numbers are finite.
+// Structures from anywhere. The first byte picks the format; what is accepted is a structure whose parts fit
+// together and whose numbers are finite.
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "ipc/base/error.hpp"
 #include "prep/structure/import_structure.hpp"
-#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/format_fuzz.hpp"
 #include "tests/unit/prep_samples.hpp"
 
 namespace tact::fuzz {
 namespace {
 
 enum Kind : unsigned char { kPdb, kCif, kKinds };
-
-void require(bool claim) {
-    if (!claim) std::abort();
-}
 
 void use(const Structure& s) {
     require(s.size() > 0 && s.y_m.size() == s.size() && s.mass_fraction.size() == s.size());
@@ -28,34 +21,15 @@ void use(const Structure& s) {
     }
 }
 
-Input seed(Kind kind, const std::string& text) {
-    Input s;
-    s.reserve(1 + text.size());
-    s.push_back(static_cast<std::byte>(kind));
-    const auto bytes = std::as_bytes(std::span(text));
-    s.insert(s.end(), bytes.begin(), bytes.end());
-    return s;
-}
-
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
-    if (input.empty()) return false;
-    const auto* const text = reinterpret_cast<const char*>(input.data() + 1);
-    const std::size_t size = input.size() - 1;
-    try {
-        switch (static_cast<unsigned>(input[0]) % kKinds) {
-            case kPdb:
-                use(import_structure_bytes({text, size}, "fuzz.pdb", ".pdb").structure);
-                break;
-            default:
-                use(import_structure_bytes({text, size}, "fuzz.cif", ".cif").structure);
-        }
-    } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
-        return false;
-    }
-    return true;
+    return run_formats(input, kKinds, [](unsigned kind, std::string_view text) {
+        const bool pdb = kind == kPdb;
+        use(import_structure_bytes({text.data(), text.size()}, pdb ? "fuzz.pdb" : "fuzz.cif",
+                                   pdb ? ".pdb" : ".cif")
+                .structure);
+    });
 }
 
 std::vector<Input> seeds() {

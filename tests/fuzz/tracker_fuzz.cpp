@@ -1,7 +1,6 @@
 // Frames of the tracker's bus. The first byte: format, sensors, and whether checksums are mended, so that
 // what lies behind them is met as well; then frames of 4 bytes (identifier, kind, length) and their payload.
 #include <cmath>
-#include <cstdlib>
 
 #include "hal/tracker/can_crc.hpp"
 #include "hal/tracker/fix_assembler.hpp"
@@ -11,10 +10,6 @@ namespace tact::fuzz {
 namespace {
 
 constexpr std::uint8_t kFd = 1, kMend = 2;
-
-void require(bool claim) {
-    if (!claim) std::abort();
-}
 
 void mend(CanFrame& f) {
     if (f.kind == CanKind::classic && f.length == kClassicBytes) {
