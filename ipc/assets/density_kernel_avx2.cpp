@@ -1,5 +1,5 @@
-// Density kernel for AVX2 and FMA: the method of density_kernel_avx512.cpp with eight points at a time, and
-// each 4 x 4 patch in two halves of two rows.
+// Density kernel for AVX2 and FMA: eight points at a time are prepared as in density_kernel_avx512.cpp, then
+// summed one by one, each 4 x 4 patch in two halves of two rows.
 #if defined(__x86_64__)
 
 #include <immintrin.h>
@@ -20,7 +20,14 @@ struct alignas(32) Block {
     float value_z[4][kLanes], slope_z[4][kLanes];  // times the point's weight
     float r[3][kLanes];
     std::int32_t offset[kLanes];
+    std::int32_t phase[kLanes];  // columns: how many of the four x are of the second row
 };
+
+// By phase: which floats of two rows are of the second row.
+alignas(32) constexpr std::int32_t kSecond[4][kLanes] = {{0, 0, 0, 0, 0, 0, 0, 0},
+                                                         {-1, 0, 0, 0, -1, 0, 0, 0},
+                                                         {-1, -1, 0, 0, -1, -1, 0, 0},
+                                                         {-1, -1, -1, 0, -1, -1, -1, 0}};
 
 struct Weights {
     __m256 value[4], slope[4];
@@ -59,6 +66,16 @@ TACT_AVX2 inline void store_per_point(const __m256* w, float* out) {
     _mm256_store_ps(out + 24, _mm256_permute2f128_ps(p2, p3, 0x31));
 }
 
+// Each weight to where its coefficient is: w[(e - phase) mod 4] to e.
+TACT_AVX2 inline void rotate(__m256i cell, __m256* w) {
+    const __m256 by_one = _mm256_castsi256_ps(_mm256_slli_epi32(cell, 31));
+    const __m256 by_two = _mm256_castsi256_ps(_mm256_slli_epi32(cell, 30));
+    const __m256 a[4] = {_mm256_blendv_ps(w[0], w[3], by_one), _mm256_blendv_ps(w[1], w[0], by_one),
+                         _mm256_blendv_ps(w[2], w[1], by_one), _mm256_blendv_ps(w[3], w[2], by_one)};
+    for (int e = 0; e < 4; ++e) w[e] = _mm256_blendv_ps(a[e], a[e ^ 2], by_two);
+}
+
+template <bool windows>
 TACT_AVX2 inline void prepare(const DensityJob& job, std::size_t begin, std::size_t count, Block& block) {
     alignas(32) static constexpr std::int32_t kOn[2 * kLanes] = {-1, -1, -1, -1, -1, -1, -1, -1,
                                                                  0,  0,  0,  0,  0,  0,  0,  0};
@@ -78,9 +95,17 @@ TACT_AVX2 inline void prepare(const DensityJob& job, std::size_t begin, std::siz
         t = _mm256_max_ps(t, _mm256_set1_ps(job.low[a]));  // the second operand where t is not a number
         t = _mm256_min_ps(t, _mm256_set1_ps(job.high[a]));
         const __m256 whole = _mm256_floor_ps(t);
-        const Weights w = weights(_mm256_sub_ps(t, whole), per_spacing);
-        const __m256i cell = _mm256_add_epi32(_mm256_cvttps_epi32(whole), _mm256_set1_epi32(job.cell[a] - 1));
-        offset = _mm256_add_epi32(offset, _mm256_mullo_epi32(cell, _mm256_set1_epi32(job.stride[a])));
+        Weights w = weights(_mm256_sub_ps(t, whole), per_spacing);
+        __m256i cell = _mm256_add_epi32(_mm256_cvttps_epi32(whole), _mm256_set1_epi32(job.cell[a] - 1));
+        if (a == 0 && !windows) {
+            rotate(cell, w.value);
+            rotate(cell, w.slope);
+            _mm256_store_si256(reinterpret_cast<__m256i*>(block.phase),
+                               _mm256_and_si256(cell, _mm256_set1_epi32(3)));
+            cell = _mm256_srli_epi32(cell, 2);
+        }
+        const std::int32_t stride = a == 0 ? job.row_stride : a == 1 ? 4 : job.plane_stride;
+        offset = _mm256_add_epi32(offset, _mm256_mullo_epi32(cell, _mm256_set1_epi32(stride)));
         if (a == 2) {
             for (int k = 0; k < 4; ++k) {
                 _mm256_store_ps(block.value_z[k], _mm256_mul_ps(w.value[k], weight));
@@ -95,10 +120,11 @@ TACT_AVX2 inline void prepare(const DensityJob& job, std::size_t begin, std::siz
 }
 
 // Two rows of four x.
-template <bool interleaved>
-TACT_AVX2 inline __m256 load_rows(const float* p, std::ptrdiff_t row_stride) {
-    if constexpr (interleaved) return _mm256_loadu_ps(p);
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p)), _mm_loadu_ps(p + row_stride), 1);
+template <bool windows>
+TACT_AVX2 inline __m256 load_rows(const float* p, std::ptrdiff_t row_stride, __m256 second) {
+    const __m256 rows = _mm256_loadu_ps(p);
+    if constexpr (windows) return rows;
+    return _mm256_blendv_ps(rows, _mm256_loadu_ps(p + row_stride), second);
 }
 
 TACT_AVX2 inline double total(__m256 v) {
@@ -109,9 +135,9 @@ TACT_AVX2 inline double total(__m256 v) {
     return sum;
 }
 
-template <bool interleaved>
+template <bool windows>
 TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
-    const std::ptrdiff_t z_stride = job.stride[2], row_stride = job.row_stride;
+    const std::ptrdiff_t plane_stride = job.plane_stride, row_stride = job.row_stride;
     Block block;
     for (std::size_t first = 0; first < job.count; first += kDensityFlush) {
         const std::size_t end = job.count - first < kDensityFlush ? job.count : first + kDensityFlush;
@@ -119,9 +145,13 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
         __m256 gx = density, gy = density, gz = density, mx = density, my = density, mz = density;
         for (std::size_t begin = first; begin < end; begin += kLanes) {
             const std::size_t count = end - begin < kLanes ? end - begin : kLanes;
-            prepare(job, begin, count, block);
+            prepare<windows>(job, begin, count, block);
             for (std::size_t i = 0; i < count; ++i) {
                 const float* const patch = job.coefficients + block.offset[i];
+                const __m256 second = windows
+                                          ? _mm256_setzero_ps()
+                                          : _mm256_castsi256_ps(_mm256_load_si256(
+                                                reinterpret_cast<const __m256i*>(kSecond[block.phase[i]])));
                 const __m256 x_value =
                     _mm256_broadcast_ps(reinterpret_cast<const __m128*>(block.value_x + 4 * i));
                 const __m256 x_slope =
@@ -134,12 +164,12 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
                              ry = _mm256_broadcast_ss(&block.r[1][i]);
                 const __m256 rz = _mm256_broadcast_ss(&block.r[2][i]);
                 for (int half = 0; half < 2; ++half) {
-                    const float* const p = patch + 2 * half * row_stride;
-                    __m256 c = load_rows<interleaved>(p, row_stride);
+                    const float* const p = patch + std::ptrdiff_t{8 * half};
+                    __m256 c = load_rows<windows>(p, row_stride, second);
                     __m256 plane = _mm256_mul_ps(c, _mm256_broadcast_ss(&block.value_z[0][i]));
                     __m256 rise = _mm256_mul_ps(c, _mm256_broadcast_ss(&block.slope_z[0][i]));
                     for (int k = 1; k < 4; ++k) {
-                        c = load_rows<interleaved>(p + k * z_stride, row_stride);
+                        c = load_rows<windows>(p + k * plane_stride, row_stride, second);
                         plane = _mm256_fmadd_ps(c, _mm256_broadcast_ss(&block.value_z[k][i]), plane);
                         rise = _mm256_fmadd_ps(c, _mm256_broadcast_ss(&block.slope_z[k][i]), rise);
                     }
@@ -176,7 +206,7 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
 
 TACT_AVX2 void density_sum_avx2(const DensityJob& job, DensityJobSums& sums) {
     sums = DensityJobSums{};
-    if (job.row_stride == 4) {
+    if (job.windows) {
         sum_points<true>(job, sums);
     } else {
         sum_points<false>(job, sums);

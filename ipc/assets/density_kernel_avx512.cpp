@@ -1,15 +1,17 @@
 // Density kernel for AVX-512 (F only).
 //
 // Sixteen points at a time: their places and spline weights are computed in structure-of-arrays form. Then,
-// for four points at a time, each point's 64 coefficients are four loads that are summed along z. The four
-// results of 4 y x 4 x are transposed into four vectors of 4 points x 4 x, one for each y, and summed along
-// y. Since force and torque are sums, such a vector is all that the cross product needs, and one horizontal
-// sum per kDensityFlush points remains. The point's weight rides on those along z.
+// for four points at a time, each point's 64 coefficients are summed along z, with one weight for a whole
+// 4 y x 4 x; the results of the four are transposed to 4 y x 4 points and summed along x. The sums of all
+// sixteen are transposed once more, to sixteen points, and summed along y. So no weight has to be spread over
+// a vector but by a load, and what is left for each point, weight and lever arm, is done for sixteen at once.
 //
-// The four points of a vector are k, k + 4, k + 8, k + 12, so that their weights along y are one permutation
-// within lanes of what was computed for all sixteen. Weighting along y before the transposition, and folding
-// lanes after it, took a quarter more shuffles: 1.01 ms for 100 000 atoms where this takes 0.98 (medians of
-// runs in alternation, 2026-11-20).
+// Where the coefficients are in columns, a patch is two loads, the second of which replaces the elements that
+// the first has from before the patch. So x is rotated within its four, by the same for all rows of a point;
+// the weights along x are rotated to match, and nothing else notices.
+//
+// Weights are computed as six times the spline's and slopes as twice, per voxel; the factors are made good
+// in the end.
 #if defined(__x86_64__)
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -28,60 +30,66 @@ namespace tact {
 namespace {
 
 constexpr int kLanes = 16;
-// Sums of fewer points find their coefficients in the caches, and would only pay for asking: 200 points 2.2
-// us, asking 2.6; 100 000 points 1.06 ms, asking 0.99 (fastest of many, 2026-11-20).
-constexpr std::size_t kFetchFrom = 1024;
+// Points are asked for this far ahead, past the caches that the map is to stay in.
+constexpr std::ptrdiff_t kFetchAhead = 128;
+constexpr double kValueScale = 1.0 / (6.0 * 6.0 * 6.0), kSlopeScale = 1.0 / (2.0 * 6.0 * 6.0);
 
-// Point k + 4 l of the sixteen has its four weights along x in lane l of value_x[k]; value_y[j] has the
-// weight of row j of all sixteen.
 struct alignas(64) Block {
-    __m512 value_x[4], slope_x[4], value_y[4], slope_y[4];
-    float value_z[4][kLanes], slope_z[4][kLanes];  // times the point's weight
-    __m512 r[3];
+    float value_z[4][kLanes], slope_z[4][kLanes], value_x[4][kLanes], slope_x[4][kLanes];
+    __m512 value_y[4], slope_y[4];
+    __m512 r[3], weight;
     std::int32_t offset[kLanes];
+    std::int32_t second[kLanes];  // columns: which elements are of the second row, as a mask
 };
 
 struct Weights {
     __m512 value[4], slope[4];
 };
 
-TACT_AVX512 inline Weights weights(__m512 f, __m512 per_spacing) {
-    const __m512 half = _mm512_set1_ps(0.5F), one = _mm512_set1_ps(1.0F), sixth = _mm512_set1_ps(1.0F / 6.0F);
-    const __m512 two_thirds = _mm512_set1_ps(2.0F / 3.0F);
-    const __m512 g = _mm512_sub_ps(one, f);
+TACT_AVX512 inline Weights weights(__m512 f) {
+    const __m512 three = _mm512_set1_ps(3.0F), four = _mm512_set1_ps(4.0F), six = _mm512_set1_ps(6.0F);
+    const __m512 g = _mm512_sub_ps(_mm512_set1_ps(1.0F), f);
     const __m512 ff = _mm512_mul_ps(f, f), gg = _mm512_mul_ps(g, g);
     Weights w;
-    w.value[0] = _mm512_mul_ps(_mm512_mul_ps(gg, g), sixth);
-    w.value[1] = _mm512_fmadd_ps(ff, _mm512_fmsub_ps(half, f, one), two_thirds);
-    w.value[2] = _mm512_fmadd_ps(gg, _mm512_fmsub_ps(half, g, one), two_thirds);
-    w.value[3] = _mm512_mul_ps(_mm512_mul_ps(ff, f), sixth);
-    const __m512 two = _mm512_set1_ps(2.0F), three_halves = _mm512_set1_ps(1.5F);
-    const __m512 half_s = _mm512_mul_ps(half, per_spacing);
-    const __m512 fs = _mm512_mul_ps(f, per_spacing), gs = _mm512_mul_ps(g, per_spacing);
-    w.slope[0] = _mm512_sub_ps(_mm512_setzero_ps(), _mm512_mul_ps(gg, half_s));
-    w.slope[1] = _mm512_mul_ps(fs, _mm512_fmsub_ps(three_halves, f, two));
-    w.slope[2] = _mm512_mul_ps(gs, _mm512_fnmadd_ps(three_halves, g, two));
-    w.slope[3] = _mm512_mul_ps(ff, half_s);
+    w.value[0] = _mm512_mul_ps(gg, g);
+    w.value[1] = _mm512_fmadd_ps(ff, _mm512_fmsub_ps(three, f, six), four);
+    w.value[2] = _mm512_fmadd_ps(gg, _mm512_fmsub_ps(three, g, six), four);
+    w.value[3] = _mm512_mul_ps(ff, f);
+    w.slope[0] = _mm512_sub_ps(_mm512_setzero_ps(), gg);
+    w.slope[1] = _mm512_mul_ps(f, _mm512_fmsub_ps(three, f, four));
+    w.slope[2] = _mm512_mul_ps(g, _mm512_fnmadd_ps(three, g, four));
+    w.slope[3] = ff;
     return w;
 }
 
-TACT_AVX512 inline void by_point(const __m512* w, __m512* out) {
-    const __m512 a = _mm512_unpacklo_ps(w[0], w[1]), b = _mm512_unpackhi_ps(w[0], w[1]);
-    const __m512 c = _mm512_unpacklo_ps(w[2], w[3]), d = _mm512_unpackhi_ps(w[2], w[3]);
-    out[0] = _mm512_shuffle_ps(a, c, 0x44);
-    out[1] = _mm512_shuffle_ps(a, c, 0xEE);
-    out[2] = _mm512_shuffle_ps(b, d, 0x44);
-    out[3] = _mm512_shuffle_ps(b, d, 0xEE);
+// Each weight to where its coefficient is: w[(e - cell) mod 4] to e.
+TACT_AVX512 inline void rotate(__m512i cell, __m512* w) {
+    const __mmask16 by_one = _mm512_test_epi32_mask(cell, _mm512_set1_epi32(1));
+    const __mmask16 by_two = _mm512_test_epi32_mask(cell, _mm512_set1_epi32(2));
+    const __m512 a[4] = {_mm512_mask_mov_ps(w[0], by_one, w[3]), _mm512_mask_mov_ps(w[1], by_one, w[0]),
+                         _mm512_mask_mov_ps(w[2], by_one, w[1]), _mm512_mask_mov_ps(w[3], by_one, w[2])};
+    for (int e = 0; e < 4; ++e) w[e] = _mm512_mask_mov_ps(a[e], by_two, a[e ^ 2]);
 }
 
-TACT_AVX512 inline void prepare(const DensityJob& job, std::size_t begin, std::size_t count, bool fetch,
-                                Block& block) {
+// No address is wrong here, not even one behind the last point.
+TACT_AVX512 inline void fetch(const float* next) {
+    _mm_prefetch(reinterpret_cast<const char*>(next) + 4 * kFetchAhead, _MM_HINT_NTA);
+}
+
+template <bool windows>
+TACT_AVX512 inline void prepare(const DensityJob& job, std::size_t begin, std::size_t count, Block& block) {
     // Points beyond the last get no weight and lie at the body's origin.
     const __mmask16 mask = count >= kLanes ? __mmask16{0xFFFF} : static_cast<__mmask16>((1U << count) - 1U);
     const __m512 x = _mm512_maskz_loadu_ps(mask, job.x + begin);
     const __m512 y = _mm512_maskz_loadu_ps(mask, job.y + begin);
     const __m512 z = _mm512_maskz_loadu_ps(mask, job.z + begin);
-    const __m512 weight = _mm512_maskz_loadu_ps(mask, job.weight + begin);
+    block.weight = _mm512_maskz_loadu_ps(mask, job.weight + begin);
+    if constexpr (!windows) {
+        fetch(job.x + begin);
+        fetch(job.y + begin);
+        fetch(job.z + begin);
+        fetch(job.weight + begin);
+    }
     __m512i offset = _mm512_setzero_si512();
     for (int a = 0; a < 3; ++a) {
         const float* row = job.rotation + 3 * a;
@@ -89,48 +97,48 @@ TACT_AVX512 inline void prepare(const DensityJob& job, std::size_t begin, std::s
         r = _mm512_fmadd_ps(_mm512_set1_ps(row[1]), y, r);
         r = _mm512_fmadd_ps(_mm512_set1_ps(row[2]), z, r);
         block.r[a] = r;
-        const __m512 per_spacing = _mm512_set1_ps(job.per_spacing[a]);
-        __m512 t = _mm512_fmadd_ps(r, per_spacing, _mm512_set1_ps(job.fraction[a]));
+        __m512 t = _mm512_fmadd_ps(r, _mm512_set1_ps(job.per_spacing[a]), _mm512_set1_ps(job.fraction[a]));
         t = _mm512_max_ps(t, _mm512_set1_ps(job.low[a]));  // the second operand where t is not a number
         t = _mm512_min_ps(t, _mm512_set1_ps(job.high[a]));
-        const __m512 whole = _mm512_roundscale_ps(t, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-        const Weights w = weights(_mm512_sub_ps(t, whole), per_spacing);
-        const __m512i cell = _mm512_add_epi32(_mm512_cvttps_epi32(whole), _mm512_set1_epi32(job.cell[a] - 1));
-        offset = _mm512_add_epi32(offset, _mm512_mullo_epi32(cell, _mm512_set1_epi32(job.stride[a])));
-        if (a == 2) {
-            for (int k = 0; k < 4; ++k) {
-                _mm512_store_ps(block.value_z[k], _mm512_mul_ps(w.value[k], weight));
-                _mm512_store_ps(block.slope_z[k], _mm512_mul_ps(w.slope[k], weight));
+        const __m512i whole = _mm512_cvt_roundps_epi32(t, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+        Weights w = weights(_mm512_sub_ps(t, _mm512_cvtepi32_ps(whole)));
+        __m512i cell = _mm512_add_epi32(whole, _mm512_set1_epi32(job.cell[a] - 1));
+        if (a == 0) {
+            if constexpr (!windows) {
+                rotate(cell, w.value);
+                rotate(cell, w.slope);
+                const __m512i masks = _mm512_set4_epi32(0x7777, 0x3333, 0x1111, 0);
+                _mm512_store_ps(block.second, _mm512_permutevar_ps(_mm512_castsi512_ps(masks), cell));
+                cell = _mm512_srli_epi32(cell, 2);
             }
+            offset = _mm512_mullo_epi32(cell, _mm512_set1_epi32(job.row_stride));
         } else if (a == 1) {
-            for (int j = 0; j < 4; ++j) {
-                block.value_y[j] = w.value[j];
-                block.slope_y[j] = w.slope[j];
-            }
+            offset = _mm512_add_epi32(offset, _mm512_slli_epi32(cell, 2));
         } else {
-            by_point(w.value, block.value_x);
-            by_point(w.slope, block.slope_x);
+            cell = _mm512_mullo_epi32(cell, _mm512_set1_epi32(job.plane_stride));
+            offset = _mm512_add_epi32(offset, cell);
+        }
+        for (int k = 0; k < 4; ++k) {
+            if (a == 1) {
+                block.value_y[k] = w.value[k];
+                block.slope_y[k] = w.slope[k];
+            } else {
+                _mm512_store_ps(a == 0 ? block.value_x[k] : block.value_z[k], w.value[k]);
+                _mm512_store_ps(a == 0 ? block.slope_x[k] : block.slope_z[k], w.slope[k]);
+            }
         }
     }
     _mm512_store_si512(block.offset, offset);
-    if (!fetch) return;
-    for (int i = 0; i < kLanes; ++i) {
-        const float* const patch = job.coefficients + block.offset[i];
-        for (int plane = 0; plane < 4; ++plane) {
-            _mm_prefetch(reinterpret_cast<const char*>(patch + plane * std::ptrdiff_t{job.stride[2]}),
-                         _MM_HINT_T0);
-        }
-    }
 }
 
-// Four rows of four x at z plane k.
-template <bool interleaved>
-TACT_AVX512 inline __m512 load_patch(const float* p, std::ptrdiff_t row_stride) {
-    if constexpr (interleaved) return _mm512_loadu_ps(p);
-    const __m512 a = _mm512_castps128_ps512(_mm_loadu_ps(p));
-    const __m512 ab = _mm512_insertf32x4(a, _mm_loadu_ps(p + row_stride), 1);
-    const __m512 abc = _mm512_insertf32x4(ab, _mm_loadu_ps(p + 2 * row_stride), 2);
-    return _mm512_insertf32x4(abc, _mm_loadu_ps(p + 3 * row_stride), 3);
+// Element l of lane j of out[e] is element e of lane j of v[l].
+TACT_AVX512 inline void transpose_in_lanes(const __m512* v, __m512* out) {
+    const __m512 a = _mm512_unpacklo_ps(v[0], v[1]), b = _mm512_unpackhi_ps(v[0], v[1]);
+    const __m512 c = _mm512_unpacklo_ps(v[2], v[3]), d = _mm512_unpackhi_ps(v[2], v[3]);
+    out[0] = _mm512_shuffle_ps(a, c, 0x44);
+    out[1] = _mm512_shuffle_ps(a, c, 0xEE);
+    out[2] = _mm512_shuffle_ps(b, d, 0x44);
+    out[3] = _mm512_shuffle_ps(b, d, 0xEE);
 }
 
 // Lane l of out[j] is lane j of v[l].
@@ -145,93 +153,128 @@ TACT_AVX512 inline void transpose_lanes(const __m512* v, __m512* out) {
     out[3] = _mm512_shuffle_f32x4(high01, high23, 0xDD);
 }
 
-struct Accumulators {
-    __m512 density, gx, gy, gz, mx, my, mz;
+// Four rows of four x.
+template <bool windows>
+TACT_AVX512 inline __m512 load_patch(const float* p, std::ptrdiff_t row_stride, __mmask16 second) {
+    const __m512 rows = _mm512_loadu_ps(p);
+    if constexpr (windows) return rows;
+    return _mm512_mask_loadu_ps(rows, second, p + row_stride);
+}
+
+TACT_AVX512 inline __m512 in_all_lanes(const float* four) {
+    return _mm512_broadcast_f32x4(_mm_load_ps(four));
+}
+
+TACT_AVX512 inline __m512 dot(const __m512* a, const __m512* b) {
+    __m512 sum = _mm512_mul_ps(a[0], b[0]);
+    sum = _mm512_fmadd_ps(a[1], b[1], sum);
+    sum = _mm512_fmadd_ps(a[2], b[2], sum);
+    return _mm512_fmadd_ps(a[3], b[3], sum);
+}
+
+// Sums along z and x, as 4 y x 4 points: of the density and of its slopes along x and z.
+struct Rows {
+    __m512 value[4], slope_x[4], slope_z[4];
 };
 
-// Points k, k + 4, k + 8, k + 12 of the block.
-template <bool interleaved, int k>
-TACT_AVX512 inline void add_four(const DensityJob& job, const Block& block, Accumulators& sum) {
-    const std::ptrdiff_t z_stride = job.stride[2], row_stride = job.row_stride;
+// Points 4 m .. 4 m + 3 of the block.
+template <bool windows, int m>
+TACT_AVX512 inline void sum_four(const DensityJob& job, const Block& block, Rows& rows) {
+    const std::ptrdiff_t plane_stride = job.plane_stride, row_stride = job.row_stride;
     __m512 planes[4], rises[4];
 #pragma GCC unroll 4
     for (int l = 0; l < 4; ++l) {
-        const int i = k + 4 * l;
+        const int i = 4 * m + l;
         const float* const p = job.coefficients + block.offset[i];
-        __m512 c = load_patch<interleaved>(p, row_stride);
+        const __mmask16 second = windows ? __mmask16{0} : static_cast<__mmask16>(block.second[i]);
+        __m512 c = load_patch<windows>(p, row_stride, second);
         __m512 plane = _mm512_mul_ps(c, _mm512_set1_ps(block.value_z[0][i]));
         __m512 rise = _mm512_mul_ps(c, _mm512_set1_ps(block.slope_z[0][i]));
 #pragma GCC unroll 3
         for (int z = 1; z < 4; ++z) {
-            c = load_patch<interleaved>(p + z * z_stride, row_stride);
+            c = load_patch<windows>(p + z * plane_stride, row_stride, second);
             plane = _mm512_fmadd_ps(c, _mm512_set1_ps(block.value_z[z][i]), plane);
             rise = _mm512_fmadd_ps(c, _mm512_set1_ps(block.slope_z[z][i]), rise);
         }
         planes[l] = plane;
         rises[l] = rise;
     }
-    __m512 plane_y[4], rise_y[4];
-    transpose_lanes(planes, plane_y);
-    transpose_lanes(rises, rise_y);
-    __m512 value = _mm512_permute_ps(block.value_y[0], k * 0x55);
-    __m512 row = _mm512_mul_ps(plane_y[0], value);
-    __m512 row_z = _mm512_mul_ps(rise_y[0], value);
-    __m512 row_y = _mm512_mul_ps(plane_y[0], _mm512_permute_ps(block.slope_y[0], k * 0x55));
+    __m512 plane_x[4], rise_x[4];
+    transpose_in_lanes(planes, plane_x);
+    transpose_in_lanes(rises, rise_x);
+    __m512 value = in_all_lanes(block.value_x[0] + 4 * m);
+    rows.value[m] = _mm512_mul_ps(plane_x[0], value);
+    rows.slope_z[m] = _mm512_mul_ps(rise_x[0], value);
+    rows.slope_x[m] = _mm512_mul_ps(plane_x[0], in_all_lanes(block.slope_x[0] + 4 * m));
 #pragma GCC unroll 3
-    for (int j = 1; j < 4; ++j) {
-        value = _mm512_permute_ps(block.value_y[j], k * 0x55);
-        row = _mm512_fmadd_ps(plane_y[j], value, row);
-        row_z = _mm512_fmadd_ps(rise_y[j], value, row_z);
-        row_y = _mm512_fmadd_ps(plane_y[j], _mm512_permute_ps(block.slope_y[j], k * 0x55), row_y);
+    for (int e = 1; e < 4; ++e) {
+        value = in_all_lanes(block.value_x[e] + 4 * m);
+        rows.value[m] = _mm512_fmadd_ps(plane_x[e], value, rows.value[m]);
+        rows.slope_z[m] = _mm512_fmadd_ps(rise_x[e], value, rows.slope_z[m]);
+        const __m512 slope = in_all_lanes(block.slope_x[e] + 4 * m);
+        rows.slope_x[m] = _mm512_fmadd_ps(plane_x[e], slope, rows.slope_x[m]);
     }
-    const __m512 px = _mm512_mul_ps(row, block.slope_x[k]);
-    const __m512 py = _mm512_mul_ps(row_y, block.value_x[k]);
-    const __m512 pz = _mm512_mul_ps(row_z, block.value_x[k]);
-    sum.density = _mm512_fmadd_ps(row, block.value_x[k], sum.density);
+}
+
+struct Accumulators {
+    __m512 density, gx, gy, gz, mx, my, mz;
+};
+
+template <bool windows>
+TACT_AVX512 inline void add_block(const DensityJob& job, const Block& block, Accumulators& sum) {
+    Rows rows;
+    sum_four<windows, 0>(job, block, rows);
+    sum_four<windows, 1>(job, block, rows);
+    sum_four<windows, 2>(job, block, rows);
+    sum_four<windows, 3>(job, block, rows);
+    __m512 row_y[4], per_spacing[3];
+    for (int a = 0; a < 3; ++a)
+        per_spacing[a] = _mm512_mul_ps(block.weight, _mm512_set1_ps(job.per_spacing[a]));
+    transpose_lanes(rows.value, row_y);
+    sum.density = _mm512_fmadd_ps(dot(row_y, block.value_y), block.weight, sum.density);
+    const __m512 py = _mm512_mul_ps(dot(row_y, block.slope_y), per_spacing[1]);
+    transpose_lanes(rows.slope_x, row_y);
+    const __m512 px = _mm512_mul_ps(dot(row_y, block.value_y), per_spacing[0]);
+    transpose_lanes(rows.slope_z, row_y);
+    const __m512 pz = _mm512_mul_ps(dot(row_y, block.value_y), per_spacing[2]);
+    const __m512 rx = block.r[0], ry = block.r[1], rz = block.r[2];
     sum.gx = _mm512_add_ps(sum.gx, px);
     sum.gy = _mm512_add_ps(sum.gy, py);
     sum.gz = _mm512_add_ps(sum.gz, pz);
-    const __m512 rx = _mm512_permute_ps(block.r[0], k * 0x55), ry = _mm512_permute_ps(block.r[1], k * 0x55);
-    const __m512 rz = _mm512_permute_ps(block.r[2], k * 0x55);
     sum.mx = _mm512_fnmadd_ps(rz, py, _mm512_fmadd_ps(ry, pz, sum.mx));
     sum.my = _mm512_fnmadd_ps(rx, pz, _mm512_fmadd_ps(rz, px, sum.my));
     sum.mz = _mm512_fnmadd_ps(ry, px, _mm512_fmadd_ps(rx, py, sum.mz));
 }
 
 TACT_AVX512 inline double total(__m512 v) {
-    alignas(64) float lane[kLanes];
-    _mm512_store_ps(lane, v);
-    double sum = 0.0;
-    for (const float f : lane) sum += static_cast<double>(f);
-    return sum;
+    const __m256 high = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1));
+    return _mm512_reduce_add_pd(
+        _mm512_add_pd(_mm512_cvtps_pd(_mm512_castps512_ps256(v)), _mm512_cvtps_pd(high)));
 }
 
-template <bool interleaved>
+template <bool windows>
 TACT_AVX512 void sum_points(const DensityJob& job, DensityJobSums& sums) {
-    const bool fetch = job.count >= kFetchFrom;
-    Block blocks[2];  // one is prepared, and its coefficients asked for, while the other is summed
+    Block blocks[2];  // one is prepared while the other is summed
+    Block *now = blocks, *next = blocks + 1;
     for (std::size_t first = 0; first < job.count; first += kDensityFlush) {
         const std::size_t end = job.count - first < kDensityFlush ? job.count : first + kDensityFlush;
         const __m512 zero = _mm512_setzero_ps();
         Accumulators sum{zero, zero, zero, zero, zero, zero, zero};
-        prepare(job, first, end - first, fetch, blocks[0]);
-        int turn = 0;
-        for (std::size_t begin = first; begin < end; begin += kLanes, turn ^= 1) {
-            if (begin + kLanes < end)
-                prepare(job, begin + kLanes, end - begin - kLanes, fetch, blocks[turn ^ 1]);
-            const Block& block = blocks[turn];
-            add_four<interleaved, 0>(job, block, sum);
-            add_four<interleaved, 1>(job, block, sum);
-            add_four<interleaved, 2>(job, block, sum);
-            add_four<interleaved, 3>(job, block, sum);
+        prepare<windows>(job, first, end - first, *now);
+        for (std::size_t begin = first; begin < end; begin += kLanes) {
+            if (begin + kLanes < end) prepare<windows>(job, begin + kLanes, end - begin - kLanes, *next);
+            add_block<windows>(job, *now, sum);
+            Block* const used = now;
+            now = next;
+            next = used;
         }
-        sums.density += total(sum.density);
-        sums.gradient[0] += total(sum.gx);
-        sums.gradient[1] += total(sum.gy);
-        sums.gradient[2] += total(sum.gz);
-        sums.moment[0] += total(sum.mx);
-        sums.moment[1] += total(sum.my);
-        sums.moment[2] += total(sum.mz);
+        sums.density += kValueScale * total(sum.density);
+        sums.gradient[0] += kSlopeScale * total(sum.gx);
+        sums.gradient[1] += kSlopeScale * total(sum.gy);
+        sums.gradient[2] += kSlopeScale * total(sum.gz);
+        sums.moment[0] += kSlopeScale * total(sum.mx);
+        sums.moment[1] += kSlopeScale * total(sum.my);
+        sums.moment[2] += kSlopeScale * total(sum.mz);
     }
 }
 
@@ -239,7 +282,7 @@ TACT_AVX512 void sum_points(const DensityJob& job, DensityJobSums& sums) {
 
 TACT_AVX512 void density_sum_avx512(const DensityJob& job, DensityJobSums& sums) {
     sums = DensityJobSums{};
-    if (job.row_stride == 4) {
+    if (job.windows) {
         sum_points<true>(job, sums);
     } else {
         sum_points<false>(job, sums);

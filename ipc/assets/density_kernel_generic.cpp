@@ -24,9 +24,10 @@ struct Partial {
     float density = 0.0F, gx = 0.0F, gy = 0.0F, gz = 0.0F, mx = 0.0F, my = 0.0F, mz = 0.0F;
 };
 
+template <bool windows>
 void add_point(const DensityJob& job, std::size_t i, Partial& out) {
     float r[3], value[3][4], slope[3][4];
-    std::ptrdiff_t offset = 0;
+    std::ptrdiff_t cell[3];
     for (int a = 0; a < 3; ++a) {
         const float* row = job.rotation + 3 * a;
         r[a] = row[0] * job.x[i] + row[1] * job.y[i] + row[2] * job.z[i];
@@ -35,18 +36,25 @@ void add_point(const DensityJob& job, std::size_t i, Partial& out) {
         t = t < job.high[a] ? t : job.high[a];
         const float whole = std::floor(t);
         weights(t - whole, job.per_spacing[a], value[a], slope[a]);
-        offset += std::ptrdiff_t{static_cast<std::int32_t>(whole) + job.cell[a] - 1} * job.stride[a];
+        cell[a] = static_cast<std::int32_t>(whole) + job.cell[a] - 1;
     }
-    const float* const patch = job.coefficients + offset;
+    const float* const patch = job.coefficients + cell[2] * job.plane_stride + 4 * cell[1];
+    std::ptrdiff_t place[4];  // of the four x
+    for (int x = 0; x < 4; ++x) {
+        const std::ptrdiff_t at = cell[0] + x;
+        place[x] = at / 4 * job.row_stride + at % 4;
+    }
+    const std::ptrdiff_t first = windows ? cell[0] * job.row_stride : 0;
     float density = 0.0F, gx = 0.0F, gy = 0.0F, gz = 0.0F;
     for (int y = 0; y < 4; ++y) {
         float plane[4] = {0.0F, 0.0F, 0.0F, 0.0F}, rise[4] = {0.0F, 0.0F, 0.0F, 0.0F};
         for (int z = 0; z < 4; ++z) {
             const float* const row =
-                patch + std::ptrdiff_t{y} * job.row_stride + std::ptrdiff_t{z} * job.stride[2];
+                patch + first + std::ptrdiff_t{z} * job.plane_stride + std::ptrdiff_t{4 * y};
             for (int x = 0; x < 4; ++x) {
-                plane[x] += value[2][z] * row[x];
-                rise[x] += slope[2][z] * row[x];
+                const float c = row[windows ? x : place[x]];
+                plane[x] += value[2][z] * c;
+                rise[x] += slope[2][z] * c;
             }
         }
         float v = 0.0F, vx = 0.0F, vz = 0.0F;
@@ -69,6 +77,22 @@ void add_point(const DensityJob& job, std::size_t i, Partial& out) {
     out.mz += r[0] * gy - r[1] * gx;
 }
 
+template <bool windows>
+void sum_points(const DensityJob& job, DensityJobSums& sums) {
+    for (std::size_t begin = 0; begin < job.count; begin += kDensityFlush) {
+        const std::size_t end = job.count - begin < kDensityFlush ? job.count : begin + kDensityFlush;
+        Partial part;
+        for (std::size_t i = begin; i < end; ++i) add_point<windows>(job, i, part);
+        sums.density += static_cast<double>(part.density);
+        sums.gradient[0] += static_cast<double>(part.gx);
+        sums.gradient[1] += static_cast<double>(part.gy);
+        sums.gradient[2] += static_cast<double>(part.gz);
+        sums.moment[0] += static_cast<double>(part.mx);
+        sums.moment[1] += static_cast<double>(part.my);
+        sums.moment[2] += static_cast<double>(part.mz);
+    }
+}
+
 bool always() { return true; }
 #if defined(__x86_64__)
 bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
@@ -79,17 +103,10 @@ bool has_avx512() { return has_avx2() && __builtin_cpu_supports("avx512f"); }
 
 void density_sum_generic(const DensityJob& job, DensityJobSums& sums) {
     sums = DensityJobSums{};
-    for (std::size_t begin = 0; begin < job.count; begin += kDensityFlush) {
-        const std::size_t end = job.count - begin < kDensityFlush ? job.count : begin + kDensityFlush;
-        Partial part;
-        for (std::size_t i = begin; i < end; ++i) add_point(job, i, part);
-        sums.density += static_cast<double>(part.density);
-        sums.gradient[0] += static_cast<double>(part.gx);
-        sums.gradient[1] += static_cast<double>(part.gy);
-        sums.gradient[2] += static_cast<double>(part.gz);
-        sums.moment[0] += static_cast<double>(part.mx);
-        sums.moment[1] += static_cast<double>(part.my);
-        sums.moment[2] += static_cast<double>(part.mz);
+    if (job.windows) {
+        sum_points<true>(job, sums);
+    } else {
+        sum_points<false>(job, sums);
     }
 }
 

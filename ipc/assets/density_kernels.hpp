@@ -3,12 +3,13 @@
 // Plain C types only: a translation unit that is compiled for a newer processor must not emit inline
 // functions that the linker could pick for an older one.
 //
-// Layout   coefficient c(x, y, z) of the padded grid lies at x * stride[0] + y * stride[1] + z * stride[2],
-//          and so do c(x + 1 .. x + 3, y, z) in the three floats behind it. Two layouts satisfy this:
-//          plain       stride (1, nx, nx ny), row_stride nx
-//          interleaved stride (4 ny, 4, 4 nx ny), row_stride 4: every window of four x is stored, so the 4 x
-//          4 patch
-//                      that a point needs of one z plane is 64 bytes in a row; four times the memory.
+// Layout   rows of four floats along x, one behind the other along y, so that what a point needs of one z
+//          plane, 4 x 4 coefficients, is 64 bytes in a row or two times that. Row r at y and z begins at
+//          z * plane_stride + r * row_stride + 4 y:
+//          columns  row r has x = 4 r .. 4 r + 3, so every coefficient is stored once. Four x that begin at
+//                   4 r + p are the last 4 - p of row r and the first p of row r + 1.
+//          windows  row r has x = r .. r + 3: four times the memory, half the cache lines for a point.
+//          Behind the last row there is room for one more: kernels read it and do not use it.
 // Thread   any; no allocation, constant time per point.
 #pragma once
 
@@ -19,8 +20,8 @@ namespace tact {
 
 struct DensityJob {
     const float* coefficients;
-    std::int32_t stride[3];
-    std::int32_t row_stride;
+    bool windows;                           // or columns
+    std::int32_t row_stride, plane_stride;  // in floats
     // Points, body frame, metres, and their weights.
     const float *x, *y, *z, *weight;
     std::size_t count;

@@ -64,10 +64,9 @@ public:
     // For tests; the defaults are what programs use.
     struct Options {
         const DensityKernel* kernel = nullptr;  // null: the fastest that the processor has
-        // A map whose coefficients take more than this when stored fourfold for speed is stored once: then
-        // fewer cache lines win. 100 000 points in 128^3 voxels: 0.99 ms fourfold, 1.13 once; in 160^3 at
-        // twice the detail 5.3 and 1.8 (fastest of 200, Zen 4).
-        std::size_t interleaved_bytes_max = std::size_t{64} << 20;
+        // Sums of few points are faster with the coefficients stored fourfold, because each point then takes
+        // half as many cache lines. Not done where that would take more than this.
+        std::size_t windows_bytes_max = std::size_t{64} << 20;
     };
 
     // sigma > 0. May allocate and take a second for large maps.
@@ -87,16 +86,14 @@ public:
     [[nodiscard]] const Vec3& spacing_m() const { return spacing_m_; }
     [[nodiscard]] const std::array<std::uint32_t, 3>& size() const { return size_; }
     [[nodiscard]] const char* kernel_name() const noexcept;  // "avx512", "avx2", "generic"
-    [[nodiscard]] std::size_t bytes() const { return coefficients_.size() * sizeof(float); }
+    [[nodiscard]] std::size_t bytes() const { return (columns_.size() + windows_.size()) * sizeof(float); }
 
 private:
     Vec3 origin_m_, spacing_m_;
     std::array<std::uint32_t, 3> size_{};
     std::array<std::int32_t, 3> padded_{};  // size_ and the border on both sides
-    std::array<std::int32_t, 3> stride_{};  // in floats, of a step along x, y, z
-    std::int32_t row_stride_ = 0;           // in floats, between the four rows of a patch
     const DensityKernel* kernel_ = nullptr;
-    HugeBuffer coefficients_;  // layout: density_kernels.hpp
+    HugeBuffer columns_, windows_;  // layouts: density_kernels.hpp; no windows where they were too many
 };
 
 }  // namespace tact

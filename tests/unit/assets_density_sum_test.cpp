@@ -81,6 +81,11 @@ protected:
         o.kernel = &kernel();
         return o;
     }
+    [[nodiscard]] static DensityMap::Options stored_once() {
+        DensityMap::Options o = options();
+        o.windows_bytes_max = 0;
+        return o;
+    }
     [[nodiscard]] static const DensityKernel& kernel() { return kDensityKernels[GetParam()]; }
 };
 
@@ -95,15 +100,29 @@ TEST_P(DensitySum, AgreesWithSampleForEveryCountOfPoints) {
     }
 }
 
-TEST_P(DensitySum, AgreesWithSampleInTheFlatLayoutOfHugeMaps) {
-    const DensityGrid grid = noise_grid({24, 20, 16});
-    DensityMap::Options plain = options();
-    plain.interleaved_bytes_max = 0;
-    const DensityMap map(grid, 0.0, 1.0, plain), interleaved(grid, 0.0, 1.0);
-    EXPECT_LT(map.bytes(), interleaved.bytes());
-    const Pose T = pose_in(grid, Vec3(11.3, 9.1, 8.7), Quat(0.6, -0.3, 0.5, 0.2));
-    const Points p = random_points(1000, 20e-10, 3);
-    expect_close(map.sum(p.view(), T), reference(interleaved, p, T), 20e-10, kernel().name);
+// Of every width modulo four, because of the rows of four that the coefficients are stored in.
+TEST_P(DensitySum, AgreesWithSampleInMapsTooLargeToBeStoredFourfold) {
+    for (const std::uint32_t width : {21U, 22U, 23U, 24U}) {
+        const DensityGrid grid = noise_grid({width, 20, 16});
+        const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
+        EXPECT_LT(once.bytes(), fourfold.bytes());
+        const Pose T = pose_in(grid, Vec3(11.3, 9.1, 8.7), Quat(0.6, -0.3, 0.5, 0.2));
+        for (const std::size_t count : {1, 13, 1000}) {
+            const Points p = random_points(count, 20e-10, static_cast<unsigned>(count));
+            expect_close(once.sum(p.view(), T), reference(once, p, T), 20e-10, kernel().name);
+        }
+    }
+}
+
+// The corners of where points are clamped, where the last rows of the coefficients are.
+TEST_P(DensitySum, IsNothingInTheFarthestCorners) {
+    const DensityGrid grid = noise_grid({8, 8, 8});
+    const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
+    const Points p = random_points(16, 1e-12, 4);
+    for (const double x : {-40.0, 40.0}) {
+        const Pose T = pose_in(grid, Vec3(x, x, x), Quat::Identity());
+        for (const DensityMap* map : {&once, &fourfold}) EXPECT_EQ(map->sum(p.view(), T).density_sigma, 0.0);
+    }
 }
 
 TEST_P(DensitySum, AgreesWithSampleWherePointsLeaveTheBox) {
@@ -156,7 +175,7 @@ TEST_P(DensitySum, AbsurdPointsGiveFiniteSums) {
 
 TEST_P(DensitySum, AnyPoseAndAnyPointsAgreeWithSample) {
     const DensityGrid grid = noise_grid({9, 7, 11});
-    const DensityMap map(grid, 0.0, 1.0, options());
+    const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
     const DensityKernel& used = kernel();
     EXPECT_TRUE(rc::check(std::string("kernel ") + used.name + " agrees with sample", [&] {
         const auto count = *rc::gen::inRange<std::size_t>(0, 70);
@@ -166,10 +185,13 @@ TEST_P(DensitySum, AnyPoseAndAnyPointsAgreeWithSample) {
         std::uniform_real_distribution<double> place(-14.0, 24.0), turn(-1.0, 1.0);
         const Pose T = pose_in(grid, Vec3(place(random), place(random), place(random)),
                                Quat(turn(random), turn(random), turn(random), turn(random) + 1e-3));
-        const DensitySums a = map.sum(p.view(), T), b = reference(map, p, T);
-        RC_ASSERT(std::abs(a.density_sigma - b.density_sigma) < 3e-5);
-        RC_ASSERT((a.gradient - b.gradient).norm() * 2e-10 < 3e-5);
-        RC_ASSERT((a.moment - b.moment).norm() * 2e-10 / 12e-10 < 1e-4);
+        const DensitySums b = reference(once, p, T);
+        for (const DensityMap* map : {&once, &fourfold}) {
+            const DensitySums a = map->sum(p.view(), T);
+            RC_ASSERT(std::abs(a.density_sigma - b.density_sigma) < 3e-5);
+            RC_ASSERT((a.gradient - b.gradient).norm() * 2e-10 < 3e-5);
+            RC_ASSERT((a.moment - b.moment).norm() * 2e-10 / 12e-10 < 1e-4);
+        }
     }));
 }
 
