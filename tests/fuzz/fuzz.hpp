@@ -3,6 +3,7 @@
 // run() must come back whatever the bytes are: no crash, no sanitizer report, no endless work, no exception.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -17,7 +18,9 @@ bool run(std::span<const std::byte> input);  // true: the input was accepted
 [[nodiscard]] std::vector<Input>
 seeds();  // made in code, every one accepted; replay checks that they still are
 
-inline void require(bool claim) {
+// A target that has its own require(bool) calls that one.
+template <std::same_as<bool> Claim>
+void require(Claim claim) {
     if (!claim) std::abort();
 }
 
