@@ -13,6 +13,7 @@ tact_test(unit/prep_cli_test.cpp USES assets SYSTEM nlohmann_json::nlohmann_json
 target_compile_definitions(prep_cli_test PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
 add_dependencies(prep_cli_test tact-prep)
 tact_test(unit/prep_export_test.cpp USES prep_export prep_structure prep_input assets base SYSTEM tact_gemmi)
+tact_test(unit/prep_poses_file_test.cpp USES prep_export assets base)
 tact_test(unit/prep_best_codebook_test.cpp USES prep_codebook)
 # Two of the ten pairs; all of them take a minute and are for a person to start.
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
