@@ -64,11 +64,12 @@ std::vector<Source> sources_of(const SceneFile& scene, std::uint32_t structures)
             throw StartupError(kAttempt,
                                "the file " + path + ", which the scene was baked from, is not there",
                                "put it back, or bake the scene again from where it is now");
-        if (const std::string now = file_mark(path); now != mark)
-            throw StartupError(kAttempt,
-                               "the file " + path + " has changed since the scene was baked: it had " + mark +
-                                   ", and has " + now,
+        if (const std::string now = file_mark(path); now != mark) {
+            std::string why = "the file ";
+            why.append(path).append(" has changed since the scene was baked: it had ").append(mark);
+            throw StartupError(kAttempt, why.append(", and has ").append(now),
                                "bake the scene again, or put the file back");
+        }
         Source s;
         s.path = path;
         const std::string ending = format_ending(path);
@@ -100,6 +101,7 @@ Fit fit_of(const SceneFile& scene, const std::vector<Structure>& structures,
     fit.resolution_a = meta.resolution_m / kAngstromM;
     if (!(meta.resolution_m > 0.0)) return fit;
     std::vector<PlacedStructure> placed;
+    placed.reserve(bodies.size());
     for (const PlacedBody& b : bodies) placed.push_back({&structures[b.structure], b.T_model_body});
     fit.numbers = fit_of_bodies(read_grid(scene), placed,
                                 {.resolution_m = meta.resolution_m,
