@@ -223,7 +223,7 @@ private:
         if (!poses.contains("bodies") || poses["bodies"].empty())
             throw StartupError("saving into " + options_.save.string(),
                                "the controller never said where the bodies are", "see what it said above");
-        save_fit(facts_.scene, poses, options_.save, options_.programs);
+        save_fit(facts_.scene, poses, options_.save, options_.programs, signals_);
     }
 
     void note(const std::string& name, const Ending& e) {

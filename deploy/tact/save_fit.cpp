@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/child.hpp"
@@ -56,18 +57,27 @@ nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure
 }
 
 void save_fit(const std::filesystem::path& scene, const nlohmann::json& poses,
-              const std::filesystem::path& folder, const std::filesystem::path& programs) {
+              const std::filesystem::path& folder, const std::filesystem::path& programs, Signals& signals) {
     const auto file = folder / "poses.json";
     write_whole(file, report_text(poses));
     std::printf("wrote %s\n", file.c_str());
     std::fflush(stdout);
+    signals.wait(0);  // an impatient second Ctrl-C ended the run, not the save
     ChildSettings settings;
     settings.arguments = {"export", scene.string(), "--poses", file.string(), "-o", folder.string()};
     Child child("tact-prep", find_program("tact-prep", programs), settings);
-    const auto& ending = child.wait(kExportLimit);
-    if (!ending || !ending->clean())
-        throw StartupError("saving into " + folder.string(),
-                           "tact-prep " + (ending ? ending->text() : std::string("did not end")),
+    const Instant end = Monotonic::now() + kExportLimit;
+    std::string why;
+    while (!child.poll()) {
+        const int asked = signals.wait(50);
+        if (!why.empty()) continue;
+        if (asked != 0) why = std::string("it was ended by ") + sigdescr_np(asked);
+        if (asked == 0 && Monotonic::now() >= end) why = "tact-prep did not end in ten minutes";
+        if (!why.empty()) child.stop();
+    }
+    const Ending& ending = *child.poll();
+    if (!ending.clean())
+        throw StartupError("saving into " + folder.string(), why.empty() ? "tact-prep " + ending.text() : why,
                            "see what it said above; the places are in " + file.string() +
                                ", and tact-prep export writes them from there");
 }

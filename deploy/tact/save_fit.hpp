@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "deploy/tact/place.hpp"
+#include "deploy/tact/signals.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/topics/bodies.hpp"
 
@@ -19,8 +20,9 @@ void check_save(const SceneFile& scene, const std::filesystem::path& folder);
 // The places as tact-prep export and a run's --poses read them; bodies that make no sense are left out.
 nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures);
 
-// Writes DIR/poses.json, runs tact-prep, which says on standard output what it wrote.
+// Writes DIR/poses.json, runs tact-prep, which says on standard output what it wrote. A signal that comes
+// while it works ends it, which is an error; those that came before asked for something else.
 void save_fit(const std::filesystem::path& scene, const nlohmann::json& poses,
-              const std::filesystem::path& folder, const std::filesystem::path& programs);
+              const std::filesystem::path& folder, const std::filesystem::path& programs, Signals& signals);
 
 }  // namespace tact::launch
