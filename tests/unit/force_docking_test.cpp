@@ -1,133 +1,24 @@
-// The docking model against the derivatives of its own energy, and its grip, clutch, knob and deadline.
+// The docking model against the derivatives of its own energy, and its grip, clutch, rebuilding and start.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <thread>
 
 #include "ipc/base/error.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/docking/start_pose.hpp"
 #include "tests/contract/force_model_contract.hpp"
+#include "tests/unit/force_rod_scene.hpp"
 
 namespace tact {
 namespace {
 
-constexpr double kA = 1e-10;
-constexpr double kCentre = 30.0 * kA;
-
-// A bent rod of atoms in a map of Gaussians around the place where it belongs.
-struct Scene {
-    SceneMeta meta{};
-    DensityGrid grid;
-    Structure rod;
-    Codebook codebook;
-};
-
-void add_level(Codebook& codebook, const Structure& s, std::size_t share) {
-    Codebook::Level level;
-    for (std::size_t i = 0; i < s.size(); i += share) {
-        double x = 0, y = 0, z = 0, w = 0;
-        for (std::size_t k = i; k < std::min(i + share, s.size()); ++k) {
-            const auto m = static_cast<double>(s.mass_fraction[k]);
-            x += m * static_cast<double>(s.x_m[k]), y += m * static_cast<double>(s.y_m[k]);
-            z += m * static_cast<double>(s.z_m[k]), w += m;
-        }
-        level.x_m.push_back(static_cast<float>(x / w)), level.y_m.push_back(static_cast<float>(y / w));
-        level.z_m.push_back(static_cast<float>(z / w)), level.weight.push_back(static_cast<float>(w));
-    }
-    codebook.levels.push_back(std::move(level));
-}
-
-Scene make_scene(std::size_t atoms) {
-    Scene scene;
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> jitter(-2.0 * kA, 2.0 * kA), mass(12.0, 16.0);
-    std::vector<Vec3> place;
-    std::vector<double> m;
-    Vec3 com = Vec3::Zero();
-    double total = 0.0;
-    for (std::size_t i = 0; i < atoms; ++i) {
-        const double s = 2.0 * static_cast<double>(i) / static_cast<double>(atoms) - 1.0;
-        place.emplace_back(18.0 * kA * s + jitter(random), 9.0 * kA * s * s + jitter(random), jitter(random));
-        m.push_back(mass(random));
-        com += m.back() * place.back();
-        total += m.back();
-    }
-    com /= total;
-    Structure& rod = scene.rod;
-    rod.name = "rod";
-    rod.mass_u = total;
-    rod.home_com_model_m = Vec3::Constant(kCentre);
-    for (std::size_t i = 0; i < atoms; ++i) {
-        rod.x_m.push_back(static_cast<float>((place[i] - com).x()));
-        rod.y_m.push_back(static_cast<float>((place[i] - com).y()));
-        rod.z_m.push_back(static_cast<float>((place[i] - com).z()));
-        rod.mass_fraction.push_back(static_cast<float>(m[i] / total));
-    }
-    DensityGrid& grid = scene.grid;
-    grid.size = {30, 30, 30};
-    grid.spacing_m = Vec3::Constant(2.0 * kA);
-    grid.values.assign(grid.count(), 0.0F);
-    for (std::uint32_t z = 0; z < 30; ++z) {
-        for (std::uint32_t y = 0; y < 30; ++y) {
-            for (std::uint32_t x = 0; x < 30; ++x) {
-                const Vec3 p = 2.0 * kA * Vec3(x, y, z);
-                double v = 0.0;
-                for (std::size_t i = 0; i < atoms; i += atoms / 40 + 1) {
-                    const Vec3 atom = Vec3::Constant(kCentre) + place[i] - com;
-                    v += std::exp(-(p - atom).squaredNorm() / (2.0 * 16.0 * kA * kA));
-                }
-                grid.values[(std::size_t{z} * 30 + y) * 30 + x] = static_cast<float>(v);
-            }
-        }
-    }
-    SceneMeta& meta = scene.meta;
-    meta.kind = SceneKind::docking;
-    meta.body_count = 1;
-    meta.world_per_model = 0.1 / (60.0 * kA);
-    for (double& c : meta.centre_model_m) c = kCentre;
-    meta.energy_j_per_sigma = 0.02;
-    meta.map_sigma = 1.5;
-    for (const std::size_t share : {40, 20, 10, 4, 2}) add_level(scene.codebook, rod, share);
-    return scene;
-}
-
-const Scene& scene() {
-    static const Scene made = make_scene(1000);
-    return made;
-}
-
-std::unique_ptr<DockingModel> make_model(const DockingSettings& settings = {}) {
-    const Scene& s = scene();
-    return std::make_unique<DockingModel>(s.meta, s.grid, std::vector<Structure>{s.rod},
-                                          std::vector<Codebook>{s.codebook}, settings);
-}
-
-Pose world_pose(double x_m, double y_m, double z_m, const Vec3& turn_rad) {
-    return {Vec3(x_m, y_m, z_m), quat_from_rotation_vector(turn_rad)};
-}
-
-const Pose kGrip = world_pose(0.03, -0.02, 0.05, Vec3(0.2, 0.1, -0.4));
-const Pose kTouch = world_pose(0.04, -0.025, 0.052, Vec3(0.5, 0.1, -0.3));
+using namespace rod;
 
 INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract,
                          testing::Values(ForceModelCase{"rod", [] { return make_model(); }, kGrip, kTouch,
                                                         0.05, 0.05}),
                          [](const auto& tested) { return tested.param.name; });
-
-ToolState tool_at(const Pose& pose, std::uint32_t buttons = 0) {
-    ToolState tool;
-    tool.T_world_tool = pose;
-    tool.buttons = buttons;
-    return tool;
-}
-
-Budget at(float fidelity) {
-    Budget budget;
-    budget.fidelity = fidelity;
-    return budget;
-}
 
 // -k_E sum w rho, in double precision, atom by atom.
 double energy_j(const DockingModel& model, const Pose& T_model_body) {
@@ -238,59 +129,6 @@ TEST(Docking, WithTheClutchHeldTheToolMovesAloneAndNothingIsFeltSuddenly) {
     }
 }
 
-TEST(Docking, ForceDoesNotDependOnHowManyPointsStandForTheBody) {
-    const auto model = make_model();
-    const Pose body = start_pose(model->home(), 6.0 * kA, 0.2, 5);
-    const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
-    for (const float fidelity : {0.0F, 0.2F, 0.4F, 0.6F, 0.8F}) {
-        const StepResult result = model->evaluate(body, at(fidelity));
-        EXPECT_LT((result.wrench_world.force_n - all).norm(), 0.25 * all.norm()) << "at " << fidelity;
-    }
-}
-
-TEST(Docking, TheErrorItReportsHoldsNearHome) {
-    const auto model = make_model();
-    SeededRandom random(11);
-    int above = 0;
-    for (int i = 0; i < 200; ++i) {
-        const Pose body =
-            start_pose(model->home(), 15.0 * kA * random.uniform(), 0.5 * random.uniform(), random.next());
-        const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
-        for (const float fidelity : {0.0F, 0.3F, 0.7F}) {
-            const StepResult result = model->evaluate(body, at(fidelity));
-            if ((result.wrench_world.force_n - all).norm() > result.load.error) ++above;
-        }
-    }
-    EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
-    EXPECT_EQ(model->predict(1.0F).error, 0.0);
-    EXPECT_GT(model->predict(0.0F).error, 0.0);
-}
-
-TEST(Docking, TheAuditMeasuresTheDistanceFromAllAtomsAndTheBoundIsNeverBelowWhatItFound) {
-    const auto model = make_model();
-    const double n_per_gradient = scene().meta.energy_j_per_sigma / scene().meta.world_per_model;
-    model->reset(tool_at(kGrip));
-    for (int i = 0; i < 400; ++i) (void)model->step(tool_at(kGrip), at(0.3F));  // one pose, so one answer
-    const Pose held = model->bodies().T_model_body[0];
-    const double off_n = (model->evaluate(held, at(0.3F)).wrench_world.force_n -
-                          model->evaluate(held, at(1.0F)).wrench_world.force_n)
-                             .norm();
-    ASSERT_GT(model->audit().done(), 0U);
-    EXPECT_NEAR(n_per_gradient * model->audit().off(), off_n, 1e-4);
-    SeededRandom random(9);
-    std::size_t done = model->audit().done();
-    Pose hand = kGrip;
-    for (int i = 0; i < 20000; ++i) {
-        if (i % 40 == 0) hand.p_m = kGrip.p_m + 0.03 * random.uniform() * random.direction();
-        const double error_n = model->step(tool_at(hand), at(0.3F)).load.error;
-        if (model->audit().done() == done) continue;
-        done = model->audit().done();
-        EXPECT_LE(n_per_gradient * model->audit().off(), model->predict(0.3F).error * (1.0 + 1e-6));
-        EXPECT_LE(error_n, model->predict(0.3F).error);  // it never falls
-    }
-    EXPECT_GT(done, 100U);
-}
-
 TEST(Docking, AModelIsRebuiltWhileItIsSteppedAndOrderedAbout) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
@@ -333,17 +171,6 @@ TEST(Docking, StartsWithTheBodiesThatItIsGiven) {
     EXPECT_THROW(make_model(settings), StartupError);
     settings.bodies.resize(16);
     EXPECT_THROW(make_model(settings), StartupError);
-}
-
-TEST(Docking, CostIsPredictedInOrderOfSize) {
-    const auto model = make_model();
-    EXPECT_GT(model->predict(1.0F).cost_predicted.count(), 0);
-    EXPECT_LT(model->predict(0.0F).cost_predicted, model->predict(1.0F).cost_predicted);
-    EXPECT_EQ(model->items(0.0F), 25U);
-    EXPECT_EQ(model->items(1.0F), 1000U);
-    EXPECT_EQ(std::string(model->knob().path), "docking.force");
-    EXPECT_EQ(model->items(model->knob().start),
-              250U);  // the first level of 200 or more, and nothing above it
 }
 
 TEST(Docking, StartsWhereItIsToldTheSameEveryTime) {

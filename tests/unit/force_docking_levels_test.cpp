@@ -1,0 +1,80 @@
+// The levels of the docking knob: what they have in common, what they err, and what they cost.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rt/force/docking/docking_model.hpp"
+#include "rt/force/docking/start_pose.hpp"
+#include "tests/unit/force_rod_scene.hpp"
+
+namespace tact {
+namespace {
+
+using namespace rod;
+
+TEST(DockingLevels, ForceDoesNotDependOnHowManyPointsStandForTheBody) {
+    const auto model = make_model();
+    const Pose body = start_pose(model->home(), 6.0 * kA, 0.2, 5);
+    const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
+    for (const float fidelity : {0.0F, 0.2F, 0.4F, 0.6F, 0.8F}) {
+        const StepResult result = model->evaluate(body, at(fidelity));
+        EXPECT_LT((result.wrench_world.force_n - all).norm(), 0.25 * all.norm()) << "at " << fidelity;
+    }
+}
+
+TEST(DockingLevels, TheErrorItReportsHoldsNearHome) {
+    const auto model = make_model();
+    SeededRandom random(11);
+    int above = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Pose body =
+            start_pose(model->home(), 15.0 * kA * random.uniform(), 0.5 * random.uniform(), random.next());
+        const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
+        for (const float fidelity : {0.0F, 0.3F, 0.7F}) {
+            const StepResult result = model->evaluate(body, at(fidelity));
+            if ((result.wrench_world.force_n - all).norm() > result.load.error) ++above;
+        }
+    }
+    EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
+    EXPECT_EQ(model->predict(1.0F).error, 0.0);
+    EXPECT_GT(model->predict(0.0F).error, 0.0);
+}
+
+TEST(DockingLevels, TheAuditMeasuresTheDistanceFromAllAtomsAndTheBoundIsNeverBelowWhatItFound) {
+    const auto model = make_model();
+    const double n_per_gradient = scene().meta.energy_j_per_sigma / scene().meta.world_per_model;
+    model->reset(tool_at(kGrip));
+    for (int i = 0; i < 400; ++i) (void)model->step(tool_at(kGrip), at(0.3F));  // one pose, so one answer
+    const Pose held = model->bodies().T_model_body[0];
+    const double off_n = (model->evaluate(held, at(0.3F)).wrench_world.force_n -
+                          model->evaluate(held, at(1.0F)).wrench_world.force_n)
+                             .norm();
+    ASSERT_GT(model->audit().done(), 0U);
+    EXPECT_NEAR(n_per_gradient * model->audit().off(), off_n, 1e-4);
+    SeededRandom random(9);
+    std::size_t done = model->audit().done();
+    Pose hand = kGrip;
+    for (int i = 0; i < 20000; ++i) {
+        if (i % 40 == 0) hand.p_m = kGrip.p_m + 0.03 * random.uniform() * random.direction();
+        const double error_n = model->step(tool_at(hand), at(0.3F)).load.error;
+        if (model->audit().done() == done) continue;
+        done = model->audit().done();
+        EXPECT_LE(n_per_gradient * model->audit().off(), model->predict(0.3F).error * (1.0 + 1e-6));
+        EXPECT_LE(error_n, model->predict(0.3F).error);  // it never falls
+    }
+    EXPECT_GT(done, 100U);
+}
+
+TEST(DockingLevels, CostIsPredictedInOrderOfSize) {
+    const auto model = make_model();
+    EXPECT_GT(model->predict(1.0F).cost_predicted.count(), 0);
+    EXPECT_LT(model->predict(0.0F).cost_predicted, model->predict(1.0F).cost_predicted);
+    EXPECT_EQ(model->items(0.0F), 25U);
+    EXPECT_EQ(model->items(1.0F), 1000U);
+    EXPECT_EQ(std::string(model->knob().path), "docking.force");
+    EXPECT_EQ(model->items(model->knob().start),
+              250U);  // the first level of 200 or more, and nothing above it
+}
+
+}  // namespace
+}  // namespace tact
