@@ -59,6 +59,7 @@ private:
     void rebuild(std::uint32_t wanted) noexcept;
     void rebuild_vertices(std::uint32_t wanted) noexcept;
     void rebuild_indices(std::uint32_t wanted) noexcept;
+    void map_list(const MeshPatches::List& list, std::uint32_t wanted) noexcept;
     const MeshPatches::List& place_list(std::uint32_t patch, std::uint32_t list) noexcept;
     void show_next(std::uint32_t patch) noexcept;
     void show_previous(std::uint32_t patch) noexcept;

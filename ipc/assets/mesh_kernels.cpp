@@ -35,11 +35,6 @@ void follow(const std::uint32_t* parent, std::uint32_t level, std::uint32_t coun
         map[i] = parent[i] < level ? parent[i] : map[parent[i] - level];  // parents come first
 }
 
-void map_vertices(const std::uint32_t* vertex, std::uint32_t count, std::uint32_t level,
-                  const std::uint32_t* map, std::uint32_t* to) {
-    for (std::uint32_t i = 0; i < count; ++i) to[i] = vertex[i] < level ? vertex[i] : map[vertex[i] - level];
-}
-
 void look_up(const std::uint16_t* corner, std::uint32_t triangles, const std::uint32_t* vertex,
              std::uint32_t* to, bool) {
     for (std::uint32_t t = 0; t < triangles; ++t, corner += 3, to += 3) {
@@ -95,19 +90,6 @@ __attribute__((target("avx512f"))) void follow_avx512(const std::uint32_t* paren
     for (; i < count; ++i) map[i] = parent[i] < level ? parent[i] : map[parent[i] - level];
 }
 
-__attribute__((target("avx512f"))) void map_vertices_avx512(const std::uint32_t* vertex, std::uint32_t count,
-                                                            std::uint32_t level, const std::uint32_t* map,
-                                                            std::uint32_t* to) {
-    const __m512i least = _mm512_set1_epi32(static_cast<int>(level));
-    for (std::uint32_t i = 0; i < count; i += 16) {
-        const auto some = static_cast<__mmask16>(count - i >= 16 ? 0xFFFFU : (1U << (count - i)) - 1U);
-        const __m512i v = _mm512_maskz_loadu_epi32(some, vertex + i);
-        const __mmask16 gone = _mm512_mask_cmpge_epu32_mask(some, v, least);
-        const __m512i at = _mm512_maskz_sub_epi32(gone, v, least);
-        _mm512_mask_storeu_epi32(to + i, some, _mm512_mask_i32gather_epi32(v, gone, at, map, 4));
-    }
-}
-
 // Sixteen triangles at a time: 48 corners, whole lines of the cache.
 __attribute__((target("avx2,avx512f"))) void look_up_avx512(const std::uint16_t* corner,
                                                             std::uint32_t triangles,
@@ -152,9 +134,9 @@ __attribute__((target("avx2,avx512f"))) void look_up_avx512(const std::uint16_t*
 
 const MeshKernels kMeshKernels[] = {
 #if defined(__x86_64__)
-    {"avx512", &has_avx512, &list_versions_avx512, &follow_avx512, &map_vertices_avx512, &look_up_avx512},
+    {"avx512", &has_avx512, &list_versions_avx512, &follow_avx512, &look_up_avx512},
 #endif
-    {"generic", &always, &list_versions, &follow, &map_vertices, &look_up},
+    {"generic", &always, &list_versions, &follow, &look_up},
 };
 const std::size_t kMeshKernelCount = sizeof(kMeshKernels) / sizeof(kMeshKernels[0]);
 

@@ -21,9 +21,6 @@ struct MeshKernels {
     // The collapse map of a level for the `count` vertices from it on, parent[] being theirs: map[i] is the
     // vertex below `level` that vertex level + i has gone into.
     void (*follow)(const std::uint32_t* parent, std::uint32_t level, std::uint32_t count, std::uint32_t* map);
-    // Of each vertex itself where it is below `level`, otherwise map[vertex - level].
-    void (*map_vertices)(const std::uint32_t* vertex, std::uint32_t count, std::uint32_t level,
-                         const std::uint32_t* map, std::uint32_t* to);
     // vertex[corner] for 3 corners a triangle; (0, 0, 0) for triangles with two equal ones. With `past` they
     // go past the caches where `to` is a multiple of 64 bytes, as nothing reads them soon.
     void (*look_up)(const std::uint16_t* corner, std::uint32_t triangles, const std::uint32_t* vertex,

@@ -105,6 +105,7 @@ public:
         m.corner.shrink_to_fit();
         m.slot.shrink_to_fit();
         m.vertex.shrink_to_fit();
+        m.parent.shrink_to_fit();
         m.change.shrink_to_fit();
         return std::move(made_);
     }
@@ -173,18 +174,9 @@ private:
 
     // From member_ and corner_, which it brings into the order of the list; leaves list_corner_ and vertex_.
     void add_list(std::uint32_t level) {
-        vertex_.clear();
-        list_corner_.clear();
-        for (const std::uint32_t v : corner_) {
-            if (local_[v] == kNone) {
-                local_[v] = static_cast<std::uint32_t>(vertex_.size());
-                vertex_.push_back(v);
-            }
-            list_corner_.push_back(static_cast<std::uint16_t>(local_[v]));
-        }
-        for (const std::uint32_t v : vertex_) local_[v] = kNone;
-        const auto order = cache_order_.run(list_corner_, vertex_.size());
         MeshPatches& m = made_.patches;
+        number_vertices();
+        const auto order = cache_order_.run(list_corner_, vertex_.size());
         const std::size_t slot_first = m.slot.size();
         m.list.push_back(
             {level, static_cast<std::uint32_t>(slot_first), static_cast<std::uint32_t>(m.vertex.size()),
@@ -200,6 +192,26 @@ private:
         member_.swap(moved_);
         list_corner_.assign(m.corner.end() - static_cast<std::ptrdiff_t>(3 * member_.size()), m.corner.end());
         m.vertex.insert(m.vertex.end(), vertex_.begin(), vertex_.end());
+    }
+
+    // Those of corner_ into vertex_, rising, with their parents; list_corner_ from that.
+    void number_vertices() {
+        vertex_.clear();
+        for (const std::uint32_t v : corner_) {
+            if (local_[v] == kNone) vertex_.push_back(v);
+            local_[v] = 0;
+        }
+        std::sort(vertex_.begin(), vertex_.end());
+        for (std::size_t i = 0; i < vertex_.size(); ++i) local_[vertex_[i]] = static_cast<std::uint32_t>(i);
+        list_corner_.clear();
+        for (const std::uint32_t v : corner_) list_corner_.push_back(static_cast<std::uint16_t>(local_[v]));
+        for (const std::uint32_t v : vertex_) {
+            const std::uint32_t to =
+                v < data_.base_vertices ? kNone : local_[data_.parent[v - data_.base_vertices]];
+            made_.patches.parent.push_back(to == kNone ? MeshPatches::kElsewhere
+                                                       : static_cast<std::uint16_t>(to));
+        }
+        for (const std::uint32_t v : vertex_) local_[v] = kNone;
     }
 
     const ProgressiveMeshData& data_;
@@ -218,7 +230,8 @@ private:
 
 std::size_t MeshPatches::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return bytes(list_first) + bytes(list) + bytes(corner) + bytes(slot) + bytes(vertex) + bytes(change);
+    return bytes(list_first) + bytes(list) + bytes(corner) + bytes(slot) + bytes(vertex) + bytes(parent) +
+           bytes(change);
 }
 
 PatchedMesh make_patches(const ProgressiveMeshData& data, std::uint64_t lifts_max) {

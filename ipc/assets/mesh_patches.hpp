@@ -24,12 +24,13 @@ struct ProgressiveMeshData;
 
 struct MeshPatches {
     static constexpr std::uint32_t kShift = 12, kTriangles = 1U << kShift;
+    static constexpr std::uint16_t kElsewhere = UINT16_MAX;  // more than a list has vertices
 
     struct List {
         std::uint32_t
             level;  // the finest that it serves; the next list of the patch serves from its own down
         std::uint32_t first;         // of its first triangle, in corner and slot
-        std::uint32_t vertex_first;  // in vertex
+        std::uint32_t vertex_first;  // in vertex and parent
         std::uint16_t triangles, vertices;
     };
     struct Change {
@@ -40,7 +41,8 @@ struct MeshPatches {
     std::vector<List> list;                 // of a patch in turn, levels falling
     HugeVector<std::uint16_t> corner;       // 3 a triangle, numbers within the vertices of the list
     HugeVector<std::uint16_t> slot;         // of triangle i of the patch, at first + i: its place in the list
-    HugeVector<std::uint32_t> vertex;       // of the mesh, at the level of the list
+    HugeVector<std::uint32_t> vertex;       // of the mesh, at the level of the list; rising in a list
+    HugeVector<std::uint16_t> parent;       // of that vertex, as a number within the list, or kElsewhere
     std::vector<Change> change;             // levels rising
 
     [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(list_first.size() - 1); }
