@@ -14,7 +14,7 @@ std::vector<double> ticks(Range range, int count_max) {
     // From too many to few enough; where the next coarser step leaves less than two, the finer one stays.
     std::vector<double> finer;
     double power = std::pow(10.0, std::floor(std::log10(length / count_max)) - 1.0);
-    for (int tries = 0; tries < 4; ++tries, power *= 10.0) {
+    for (int tries = 0; tries < 4; ++tries) {
         for (const double digit : {1.0, 2.0, 5.0}) {
             const double step = digit * power;
             const double first = std::ceil(range.low / step - 1e-9),
@@ -22,9 +22,11 @@ std::vector<double> ticks(Range range, int count_max) {
             if (last - first < 1.0) return finer.empty() ? std::vector<double>{range.low, range.high} : finer;
             if (!(last - first < 100.0)) continue;
             finer.clear();
-            for (double k = first; k <= last; k += 1.0) finer.push_back(k == 0.0 ? 0.0 : k * step);
-            if (last - first + 1.0 <= count_max) return finer;
+            const int steps = static_cast<int>(std::lround(last - first));
+            for (int k = 0; k <= steps; ++k) finer.push_back((first + k) * step + 0.0);  // never -0
+            if (steps < count_max) return finer;
         }
+        power *= 10.0;
     }
     return {range.low, range.high};
 }
