@@ -10,7 +10,8 @@ namespace tact::plot {
 namespace {
 
 constexpr Colour kPaper{255, 255, 255}, kInk{38, 38, 38}, kFaint{228, 228, 228}, kGrey{110, 110, 110};
-constexpr Colour kShade{240, 236, 224};
+constexpr Colour kShade{240, 236, 224}, kTint{214, 214, 214};
+constexpr double kTintOpacity = 0.16;
 constexpr int kTitlePx = 26, kTextPx = 18, kSmallPx = 16;
 constexpr int kMargin = 28;
 constexpr int kTickPx = 6;
@@ -85,7 +86,7 @@ std::vector<LegendItem> legend_of(const Panel& panel, const std::vector<Colour>&
         add(panel.curves[i].name, colours[i],
             panel.curves[i].dashed ? LegendItem::Mark::dashes : LegendItem::Mark::line);
     for (const Goal& g : panel.goals) add(g.name, kInk, LegendItem::Mark::goal);
-    for (const Span& s : panel.spans) add(s.name, kShade, LegendItem::Mark::patch);
+    for (const Span& s : panel.spans) add(s.name, s.colour < 0 ? kShade : kTint, LegendItem::Mark::patch);
     return items;
 }
 
@@ -150,7 +151,11 @@ void draw_axes(Canvas& canvas, const Font& font, const Axes& a, const Panel& pan
         const int from =
             static_cast<int>(std::lround(a.at({std::clamp(s.x_from, a.x.low, a.x.high), 0.0}).x));
         const int to = static_cast<int>(std::lround(a.at({std::clamp(s.x_to, a.x.low, a.x.high), 0.0}).x));
-        canvas.fill({from, a.box.top, to, a.box.bottom}, kShade);
+        const Box box{from, a.box.top, std::max(to, from + 1), a.box.bottom};
+        if (s.colour < 0)
+            canvas.fill(box, kShade);
+        else
+            canvas.fill(box, okabe_ito(s.colour), kTintOpacity);
     }
     const auto step_of = [](const std::vector<double>& t) { return t.size() > 1 ? t[1] - t[0] : 1.0; };
     const auto ys = ticks(a.y, std::max(a.box.height() / 55, 2));

@@ -32,6 +32,7 @@ struct Goal {  // a horizontal line that curves are to be seen against
 struct Span {  // a part of the common axis that is shaded
     double x_from = 0.0, x_to = 0.0;
     std::string name{};
+    int colour = -1;  // 0..6: a light tint of okabe_ito(), for what is said of one curve; -1: neutral
 };
 
 struct Panel {

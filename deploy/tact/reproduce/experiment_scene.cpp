@@ -1,8 +1,5 @@
 #include "deploy/tact/reproduce/experiment_scene.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -10,35 +7,21 @@
 #include <span>
 #include <string>
 
-#include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/reproduce/run_prep.hpp"
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
-#include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact::launch {
 namespace {
 
-constexpr double kAngstromM = 1e-10;
-
-void bake(const std::vector<std::string>& words, const std::filesystem::path& scene) {
-    ChildSettings s;
-    s.arguments = words;
-    s.arguments.insert(s.arguments.end(), {"-o", scene.string()});
-    const auto log = scene.string() + ".log";
-    const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-    s.output_fd = fd;
-    Child prep("tact-prep", find_program("tact-prep"), s);
-    ::close(fd);
-    const auto& ending = prep.wait(std::chrono::seconds(60));
-    if (!ending || !ending->clean())
-        throw StartupError(
-            "baking " + scene.string(),
-            "tact-prep " + (ending ? ending->text() : "did not end in a minute") + ": " + read_small(log),
-            "run tact-prep by hand");
+void bake(std::vector<std::string> words, const std::filesystem::path& scene) {
+    words.insert(words.end(), {"-o", scene.string()});
+    run_prep(words, scene.string() + ".log", "baking " + scene.string());
 }
 
 // A map file of mode 2 (float), as MRC 2014 has it.

@@ -1,19 +1,15 @@
 #include "deploy/tact/reproduce/mesh_figures.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdio>
 
-#include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/reproduce/mesh_error.hpp"
 #include "deploy/tact/reproduce/mesh_picture.hpp"
 #include "deploy/tact/reproduce/ply.hpp"
+#include "deploy/tact/reproduce/run_prep.hpp"
 #include "deploy/tact/reproduce/sample_meshes.hpp"
+#include "deploy/tact/reproduce/text.hpp"
 #include "ipc/assets/mesh_cut.hpp"
-#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact::launch {
@@ -21,33 +17,16 @@ namespace {
 
 constexpr double kSeedWeight = 1000.0;  // f of the seed
 
-template <class... A>
-std::string text(const char* format, A... a) {
-    char line[512];
-    std::snprintf(line, sizeof line, format, a...);
-    return line;
-}
-
 struct Simplifier {
     std::filesystem::path scratch;
     double per_m;  // units of the file in a metre
 
     TriangleMesh operator()(const TriangleMesh& mesh, std::uint32_t vertices, double weight) const {
-        const auto in = scratch / "in.ply", made = scratch / "out.ply", log = scratch / "simplify.log";
+        const auto in = scratch / "in.ply", made = scratch / "out.ply";
         write_ply(mesh, per_m, in);
-        ChildSettings s;
-        s.arguments = {"simplify", in.string(),   "--vertices",        std::to_string(vertices),
-                       "-o",       made.string(), "--boundary-weight", text("%g", weight)};
-        const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-        s.output_fd = fd;
-        Child prep("tact-prep", find_program("tact-prep"), s);
-        ::close(fd);
-        const auto& ending = prep.wait(std::chrono::seconds(60));
-        if (!ending || !ending->clean())
-            throw StartupError(
-                "simplifying a mesh",
-                "tact-prep " + (ending ? ending->text() : "did not end in a minute") + ": " + read_small(log),
-                "run tact-prep simplify by hand");
+        run_prep({"simplify", in.string(), "--vertices", std::to_string(vertices), "-o", made.string(),
+                  "--boundary-weight", text("%g", weight)},
+                 scratch / "simplify.log", "simplifying a mesh");
         return read_ply(made, per_m);
     }
 };

@@ -1,23 +1,16 @@
 // Numbers, curves and words of the rate experiments.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/plot.hpp"
 #include "deploy/tact/reproduce/rates.hpp"
+#include "deploy/tact/reproduce/text.hpp"
 
 namespace tact::launch {
 namespace {
 
 std::string whole(double v) { return std::to_string(std::lround(v)); }
-
-template <class... A>
-std::string text(const char* format, A... a) {
-    char line[512];
-    std::snprintf(line, sizeof line, format, a...);
-    return line;
-}
 
 double off_percent(double value, double of) { return of > 0.0 ? 100.0 * (value - of) / of : 0.0; }
 
@@ -32,6 +25,25 @@ plot::Curve triangle_curve(const Rates& r, const Run& run, const std::string& na
     for (const RateSample& s : run.samples)
         if (s.t_s > 0.2) c.points.push_back({s.t_s, 1e-3 * r.triangles(s.vertices)});
     return c;
+}
+
+// Where windows of a run were disturbed, joined where they touch, in the colour of its curve.
+void shade_disturbed(const std::vector<plot::Panel*>& panels, const Run& run, int colour,
+                     double until_s = 1e9) {
+    std::vector<plot::Span> spans;
+    for (const RateWindow100& w : windows(run.samples, 0.2, until_s)) {
+        if (!w.disturbed) continue;
+        const double from_s = w.t_s - kWindow_s;
+        if (!spans.empty() && from_s <= spans.back().x_to)
+            spans.back().x_to = w.t_s;
+        else
+            spans.push_back({from_s, w.t_s, "", colour});
+    }
+    for (plot::Panel* const panel : panels) {
+        const auto first = panel->spans.insert(panel->spans.end(), spans.begin(), spans.end());
+        if (first != panel->spans.end() && panel == panels.front())
+            first->name = "disturbed from outside, in the colour of the run";
+    }
 }
 
 std::string remark_of(const Rates& r) {
@@ -54,30 +66,35 @@ plot::Plot figure_5(const Rates& r) {
     for (plot::Curve* const k : {&off, &off_triangles})
         std::erase_if(k->points,
                       [&](const plot::Point& p) { return p.x > std::min(r.off.phase.load_on_s(), end); });
+    plot::Panel rates{.y_label = kRateLabel,
+                      .curves = {off, rate_curve(r.low, b, 1), rate_curve(r.high, a, 2)},
+                      .goals = {{r.low.goal_hz, "goal B"}, {r.high.goal_hz, "goal A"}}};
+    plot::Panel triangles{
+        .y_label = kTriangleLabel,
+        .curves = {off_triangles, triangle_curve(r, r.low, "B", 1), triangle_curve(r, r.high, "A", 2)}};
+    shade_disturbed({&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
+    shade_disturbed({&rates, &triangles}, r.low, 1);
+    shade_disturbed({&rates, &triangles}, r.high, 2);
     return {.title = "Figure 5: force rate without external load, by goal",
             .remark = remark_of(r),
             .x_label = "time, s",
-            .panels = {{.y_label = kRateLabel,
-                        .curves = {off, rate_curve(r.low, b, 1), rate_curve(r.high, a, 2)},
-                        .goals = {{r.low.goal_hz, "goal B"}, {r.high.goal_hz, "goal A"}}},
-                       {.y_label = kTriangleLabel,
-                        .curves = {off_triangles, triangle_curve(r, r.low, "B", 1),
-                                   triangle_curve(r, r.high, "A", 2)}}}};
+            .panels = {rates, triangles}};
 }
 
 plot::Plot with_load(const Rates& r, const std::string& title,
                      std::vector<std::pair<const Run*, std::string>> runs, const Run& main) {
     plot::Plot p{.title = title, .remark = remark_of(r), .x_label = "time, s"};
     plot::Panel rates{.y_label = kRateLabel}, triangles{.y_label = kTriangleLabel};
+    rates.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), "external load"});
+    triangles.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), ""});
     int colour = 0;
     for (const auto& [run, name] : runs) {
         const int of = run == &r.on_seed ? 3 : colour++;
+        shade_disturbed({&rates, &triangles}, *run, of);
         rates.curves.push_back(rate_curve(*run, name, of));
         triangles.curves.push_back(triangle_curve(r, *run, "", of));
     }
     if (main.goal_hz > 0.0) rates.goals.push_back({main.goal_hz, "goal " + whole(main.goal_hz)});
-    rates.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), "external load"});
-    triangles.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), ""});
     p.panels = {rates, triangles};
     return p;
 }

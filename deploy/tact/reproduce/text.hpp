@@ -1,0 +1,17 @@
+// Words for reports.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace tact::launch {
+
+// As printf; what is longer than 511 bytes is cut.
+template <class... A>
+std::string text(const char* format, A... a) {
+    char line[512];
+    std::snprintf(line, sizeof line, format, a...);
+    return line;
+}
+
+}  // namespace tact::launch
