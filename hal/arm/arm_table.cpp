@@ -1,0 +1,195 @@
+// The table. Sources: (verified) read in a public source, (derived) computed from such, (remembered) as the
+// makers' data sheets are remembered: prefer what the device reports, or measure and configure.
+//
+// Worked out here:
+// - Origin of the Omni. Its maker's software reported, in the inkwell, the joints (0, 0.26889, -0.370813)
+// rad,
+//   the gimbal (0.000108, 0.797273, -1.94046) rad and the tip (0, -65.5107, -88.1142) mm. The formula gives
+//   the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35) mm, to 0.01 mm; and
+//   the three angles give the reported rotation to 1e-5 (hal_arm_kinematics_test). This is also the inkwell's
+//   posture that calibration uses.
+// - Origins of the Premiums: where the makers' box lies whole within reach and farthest from the stretched
+// and the
+//   folded arm: on a grid of 10 mm, cos(elbow) is nowhere below 0.44 (1.5) and 0.58 (1.0). With the reset
+//   pose in the middle, a fifth of the box would be out of reach. Joint limits: what that box needs and 10
+//   degrees more.
+// - Gimbal of the 6DOF: its data sheet gives 0.0023 degrees for yaw and pitch, 0.0080 for roll.
+#include "hal/arm/arm_table.hpp"
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr std::array kModels{"omni", "desktop", "premium-1.0", "premium-1.5", "premium-1.5-6dof"};
+
+constexpr Figure verified(double v) { return {v, FigureSource::verified}; }
+constexpr Figure derived(double v) { return {v, FigureSource::derived}; }
+constexpr Figure remembered(double v) { return {v, FigureSource::remembered}; }
+
+template <std::size_t N>
+void fill(std::array<Figure, N>& to, FigureSource source, std::initializer_list<double> values) {
+    std::size_t i = 0;
+    for (const double v : values) to[i++] = {v, source};
+}
+
+// Sources of whole rows.
+constexpr FigureSource V = FigureSource::verified, D = FigureSource::derived, M = FigureSource::remembered;
+
+ArmFigures omni() {
+    ArmFigures f;
+    f.name = "Phantom Omni / Touch";
+    f.wrist = Wrist::sensed;
+    f.calibration = CalibrationStyle::inkwell;
+    f.thigh_mm = f.shin_mm = verified(133.35);
+    fill(f.origin_mm, D, {0.0, 110.0, 35.0});
+    fill(f.workspace_mm, M, {160.0, 120.0, 70.0});
+    fill(f.counts_per_turn, V, {15000.0, 15000.0, 15000.0});  // as seen at the joint
+    fill(f.drive_ratio, V, {1.0, 1.0, 1.0});
+    constexpr double deg = 1.0 / kDegreeRad;
+    fill(f.low_deg, V, {-0.98 * deg, 0.0, -0.81 * deg, -2.5 * deg, -1.49 * deg, -2.58 * deg});
+    fill(f.high_deg, V, {0.98 * deg, 1.75 * deg, 2.2 * deg, 2.5 * deg, 0.91 * deg, 2.58 * deg});
+    f.high_deg[2] = derived(2.2 * deg);  // thigh and elbow cannot both be at their highest
+    fill(f.elbow_deg, V, {-0.81 * deg, 1.25 * deg});
+    fill(f.calibration_deg, V, {0.0, 0.26889 * deg, -0.370813 * deg, 0.0, 0.797273 * deg, -1.94046 * deg});
+    f.force_n_max = remembered(3.3);
+    f.force_n_continuous = remembered(0.88);
+    f.stiffness_n_mm_max = verified(0.5);
+    return f;
+}
+
+ArmFigures desktop() {
+    ArmFigures f;
+    f.name = "Phantom Desktop / Touch X";
+    f.wrist = Wrist::sensed;
+    f.calibration = CalibrationStyle::automatic;
+    fill(f.workspace_mm, M, {160.0, 120.0, 120.0});
+    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+    f.force_n_max = remembered(7.9);
+    f.force_n_continuous = remembered(1.75);
+    f.stiffness_n_mm_max = remembered(1.5);
+    return f;
+}
+
+ArmFigures premium_10() {
+    ArmFigures f;
+    f.name = "Phantom Premium 1.0";
+    f.thigh_mm = f.shin_mm = remembered(139.7);
+    fill(f.origin_mm, D, {0.0, 140.0, 10.0});
+    fill(f.workspace_mm, M, {254.0, 178.0, 127.0});
+    fill(f.low_deg, D, {-66.0, -10.0, -30.0});
+    fill(f.high_deg, D, {66.0, 120.0, 101.0});
+    fill(f.elbow_deg, D, {-64.0, 61.0});
+    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+    f.force_n_max = remembered(8.5);
+    f.force_n_continuous = remembered(1.4);
+    f.stiffness_n_mm_max = remembered(3.5);
+    return f;
+}
+
+ArmFigures premium_15() {
+    ArmFigures f;
+    f.name = "Phantom Premium 1.5";
+    f.thigh_mm = verified(209.55);
+    f.shin_mm = verified(169.545);
+    fill(f.origin_mm, D, {0.0, 170.0, -20.0});
+    fill(f.workspace_mm, M, {381.0, 267.0, 191.0});
+    fill(f.counts_per_turn, V, {4096.0, 4096.0, 4096.0});
+    fill(f.drive_ratio, V, {13.3, 11.2, 11.2});
+    fill(f.low_deg, D, {-74.0, -19.0, -53.0});
+    fill(f.high_deg, D, {74.0, 117.0, 106.0});
+    fill(f.elbow_deg, D, {-74.0, 72.0});
+    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+    f.force_n_max = remembered(8.5);
+    f.force_n_continuous = remembered(1.4);
+    f.stiffness_n_mm_max = remembered(3.5);
+    // Motor RE25.
+    fill(f.torque_constant_mn_m_a, V, {23.4, 23.4, 23.4});
+    fill(f.current_a_max, V, {5.5, 5.5, 5.5});  // stall
+    fill(f.current_a_continuous, V, {1.24, 1.24, 1.24});
+    f.motor_ohm = verified(2.18);
+    fill(f.motor_k_w, V, {3.1, 14.0});
+    fill(f.motor_tau_s, V, {12.0, 612.0});
+    f.winding_c_max = verified(100.0);
+    fill(f.gravity_mn_m, D, {-16.0, -74.0});
+    f.viscous_n_m_s = verified(0.0005);
+    f.coulomb_n_m = verified(0.01);
+    f.apparent_mass_g = derived(52.0);
+    return f;
+}
+
+ArmFigures premium_15_6dof() {
+    ArmFigures f = premium_15();
+    f.name = "Phantom Premium 1.5/6DOF";
+    f.wrist = Wrist::driven;
+    for (std::size_t i = 0; i < 3; ++i) {
+        constexpr std::array counts{360.0 / 0.0023, 360.0 / 0.0023, 360.0 / 0.0080};
+        constexpr std::array half_range{148.5, 130.0, 167.5};
+        constexpr std::array max{515.0, 515.0, 170.0}, continuous{188.0, 188.0, 48.0};
+        f.counts_per_turn[3 + i] = remembered(counts[i]);
+        f.drive_ratio[3 + i] = remembered(1.0);
+        f.low_deg[3 + i] = verified(-half_range[i]);
+        f.high_deg[3 + i] = verified(half_range[i]);
+        f.torque_mn_m_max[i] = remembered(max[i]);
+        f.torque_mn_m_continuous[i] = verified(continuous[i]);
+    }
+    return f;
+}
+
+}  // namespace
+
+std::span<const char* const> arm_models() { return kModels; }
+
+ArmFigures arm_figures(const std::string& model) {
+    constexpr std::array make{&omni, &desktop, &premium_10, &premium_15, &premium_15_6dof};
+    std::string known;
+    for (std::size_t i = 0; i < kModels.size(); ++i) {
+        if (model == kModels[i]) {
+            ArmFigures f = make[i]();
+            f.model = model;
+            return f;
+        }
+        known += (known.empty() ? "" : ", ") + std::string(kModels[i]);
+    }
+    throw StartupError("arm \"" + model + "\"", "there is no arm of this name in the table",
+                       "set arm.model to one of: " + known);
+}
+
+std::vector<ArmKey> arm_keys(ArmFigures& f) {
+    const auto one = [](Figure& figure) { return std::span<Figure>(&figure, 1); };
+    return {
+        {"thigh_mm", one(f.thigh_mm), 10, 2000, "length from shoulder to elbow"},
+        {"shin_mm", one(f.shin_mm), 10, 2000, "length from elbow to tip"},
+        {"origin_mm", f.origin_mm, -2000, 2000, "middle of the workspace, from the tip in the reset pose"},
+        {"workspace_mm", f.workspace_mm, 10, 4000, "full widths of the workspace"},
+        {"counts_per_turn", f.counts_per_turn, -1e7, 1e7,
+         "of the encoder's shaft; negative: other way round"},
+        {"drive_ratio", f.drive_ratio, 0.1, 1000, "turns of motor and encoder a turn of the joint"},
+        {"low_deg", f.low_deg, -360, 360, "lowest joint angles"},
+        {"high_deg", f.high_deg, -360, 360, "highest joint angles"},
+        {"elbow_deg", f.elbow_deg, -89, 89, "lowest and highest of shin less thigh"},
+        {"calibration_deg", f.calibration_deg, -360, 360, "joint angles in the calibrating pose"},
+        {"force_n_max", one(f.force_n_max), 0.01, 100, "for a moment"},
+        {"force_n_continuous", one(f.force_n_continuous), 0.01, 100, "for ever"},
+        {"stiffness_n_mm_max", one(f.stiffness_n_mm_max), 0.01, 100, "that its maker promises to be stable"},
+        {"torque_mn_m_max", f.torque_mn_m_max, 1, 10000, "of the gimbal's joints, for a moment"},
+        {"torque_mn_m_continuous", f.torque_mn_m_continuous, 1, 10000, "of the gimbal's joints, for ever"},
+        {"torque_constant_mn_m_a", f.torque_constant_mn_m_a, -1000, 1000,
+         "of the motors; negative: other way round"},
+        {"current_a_max", f.current_a_max, 0.01, 50, "of the motors, for a moment"},
+        {"current_a_continuous", f.current_a_continuous, 0.01, 50, "of the motors, for ever"},
+        {"motor_ohm", one(f.motor_ohm), 0.01, 1000, "winding of the arm's motors, at 25 degrees C"},
+        {"motor_k_w", f.motor_k_w, 0.01, 1000, "thermal resistances winding to housing, housing to ambient"},
+        {"motor_tau_s", f.motor_tau_s, 0.1, 1e5, "thermal time constants of winding, housing"},
+        {"winding_c_max", one(f.winding_c_max), 40, 200, "what the winding stands"},
+        {"gravity_mn_m", f.gravity_mn_m, -500, 500, "to hold it: times cos(thigh) and times sin(shin)"},
+        {"tip_mass_g", one(f.tip_mass_g), 0, 500, "hung on at the tip besides, as handle or gimbal"},
+        {"viscous_n_m_s", one(f.viscous_n_m_s), 0, 1, "friction of a joint"},
+        {"coulomb_n_m", one(f.coulomb_n_m), 0, 1, "friction of a joint"},
+        {"apparent_mass_g", one(f.apparent_mass_g), 1, 5000, "felt at the tip"},
+    };
+}
+
+}  // namespace tact
