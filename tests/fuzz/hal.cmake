@@ -1,2 +1,3 @@
 # Fuzz targets of hal.
 tact_fuzz(tracker_fuzz SOURCES fuzz/tracker_fuzz.cpp USES base tracker)
+tact_fuzz(phantom_fuzz SOURCES fuzz/phantom_fuzz.cpp USES phantom)
