@@ -15,11 +15,7 @@ import subprocess
 import sys
 import tempfile
 
-<<<<<<< HEAD
-FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/tracker", "ipc/assets", "ipc/shm"]
-=======
-FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "ipc/assets", "ipc/shm"]
->>>>>>> 0d3f016 (hal: arithmetic of Phantom arms, from encoder counts to the tip and from a wrench to currents)
+FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/tracker", "ipc/assets", "ipc/shm"]
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
     r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::bodies\(\) const$"
