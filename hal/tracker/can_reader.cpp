@@ -57,6 +57,7 @@ void CanReader::link_is(TrackerLink link) noexcept {
 
 void CanReader::publish(const TrackerFix& fix, Instant taken_at) noexcept {
     SampleWords w{};
+    taken_at_[fix.sensor] = taken_at;
     w.taken_at_ns = to_ns(taken_at - settings_.latency);
     w.sequence = ++sequence_[fix.sensor];
     for (int i = 0; i < 3; ++i) w.pos_m[i] = fix.T_tracker_sensor.p_m[i];
@@ -87,7 +88,10 @@ void CanReader::take(const CanFrame& frame, Instant arrived) noexcept {
     TrackerFix fix;
     if (!assembler_.take(frame, fix)) return;
     Instant taken_at{};
-    if (clocks_[fix.sensor].stamp(fix.time_us, arrived, taken_at))
+    // The clocks are understood better with every frame that was on its way for a shorter time, so that a
+    // stamp can fall behind the last one, most likely just after the start: time never runs backwards for a
+    // reader.
+    if (clocks_[fix.sensor].stamp(fix.time_us, arrived, taken_at) && taken_at > taken_at_[fix.sensor])
         publish(fix, taken_at);
     else
         assembler_.refuse(Refusal::stale);

@@ -78,6 +78,7 @@ private:
     TrackerHealth health_;
     CanReaderCounts counts_;
     std::array<std::uint64_t, kTrackerSensorsMax> sequence_{};
+    std::array<Instant, kTrackerSensorsMax> taken_at_{};  // of the newest sample
     Instant retry_at_{};
     std::unique_ptr<Mail> mail_;
 };

@@ -21,7 +21,7 @@ enum class Refusal : std::uint8_t {
     sensor_status,   // the sensor says that its pose means nothing
     out_of_range,    // beyond the reach of the tracker
     norm,            // a quaternion far from unit length
-    stale,           // older than three periods when it came
+    stale,           // older than three periods when it came, or not newer than the last sample
     count_
 };
 

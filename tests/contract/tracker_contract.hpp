@@ -69,13 +69,16 @@ protected:
             return s.state == TrackerState::fresh && s.sequence > sequence;
         });
     }
-    // No sample comes any more and the view is frozen: looked at twice, 30 ms apart.
+    // No sample comes any more and the view is frozen: nothing new within 100 ms.
     [[nodiscard]] bool stands() {
         return until([&] {
-            const std::uint64_t before = read().sequence;
-            elapse(std::chrono::milliseconds(30));
+            const TrackerSample before = read();
+            elapse(std::chrono::milliseconds(100));
             const TrackerSample s = read();
-            return s.sequence == before && s.state != TrackerState::fresh;
+            if (s.sequence != before.sequence || s.state == TrackerState::fresh) return false;
+            EXPECT_EQ(s.T_tracker_sensor.p_m, before.T_tracker_sensor.p_m);
+            EXPECT_EQ(s.T_tracker_sensor.q.coeffs(), before.T_tracker_sensor.q.coeffs());
+            return true;
         });
     }
 
@@ -134,12 +137,8 @@ TEST_P(TrackerContract, whatever_stops_it_the_last_good_pose_stands_and_it_comes
         ASSERT_TRUE(fresh_since(newest_[0].sequence));
         rig_->inject(fault);
         ASSERT_TRUE(stands());
-        const TrackerSample held = newest_[0];
-        elapse(std::chrono::milliseconds(100));
-        EXPECT_EQ(read().sequence, held.sequence);
-        EXPECT_EQ(newest_[0].T_tracker_sensor.p_m, held.T_tracker_sensor.p_m);
         rig_->inject(TrackerFault::none);
-        ASSERT_TRUE(fresh_since(held.sequence));
+        ASSERT_TRUE(fresh_since(newest_[0].sequence));
     }
 }
 
@@ -147,9 +146,7 @@ TEST_P(TrackerContract, is_lost_after_a_second_of_silence) {
     open();
     ASSERT_TRUE(fresh_since(0));
     rig_->inject(TrackerFault::silent);
-    ASSERT_TRUE(stands());
-    elapse(kTrackerLostAfter);
-    EXPECT_EQ(read().state, TrackerState::lost);
+    EXPECT_TRUE(until([&] { return read().state == TrackerState::lost; }));
 }
 
 TEST_P(TrackerContract, what_is_not_believed_is_counted) {

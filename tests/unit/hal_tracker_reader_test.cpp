@@ -134,6 +134,26 @@ TEST_F(Reader, old_frames_of_a_queue_are_refused_and_the_newest_is_kept) {
     EXPECT_EQ(newest().state, TrackerState::fresh);
 }
 
+// The first look finds a queue: only then is it known how late its first frame was.
+TEST_F(Reader, a_queue_at_the_start_costs_samples_but_time_never_runs_backwards) {
+    for (int i = 1; i <= 5; ++i) send(0.001 * i);
+    clock_.advance(milliseconds(2));
+    reader_.round(Duration{0});
+    TrackerSample before = newest();
+    EXPECT_EQ(before.sequence, 1U);
+    EXPECT_EQ(reader_.counts().refused[Refusal::stale], 4U);
+    clock_.advance(milliseconds(-2));
+    for (int i = 6; i < 20; ++i) {
+        sent(0.001 * i);
+        const TrackerSample s = newest();
+        EXPECT_EQ(s.sequence, before.sequence + 1);
+        EXPECT_GT(to_ns(s.taken_at), to_ns(before.taken_at));
+        before = s;
+    }
+    EXPECT_EQ(to_ns(before.taken_at), to_ns(clock_.now() - milliseconds(4)));
+    EXPECT_NEAR(newest_x(), 0.019, 26e-6);
+}
+
 TEST_F(Reader, interface_down_is_flagged_and_the_next_frame_ends_it) {
     sent(0.1);
     source_.fault = CanFault::down;
