@@ -39,6 +39,7 @@ struct PathLoad {
     Duration cost_predicted{0};
     double error = 0.0;
     std::uint32_t items = 0;  // vertices drawn, points felt, particles moved
+    float fresh = 1.0F;       // of the items, those that this step did anew; the rest is of steps before
 };
 
 // What a step may use. The level fixes the work before the step starts, so that runs repeat exactly; the
@@ -46,6 +47,9 @@ struct PathLoad {
 struct Budget {
     float fidelity = 1.0F;
     Instant deadline = Instant::max();
+    // In (0, 1]: how much of the level's work may be done anew where a model can keep the rest of steps
+    // before. Nothing is left out: for spans too short for a change of the level.
+    float share = 1.0F;
 };
 
 }  // namespace tact

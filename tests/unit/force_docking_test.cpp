@@ -129,6 +129,40 @@ TEST(Docking, WithTheClutchHeldTheToolMovesAloneAndNothingIsFeltSuddenly) {
     }
 }
 
+TEST(Docking, AStepWithAShareSumsItsPartAnewAndItsErrorSaysWhatTheRestMayBeOff) {
+    const Scene big = make_scene(4096);
+    DockingModel model(big.meta, big.grid, {big.rod}, {big.codebook}, {});
+    for (const float fidelity : {1.0F, 0.9F}) {  // at 0.9 two big levels are blended
+        model.reset(tool_at(kGrip));
+        Pose hand = kGrip;
+        for (int i = 0; i < 600; ++i) {
+            hand.p_m += Vec3(1e-5, -5e-6, 4e-6) * std::cos(0.01 * i);  // 10 mm/s at 1 kHz
+            hand.q = quat_from_rotation_vector(Vec3(1e-4, 2e-4, 0)) * hand.q;
+            Budget budget = at(fidelity);
+            budget.share = i < 300 ? 1.0F : 0.25F;
+            const StepResult r = model.step(tool_at(hand), budget);
+            ASSERT_EQ(r.status, StepStatus::ok);
+            if (i < 300) continue;  // the ramp
+            const StepResult whole = model.evaluate(model.bodies().T_model_body[0], budget);
+            EXPECT_EQ(whole.load.fresh, 1.0F);  // it keeps nothing
+            EXPECT_NEAR(r.load.fresh, 0.25F, 1e-3F);
+            EXPECT_EQ(r.load.items, whole.load.items);
+            EXPECT_GT(r.load.error, whole.load.error);
+            EXPECT_LT(r.load.error, whole.load.error + 0.1);
+            EXPECT_LE((r.wrench_world.force_n - whole.wrench_world.force_n).norm(),
+                      r.load.error - whole.load.error + 1e-5);
+        }
+    }
+    ModelOrder place;
+    place.kind = ModelOrder::Kind::place;
+    place.body = 1;
+    place.T_model_body = start_pose(model.home(), 10.0 * kA, 0.1, 1);
+    ASSERT_TRUE(model.order(place));
+    Budget budget = at(1.0F);
+    budget.share = 0.25F;
+    EXPECT_EQ(model.step(tool_at(kGrip), budget).load.fresh, 1.0F);  // a body elsewhere is summed wholly
+}
+
 TEST(Docking, AModelIsRebuiltWhileItIsSteppedAndOrderedAbout) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));

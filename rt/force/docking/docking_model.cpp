@@ -1,7 +1,7 @@
 // The grip keeps the vector from tool to centre of mass fixed in world axes and the rotation from tool to
 // body fixed in tool axes. Then dc_world = dp_tool and dphi = the tool's rotation, so the wrench of
-// level_blend.cpp, about the centre of mass, is exactly the wrench at the tool's origin; a grip with a lever would have to transfer
-// the torque.
+// level_blend.cpp, about the centre of mass, is exactly the wrench at the tool's origin; a grip with a lever
+// would have to transfer the torque.
 #include "rt/force/docking/docking_model.hpp"
 
 #include <algorithm>
@@ -155,7 +155,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     }
     StepResult clash;  // first: where time runs out, only the density can do with less
     add_clash(body, clash);
-    StepResult result = blend().evaluate(body, budget);
+    StepResult result = blend().evaluate(body, budget, &kept_);
     audit(result, body);
     result.wrench_world.force_n += clash.wrench_world.force_n;
     result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
@@ -166,9 +166,10 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     return result;
 }
 
-// A measurement above the bound raises the bound of all levels of this structure, for good.
+// A measurement above the bound raises the bound of all levels of this structure, for good. A step that used
+// old sums says nothing about its level, and has no time for this either.
 void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noexcept {
-    if (result.status != StepStatus::ok) return;
+    if (result.status != StepStatus::ok || result.load.fresh < 1.0F) return;
     double& scale = error_scale_[bodies_.structure()];
     const double per_newton = 1.0 / std::max(newtons_per_gradient(), 1e-300);
     if (!audit_.step(felt_->map, parts_->levels[bodies_.structure()].back(), T_model_body,

@@ -21,8 +21,6 @@ namespace tact {
 
 namespace {
 
-// Points between two looks at the clock: some 25 us here.
-constexpr std::size_t kChunk = 2048;
 // Where the level asked for is bigger, one of at most 1/kSafeShare of it is summed first, to fall back on.
 constexpr std::size_t kSafeShare = 16;
 constexpr double kOnLevel = 1e-5;  // of the way to the next level
@@ -63,25 +61,24 @@ PathLoad LevelBlend::predict(float fidelity) const noexcept {
     return load;
 }
 
-bool LevelBlend::sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
-                           DensitySums& sums) const noexcept {
-    sums = DensitySums{};
-    const std::size_t n = points.size();
-    for (std::size_t begin = 0; begin < n; begin += kChunk) {
-        if (n > DockingParts::kAlways && is_over(deadline)) return false;
-        const DensitySums part = map.sum(points.view(begin, std::min(kChunk, n - begin)), T_model_body);
-        sums.density_sigma += part.density_sigma;
-        sums.gradient += part.gradient;
-        sums.moment += part.moment;
-    }
-    return true;
+PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model_body, const Budget& budget,
+                                          KeptSums* kept) const noexcept {
+    const PointSet& points = levels[level];
+    const Instant deadline = points.size() > DockingParts::kAlways ? budget.deadline : Instant::max();
+    if (kept != nullptr && points.size() >= PartialSums::kPointsMin)
+        return (*kept)[level % kept->size()].step(map, points, T_model_body,
+                                                  static_cast<double>(budget.share), deadline);
+    PartialSums::Result result;
+    result.complete = sum_until(map, points.view(), T_model_body, deadline, result.sums);
+    return result;
 }
 
 Wrench LevelBlend::wrench(const DensitySums& sums) const noexcept {
     return {newtons_per_gradient * sums.gradient, energy_j_per_sigma * sums.moment};
 }
 
-StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
+StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
+                                KeptSums* kept) const noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
     if (!T_model_body.finite()) {
@@ -90,33 +87,39 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget) 
     }
     result.load = predict(budget.fidelity);
     const Plan p = plan(budget.fidelity);
-    const auto use = [&](std::size_t level, const DensitySums& sums) {
-        result.wrench_world = wrench(sums);
-        result.load.error = error_n(level);
+    const auto use = [&](std::size_t level, const PartialSums::Result& sum) {
+        result.wrench_world = wrench(sum.sums);
+        result.load.error = error_n(level) + newtons_per_gradient * sum.stale;
         result.load.items = static_cast<std::uint32_t>(levels[level].size());
+        result.load.fresh = sum.fresh;
     };
-    DensitySums lower, upper;
     const std::size_t wanted = levels[p.lower].size();
     if (wanted > DockingParts::kAlways) {  // something to fall back on, small beside the whole
         std::size_t safe = 0;
         while (levels[safe + 1].size() <= std::min(DockingParts::kAlways, wanted / kSafeShare)) ++safe;
-        if (sum_level(levels[safe], T_model_body, Instant::max(), lower)) use(safe, lower);
+        use(safe, sum_level(safe, T_model_body, budget, nullptr));
     }
-    if (!sum_level(levels[p.lower], T_model_body, budget.deadline, lower)) {
+    const PartialSums::Result lower = sum_level(p.lower, T_model_body, budget, kept);
+    if (!lower.complete) {
         result.status = StepStatus::out_of_time;
     } else {
         use(p.lower, lower);
         if (p.upper != p.lower) {
-            if (is_over(budget.deadline) ||
-                !sum_level(levels[p.upper], T_model_body, budget.deadline, upper)) {
+            PartialSums::Result upper;
+            upper.complete = false;
+            if (!is_over(budget.deadline)) upper = sum_level(p.upper, T_model_body, budget, kept);
+            if (!upper.complete) {
                 result.status = StepStatus::out_of_time;
             } else {
-                const Wrench a = wrench(lower), b = wrench(upper);
+                const Wrench a = wrench(lower.sums), b = wrench(upper.sums);
                 result.wrench_world.force_n = (1.0 - p.blend) * a.force_n + p.blend * b.force_n;
                 result.wrench_world.torque_n_m = (1.0 - p.blend) * a.torque_n_m + p.blend * b.torque_n_m;
                 const PathLoad promised = predict(budget.fidelity);
-                result.load.error = promised.error;
+                result.load.error = promised.error + newtons_per_gradient * ((1.0 - p.blend) * lower.stale +
+                                                                             p.blend * upper.stale);
                 result.load.items = promised.items;
+                const auto m = static_cast<float>(wanted), n = static_cast<float>(levels[p.upper].size());
+                result.load.fresh = (m * lower.fresh + n * upper.fresh) / (m + n);
             }
         } else if (is_over(budget.deadline)) {
             result.status = StepStatus::out_of_time;  // complete, but too late

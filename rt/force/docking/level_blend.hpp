@@ -1,12 +1,15 @@
 // The density's force on a body at a place, at any setting of the knob.
 //
 // Knob      from 0, the smallest level of the structure, to 1, all atoms; neighbours are blended linearly.
+// Share     where sums of steps before are kept, big levels sum only the budget's share of their points anew
+//           (partial_sums.hpp); what that may be off by is part of the error.
 // Frames    the place in model, the wrench in world, at the body's centre of mass.
 // Runs on   servo thread, made anew where it is needed: it is a view, and owns nothing. No allocation.
 // Fails by  out_of_range: a pose that is not finite gives no force. out_of_time: the wrench is that of a
 //           smaller level.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,10 +17,14 @@
 #include "ipc/assets/density_map.hpp"
 #include "ipc/base/rt.hpp"
 #include "rt/force/docking/felt_density.hpp"
+#include "rt/force/docking/partial_sums.hpp"
 #include "rt/force/docking/point_set.hpp"
 #include "rt/force/force_model.hpp"
 
 namespace tact {
+
+// By whether a level is an even or an odd one, so that the two that are blended have one each.
+using KeptSums = std::array<PartialSums, 2>;
 
 struct LevelBlend {
     const DensityMap& map;
@@ -31,7 +38,9 @@ struct LevelBlend {
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT;
     // Cost and error before anything is computed.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
-    [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
+    // kept: of the steps before; null: all of it is summed, whatever the share.
+    [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget,
+                                      KeptSums* kept = nullptr) const noexcept TACT_RT;
     // Where the knob stands before the first measurement: the first level of 200 vectors or more.
     [[nodiscard]] float start_fidelity() const noexcept TACT_RT;
 
@@ -43,9 +52,9 @@ private:
 
     [[nodiscard]] Plan plan(float fidelity) const noexcept;
     [[nodiscard]] double error_n(std::size_t level) const noexcept;
-    // False: the deadline came first.
-    [[nodiscard]] bool sum_level(const PointSet& points, const Pose& T_model_body, Instant deadline,
-                                 DensitySums& sums) const noexcept;
+    // One level at a place.
+    [[nodiscard]] PartialSums::Result sum_level(std::size_t level, const Pose& T_model_body,
+                                                const Budget& budget, KeptSums* kept) const noexcept;
     [[nodiscard]] Wrench wrench(const DensitySums& sums) const noexcept;
 };
 

@@ -15,6 +15,7 @@ namespace tact {
 
 struct PointSet {
     std::vector<float> x_m, y_m, z_m, weight;
+    double radius_m = 0.0;  // of the point that is farthest from the origin
 
     [[nodiscard]] std::size_t size() const { return x_m.size(); }
     [[nodiscard]] PointsView view() const { return {x_m, y_m, z_m, weight}; }

@@ -1,0 +1,91 @@
+// Why motion and not time: a body that rests has no stale sums, however old they are, and one that sets off,
+// turns round or is fast is judged by where it is. Between two poses the point that moves most moves by at
+// most |dp| + 2 r sin(angle / 2), r its distance from the body's origin.
+#include "rt/force/docking/partial_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact {
+
+namespace {
+
+// Points between two looks at the clock: some 25 us here.
+constexpr std::size_t kChunk = 2048;
+// Less motion than this is lost in the rounding of the sums: nothing is learned from it.
+constexpr double kStillVoxels = 1e-4;
+// What the slope keeps at each renewal; a peak is remembered for some hundred of them.
+constexpr double kSlopeKept = 0.99;
+
+void add(DensitySums& to, const DensitySums& part) {
+    to.density_sigma += part.density_sigma;
+    to.gradient += part.gradient;
+    to.moment += part.moment;
+}
+
+}  // namespace
+
+bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body, Instant deadline,
+               DensitySums& sums) noexcept {
+    sums = DensitySums{};
+    const std::size_t n = points.size();
+    for (std::size_t begin = 0; begin < n; begin += kChunk) {
+        if (deadline != Instant::max() && Monotonic::now() >= deadline) return false;
+        const std::size_t count = std::min(kChunk, n - begin);
+        add(sums, map.sum({points.x.subspan(begin, count), points.y.subspan(begin, count),
+                           points.z.subspan(begin, count), points.weight.subspan(begin, count)},
+                          T_model_body));
+    }
+    return true;
+}
+
+double PartialSums::motion_m(const Pose& from, const Pose& to) const noexcept {
+    // |q1 - q2| = 2 sin(angle / 4), of the nearer of the two quaternions of a rotation.
+    const double apart =
+        std::min((to.q.coeffs() - from.q.coeffs()).norm(), (to.q.coeffs() + from.q.coeffs()).norm());
+    return (to.p_m - from.p_m).norm() + 2.0 * points_->radius_m * apart;
+}
+
+PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& points, const Pose& T_model_body,
+                                      double share, Instant deadline) noexcept {
+    if (map_ != &map || points_ != &points) {
+        map_ = &map;
+        points_ = &points;
+        slices_.fill({});
+    }
+    const bool part = share > 0.0 && share < 1.0;
+    const auto due = part ? static_cast<std::size_t>(std::ceil(share * kSlices)) : kSlices;
+    const double voxel_m = map.spacing_m().minCoeff();
+    const std::size_t n = points.size(), first = next_;
+    Result result;
+    std::size_t summed = 0;
+    for (std::size_t turn = 0; turn < kSlices; ++turn) {
+        const std::size_t k = (first + turn) % kSlices;
+        Slice& slice = slices_[k];
+        const double moved_m = slice.made ? motion_m(slice.made_at, T_model_body) : 0.0;
+        const double most = slice.slope < 0.0 ? kStillVoxels : kFarthestVoxels;
+        if (turn >= due && slice.made && moved_m <= most * voxel_m) {
+            result.stale += kMargin * std::max(slice.slope, 0.0) * moved_m;
+            continue;
+        }
+        const std::size_t begin = k * n / kSlices, end = (k + 1) * n / kSlices;
+        DensitySums sums;
+        if (!sum_until(map, points.view(begin, end - begin), T_model_body, deadline, sums)) {
+            result.complete = false;
+            break;
+        }
+        summed += end - begin;
+        if (moved_m > kStillVoxels * voxel_m)
+            slice.slope =
+                std::max((sums.gradient - slice.sums.gradient).norm() / moved_m, kSlopeKept * slice.slope);
+        slice.sums = sums;
+        slice.made_at = T_model_body;
+        slice.made = true;
+        if (turn < due) next_ = (k + 1) % kSlices;
+    }
+    for (const Slice& slice : slices_) add(result.sums, slice.sums);  // in one order, whoever was renewed
+    result.fresh = static_cast<float>(static_cast<double>(summed) / static_cast<double>(n));
+    return result;
+}
+
+}  // namespace tact
