@@ -27,6 +27,7 @@ bool ended(const char (&text)[N]) noexcept {
     return std::memchr(text, 0, N) != nullptr;
 }
 bool rate(double hz) noexcept { return std::isfinite(hz) && hz >= 0.0 && hz < 1e9; }
+bool fraction(float part) noexcept { return part >= 0.0F && part <= 1.0F; }
 bool duration(std::int64_t ns) noexcept { return ns >= -1 && ns < 1'000'000'000'000'000; }
 
 }  // namespace
@@ -47,7 +48,8 @@ bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&
            duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
-           duration(h.cycle_cost_max_ns) && h.state <= static_cast<std::uint8_t>(RunState::fault);
+           duration(h.cycle_cost_max_ns) && fraction(h.fresh_mean) && fraction(h.fresh_least) &&
+           fraction(h.rested) && h.state <= static_cast<std::uint8_t>(RunState::fault);
 }
 
 bool sensible(const LevelsTopic& l) noexcept {

@@ -59,7 +59,7 @@ struct TraceTopic {
     float torque_world_n_m[3];
     std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15
     float model_error_n;   // bound of the reduced force's distance from the exact one, in this step
-    std::uint32_t items;   // points summed in this step
+    std::uint32_t items;   // points summed in this step; fewer than the level has where older sums were used
 };
 static_assert(std::is_trivially_copyable_v<TraceTopic> && sizeof(TraceTopic) == 80);
 

@@ -20,7 +20,7 @@ enum ScheduleFlag : std::uint32_t {
 };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -49,7 +49,11 @@ struct alignas(64) HealthTopic {
     std::uint8_t reason;        // RunReason
     std::uint8_t gui_attached;  // 0 or 1
     std::uint8_t device_state;  // DeviceState
-    std::uint8_t reserved[56];  // zero
+    // Of the model's work, what the updates did anew: mean and least of the last tenth of a second. Below 1 a
+    // freely running loop kept its rate by using older partial sums.
+    float fresh_mean, fresh_least;
+    float rested;               // of that time; it left this to others while it was ahead of its goal
+    std::uint8_t reserved[44];  // zero
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 256);
 

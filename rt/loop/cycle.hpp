@@ -37,6 +37,7 @@ struct CycleState {
     Instant planned{}, now{}, before{};
     Duration lateness{0}, dt{0}, cost{0}, model_cost{0};
     Duration behind{0};    // how far past the next one's instant the cycle before this one ended
+    double fresh = 1.0;    // of the models' work, what was done anew; a mean over the hands
     bool overran = false;  // the cycle before this one
     std::uint64_t out_of_time = 0;
     HouseReport house{};

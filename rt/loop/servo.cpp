@@ -78,6 +78,7 @@ void Servo::warm_up() noexcept {
     pacer_.restart(now + settings_.period);
     watchdogs_.forget();
     statistics_.start(now);
+    hold_.restart();
     health_at_ = now;
     start_interval(now);
     c.run = next_status(c.run, {.open = true}, now);
@@ -107,7 +108,7 @@ void Servo::run() noexcept {
 
 void Servo::wake(CycleState& c) noexcept {
     if (settings_.free_running || dry_) {
-        c.now = c.planned = clock_.now();
+        c.now = c.planned = rest();
         c.lateness = Duration{0};
     } else {
         c.planned = pacer_.planned();
@@ -148,11 +149,14 @@ void Servo::model(CycleState& c) noexcept {
     ask_for_model(c);
     const Instant begin = clock_.now();
     const Budget budget{.fidelity = governor_.level(kForceIndex),
-                        .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max()};
+                        .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max(),
+                        .share = static_cast<float>(share_of_step(c))};
+    c.fresh = 0.0;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
         h.step = h.model->step(h.tool, budget);
         if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
+        c.fresh += static_cast<double>(h.step.load.fresh) / c.hands;
     }
     c.model_cost = clock_.now() - begin;
 }
@@ -238,8 +242,10 @@ void Servo::publish(CycleState& c) noexcept {
     publish_tools(c);
     if (dry_) return;
     statistics_.rate.count();
+    statistics_.work.add(c.fresh);
     if (c.now - health_at_ >= std::chrono::milliseconds(100)) {
         statistics_.rate.turn(c.now);
+        statistics_.work.turn(c.now);
         health_at_ = c.now;
         health_due_ = true;
         if (statistics_.second_over(c.now)) publish_lateness(c);
@@ -253,6 +259,7 @@ void Servo::close(CycleState& c) noexcept {
     if (dry_) return;
     statistics_.spent(c.cost);
     interval_cost_ += c.cost;
+    count_share(c);
     if (settings_.free_running) {
         c.behind = c.cost;  // without a plan, a long cycle is the only way to be late
     } else {

@@ -18,6 +18,7 @@
 #include "rt/force/force_model.hpp"
 #include "rt/govern/governor.hpp"
 #include "rt/govern/picture_watch.hpp"
+#include "rt/govern/rate_hold.hpp"
 #include "rt/loop/cycle.hpp"
 #include "rt/loop/mail.hpp"
 #include "rt/loop/statistics.hpp"
@@ -109,6 +110,10 @@ private:
     void publish_levels(const CycleState& c) noexcept TACT_RT;
     void publish_trace(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
+    [[nodiscard]] bool holds_rate() const noexcept TACT_RT;
+    [[nodiscard]] Instant rest() noexcept TACT_RT;
+    [[nodiscard]] double share_of_step(const CycleState& c) noexcept TACT_RT;
+    void count_share(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] bool look_at_picture(const CycleState& c) noexcept TACT_RT;
     void say_levels(const CycleState& c, std::span<const float> before, bool changed) noexcept TACT_RT;
     void start_interval(Instant now) noexcept TACT_RT;
@@ -143,11 +148,17 @@ private:
     Instant governed_at_{};
     std::uint64_t interval_cycles_ = 0, interval_overruns_ = 0;
     Duration interval_cost_{0}, interval_model_cost_{0};
+    Duration interval_rest_{0};
+    double interval_fresh_ = 0.0;  // updates, each by how much of its model's work it did anew
     double law_rate_hz_ = 0.0;
     double model_cost_s_ = 0.0;
     std::uint64_t levels_sequence_ = 0;
     PictureWatch picture_;
     std::uint32_t levels_vertices_max_ = 0;
+
+    // Beneath the governor, where the loop runs freely.
+    RateHold hold_;
+    double whole_model_s_ = 0.0, whole_cost_s_ = 0.0;  // of steps that did all of their work, lately
 };
 
 }  // namespace tact

@@ -6,15 +6,24 @@
 
 namespace tact {
 
+namespace {
+
+constexpr double kMemory_s = 1.0;  // of what a whole step costs
+
+}  // namespace
+
 void Servo::start_interval(Instant now) noexcept {
     governed_at_ = now;
     interval_cycles_ = interval_overruns_ = 0;
     interval_cost_ = interval_model_cost_ = Duration{0};
+    interval_rest_ = Duration{0};
+    interval_fresh_ = 0.0;
 }
 
 void Servo::govern(CycleState& c) noexcept {
     ++interval_cycles_;
     interval_model_cost_ += c.model_cost;
+    interval_fresh_ += c.fresh;
     if (dry_) return;
     std::array<float, Governor::kPathsMax> before{};
     const auto paths = governor_.paths();
@@ -63,12 +72,61 @@ bool Servo::look_at_picture(const CycleState& c) noexcept {
     return look && governor_.look(*look);
 }
 
+// A law holds the rate in the long run; between its words the loop itself gives way (rate_hold.hpp). A loop
+// of fixed rate has its instants and its deadline for that, and what a person fixed stays as it is.
+bool Servo::holds_rate() const noexcept {
+    return settings_.free_running && !dry_ && governor_.settings().law != Law::fixed;
+}
+
+// Where a freely running loop is ahead of its goal and a picture is coarser than it could be, it waits: the
+// picture has the time at once, long before the law has turned it finer. The instant at which it goes on.
+Instant Servo::rest() noexcept {
+    const Instant now = clock_.now();
+    const auto paths = governor_.paths();
+    const bool wanted = std::any_of(paths.begin(), paths.end(), [](const GovernedPath& p) {
+        return p.present && !p.knob.haptic && p.level < 1.0F;
+    });
+    if (!holds_rate() || !wanted) return now;
+    const double rest_s = hold_.rest_s(now, governor_.settings().goal_hz);
+    if (rest_s <= 0.0) return now;
+    clock_.wait_until(now + Duration{static_cast<std::int64_t>(1e9 * rest_s)});
+    const Instant end = clock_.now();
+    interval_rest_ += end - now;
+    statistics_.work.rested(end - now);
+    return end;
+}
+
+double Servo::share_of_step(const CycleState& c) noexcept {
+    if (holds_rate()) return hold_.share(c.now, governor_.settings().goal_hz);
+    hold_.restart();
+    return 1.0;
+}
+
+void Servo::count_share(const CycleState& c) noexcept {
+    if (c.fresh < 1.0) return;
+    whole_model_s_ += to_s(c.model_cost);
+    whole_cost_s_ += to_s(c.cost);
+    if (whole_cost_s_ < kMemory_s) return;
+    whole_model_s_ *= 0.5;
+    whole_cost_s_ *= 0.5;
+}
+
 // A loop of fixed rate never shows more than its rate. What the law has to see is whether there is time to
 // spare: the rate that the cycles of this interval would have allowed. It is cut at a tenth above the goal,
 // so that levels come back by a few percent a step and not in one leap.
+// A freely running loop that is held near its goal shows little else: the law has to see what whole steps
+// without rests would have made of the same time. Work is counted, not time: a step that lost its turn in the
+// middle would weigh too much. Dips that were lifted and peaks that were cut even out, so the mean of what
+// the law sees is at the goal where the mean rate is.
 double Servo::rate_for_law(Duration interval) const noexcept {
     const double measured_hz = static_cast<double>(interval_cycles_) / std::max(to_s(interval), 1e-9);
-    if (settings_.free_running || interval_overruns_ > 0 || interval_cost_.count() <= 0) return measured_hz;
+    if (settings_.free_running) {
+        const double given_up = 1.0 - interval_fresh_ / static_cast<double>(interval_cycles_);
+        const double part = whole_cost_s_ > 0.0 ? whole_model_s_ / whole_cost_s_ : 1.0;
+        const double awake = std::max(1.0 - to_s(interval_rest_) / to_s(interval), 0.1);
+        return measured_hz * (1.0 - part * given_up) / awake;
+    }
+    if (interval_overruns_ > 0 || interval_cost_.count() <= 0) return measured_hz;
     const double possible_hz = static_cast<double>(interval_cycles_) / to_s(interval_cost_);
     return std::max(measured_hz, std::min(possible_hz, 1.1 * governor_.settings().goal_hz));
 }

@@ -129,6 +129,9 @@ void Servo::publish_health(const CycleState& c) noexcept {
     t.reason = static_cast<std::uint8_t>(c.run.reason);
     t.gui_attached = c.house.gui_attached != 0 ? 1 : 0;
     t.device_state = static_cast<std::uint8_t>(c.hand[0].sample.state);
+    t.fresh_mean = static_cast<float>(statistics_.work.fresh_mean());
+    t.fresh_least = static_cast<float>(statistics_.work.fresh_least());
+    t.rested = static_cast<float>(statistics_.work.rested());
     region_.health.publish(t);
 }
 
@@ -189,7 +192,7 @@ void Servo::publish_trace(const CycleState& c) noexcept {
     put(t.torque_world_n_m, h.shown_world.torque_n_m);
     t.status = static_cast<std::uint32_t>(c.run.state) | static_cast<std::uint32_t>(h.step.status) << 8;
     t.model_error_n = static_cast<float>(h.step.load.error);
-    t.items = h.step.load.items;
+    t.items = static_cast<std::uint32_t>(h.step.load.fresh * static_cast<float>(h.step.load.items) + 0.5F);
     region_.trace.push(t);
 }
 

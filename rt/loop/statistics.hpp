@@ -1,6 +1,7 @@
 // What the servo thread counts about itself. Constant time per cycle; percentiles once a second.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -53,6 +54,43 @@ private:
     std::uint64_t in_slot_ = 0, total_ = 0;
 };
 
+// How a freely running loop held its rate in the last tenth of a second: how much of the model's work its
+// updates did anew, and how long it rested.
+class WorkWindow {
+public:
+    void start(Instant now) noexcept {
+        *this = {};
+        begun_at_ = now;
+    }
+    void add(double fresh) noexcept TACT_RT {
+        sum_ += fresh;
+        now_least_ = std::min(now_least_, fresh);
+        ++n_;
+    }
+    void rested(Duration d) noexcept TACT_RT { rest_ += d; }
+    // A tenth of a second is over.
+    void turn(Instant now) noexcept TACT_RT {
+        mean_ = n_ > 0 ? sum_ / static_cast<double>(n_) : 1.0;
+        least_ = now_least_;
+        rested_ = now > begun_at_ ? std::min(to_s(rest_) / to_s(now - begun_at_), 1.0) : 0.0;
+        sum_ = 0.0;
+        n_ = 0;
+        now_least_ = 1.0;
+        rest_ = Duration{0};
+        begun_at_ = now;
+    }
+    [[nodiscard]] double fresh_mean() const noexcept TACT_RT { return mean_; }
+    [[nodiscard]] double fresh_least() const noexcept TACT_RT { return least_; }
+    [[nodiscard]] double rested() const noexcept TACT_RT { return rested_; }  // of the time
+
+private:
+    double sum_ = 0.0, now_least_ = 1.0;
+    std::uint64_t n_ = 0;
+    Duration rest_{0};
+    Instant begun_at_{};
+    double mean_ = 1.0, least_ = 1.0, rested_ = 0.0;
+};
+
 struct WindowFigures {
     std::int64_t lateness_p50_ns = 0, lateness_p99_ns = 0, lateness_max_ns = 0;
     std::int64_t cost_p50_ns = 0, cost_max_ns = 0;
@@ -63,6 +101,7 @@ public:
     void start(Instant now) noexcept {
         *this = {};
         rate.start(now);
+        work.start(now);
         second_at_ = now;
     }
     void late(Duration d) noexcept TACT_RT {
@@ -85,6 +124,7 @@ public:
     }
 
     RateWindow rate;
+    WorkWindow work;
     DurationHistogram lateness;  // since start
     WindowFigures figures;       // of the last whole second; before the first, so far
 

@@ -82,6 +82,80 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
     EXPECT_FLOAT_EQ(picture.level(), 1.0F);
 }
 
+// --- free running: the rate within a tenth of a second ---
+
+struct FreeLoop : Lockstep {
+    explicit FreeLoop(Law law) : Lockstep(settings(law)) {
+        model_.clock = &clock_;
+        model_.keeps_sums = true;
+    }
+    static ServoSettings settings(Law law) {
+        ServoSettings s;
+        s.free_running = true;
+        s.governor.law = law;
+        s.watchdogs.timing_latches = false;
+        return s;
+    }
+    // Fewest and most updates in any tenth of the next seconds.
+    std::pair<std::size_t, std::size_t> windows(double seconds) {
+        std::vector<Instant> begun;
+        const Instant end =
+            clock_.now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * seconds));
+        while (clock_.now() < end) {
+            cycles(1);
+            begun.push_back(clock_.now());
+        }
+        std::pair<std::size_t, std::size_t> w{100000, 0};
+        std::size_t from = 0;
+        for (std::size_t to = 0; to < begun.size(); ++to) {
+            if (begun[to] - begun[0] < std::chrono::milliseconds(100)) continue;
+            while (begun[to] - begun[from] > std::chrono::milliseconds(100)) ++from;
+            w = {std::min(w.first, to - from + 1), std::max(w.second, to - from + 1)};
+        }
+        return w;
+    }
+};
+
+TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer) {
+    FreeLoop loop(Law::elastic);
+    loop.model_.cost = std::chrono::microseconds(950);
+    static_cast<void>(loop.windows(1.0));
+    EXPECT_FLOAT_EQ(loop.health().fresh_least, 1.0F);
+    loop.model_.cost = std::chrono::microseconds(1500);
+    EXPECT_GE(loop.windows(0.25).first, 96U);
+    EXPECT_LT(loop.health().fresh_least, 0.95F);
+    EXPECT_GE(loop.windows(5.0).first, 96U);
+    EXPECT_GT(loop.health().fresh_mean, 0.95F);  // by then the law has answered
+    EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.66, 0.05);
+}
+
+TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_wholly_at_any_rate) {
+    FreeLoop loop(Law::fixed);
+    loop.model_.cost = std::chrono::microseconds(1500);
+    EXPECT_LE(loop.windows(1.0).second, 68U);
+    EXPECT_FLOAT_EQ(loop.health().fresh_least, 1.0F);
+    loop.model_.cost = std::chrono::microseconds(100);
+    EXPECT_GE(loop.windows(1.0).first, 900U);
+    EXPECT_FLOAT_EQ(loop.health().rested, 0.0F);
+}
+
+TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_picture_could_be_finer) {
+    FreeLoop loop(Law::elastic);
+    Picture picture{loop, 0.02};
+    loop.model_.cost = std::chrono::microseconds(2000);
+    while (picture.level() > 0.5F) picture.frame();
+    loop.model_.cost = std::chrono::microseconds(400);
+    picture.frame();
+    EXPECT_LT(picture.level(), 1.0F);
+    const auto [least, most] = loop.windows(0.3);
+    EXPECT_GE(least, 96U);
+    EXPECT_LE(most, 112U);  // what lacked before the core was fast again is made good
+    EXPECT_GT(loop.health().rested, 0.3F);
+    for (int i = 0; i < 400 && picture.level() < 1.0F; ++i) picture.frame();
+    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law saw that there is time to spare
+    EXPECT_GE(loop.windows(0.3).first, 200U);
+}
+
 TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_their_bounds) {
     for (const double bad : {-1.0, 1e300, 0.0}) {
         Lockstep loop(with_picture_goal(Law::elastic, 30.0));

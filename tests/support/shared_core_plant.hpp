@@ -7,6 +7,7 @@
 // Picture   a frame costs fixed_s + full_s * level of the levels at its beginning, times a jitter that is
 // drawn
 //           once per frame from the seed; frames begin no faster than fps_max.
+// Held      where the settings say so, updates give up a part of their work, or the loop rests, as in rt/loop
 // Governed  as rt/loop does it: an interval at a time, frames that obeyed once each, and nothing judged
 // before
 //           the picture obeyed where the law waits for it.
@@ -22,6 +23,7 @@
 
 #include "rt/govern/governor.hpp"
 #include "rt/govern/picture_watch.hpp"
+#include "rt/govern/rate_hold.hpp"
 
 namespace tact {
 
@@ -33,6 +35,7 @@ struct PlantSettings {
     bool free_running = true;  // else updates are made at the goal's rate, on a core of their own
     double seconds = 30.0;
     double interval_s = 0.1;
+    bool hold = false;
     unsigned seed = 1;
 };
 
@@ -41,6 +44,7 @@ struct Load {
     double programs = 0.0;      // external ones that run
     double update_times = 1.0;  // cost of an update
     double frame_times = 1.0;   // cost of what varies in a frame
+    double core_times = 1.0;    // of everything: a core that is slower
 };
 using LoadTrace = std::function<Load(double t_s)>;
 
@@ -49,6 +53,7 @@ struct PlantSample {
     double t_s;  // its end
     double rate_hz, fps;
     double level, haptic_level;  // at its end
+    double fresh;                // of the updates' work, what they did anew
 };
 
 class SharedCorePlant {
@@ -86,18 +91,29 @@ public:
     }
 
 private:
+    static constexpr double kFixed = 0.04;  // of an update, whatever its share
+
     void step(double dt_s) {
         if (work_left_s_ <= 0.0 && t_s_ >= next_frame_s_) begin_frame();
         const bool drawing = work_left_s_ > 0.0;
         // A loop of fixed rate has a core of its own; the picture then shares with the external programs.
-        const double parties = (p_.free_running ? 1.0 : 0.0) + (drawing ? 1.0 : 0.0) + load_.programs;
-        const double share = parties > 1.0 ? dt_s / parties : dt_s;
+        const bool resting = t_s_ < rest_until_s_;
+        if (resting) interval_rest_s_ += dt_s;
+        const double parties =
+            (p_.free_running && !resting ? 1.0 : 0.0) + (drawing ? 1.0 : 0.0) + load_.programs;
+        const double share = (parties > 1.0 ? dt_s / parties : dt_s) / load_.core_times;
         const double haptic = static_cast<double>(governor_.level(1));
-        const double update_s = p_.update_s * load_.update_times * haptic;
-        const double made = p_.free_running ? share / update_s
-                                            : dt_s * std::min(governor_.settings().goal_hz, 1.0 / update_s);
+        const double update_s =
+            p_.update_s * load_.update_times * haptic * (kFixed + (1.0 - kFixed) * fresh_);
+        const double made = resting           ? 0.0
+                            : p_.free_running ? share / update_s
+                                              : dt_s * std::min(governor_.settings().goal_hz, 1.0 / update_s);
         updates_ += made;
+        interval_fresh_ += made * fresh_;
+        sample_fresh_ += made * fresh_;
         sample_updates_ += made;
+        begun_ += made;
+        for (; p_.hold && begun_ >= 1.0; begun_ -= 1.0) begin_update();
         if (drawing) {
             cpu_s_ += std::min(share, work_left_s_);
             work_left_s_ -= share;
@@ -106,6 +122,12 @@ private:
         if (t_s_ - sample_at_s_ >= 0.1 - 1e-9) sample();
         const double since_s = t_s_ - interval_at_s_;
         if (since_s >= p_.interval_s - 1e-9) govern(since_s, update_s);
+    }
+
+    void begin_update() {
+        const double goal_hz = governor_.settings().goal_hz;
+        fresh_ = std::ceil(8.0 * hold_.share(now(), goal_hz)) / 8.0;
+        if (governor_.level(0) < 1.0F) rest_until_s_ = t_s_ + hold_.rest_s(now(), goal_hz);
     }
 
     void begin_frame() {
@@ -139,6 +161,8 @@ private:
     void govern(double since_s, double update_s) {
         const double measured_hz = updates_ / since_s;
         double rate_hz = measured_hz;
+        const double whole = kFixed + (1.0 - kFixed) * interval_fresh_ / std::max(updates_, 1e-9);
+        if (p_.hold) rate_hz = whole * updates_ / std::max(since_s - interval_rest_s_, 0.1 * since_s);
         if (!p_.free_running) rate_hz = std::min(1.0 / update_s, 1.1 * governor_.settings().goal_hz);
         pending_ = watch_.pending(now());
         if (!(pending_ && governor_.settings().law == Law::elastic)) {
@@ -158,15 +182,15 @@ private:
     }
     void restart() {
         interval_at_s_ = t_s_;
-        updates_ = 0.0;
+        updates_ = interval_fresh_ = interval_rest_s_ = 0.0;
     }
     void sample() {
         const double since_s = t_s_ - sample_at_s_;
         samples_.push_back({t_s_, sample_updates_ / since_s, sample_frames_ / since_s,
-                            static_cast<double>(governor_.level(0)),
-                            static_cast<double>(governor_.level(1))});
+                            static_cast<double>(governor_.level(0)), static_cast<double>(governor_.level(1)),
+                            sample_fresh_ / std::max(sample_updates_, 1e-9)});
         sample_at_s_ = t_s_;
-        sample_updates_ = sample_frames_ = 0.0;
+        sample_updates_ = sample_frames_ = sample_fresh_ = 0.0;
     }
     [[nodiscard]] Instant now() const {
         return Instant{} + std::chrono::seconds(100) + std::chrono::nanoseconds(std::llround(t_s_ * 1e9));
@@ -185,6 +209,9 @@ private:
     double sample_at_s_ = 0.0, sample_updates_ = 0.0, sample_frames_ = 0.0;
     int changes_ = 0;
     bool pending_ = false;
+    RateHold hold_;
+    double rest_until_s_ = -1.0, interval_rest_s_ = 0.0;
+    double fresh_ = 1.0, begun_ = 0.0, interval_fresh_ = 0.0, sample_fresh_ = 0.0;
 };
 
 }  // namespace tact

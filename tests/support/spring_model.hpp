@@ -1,6 +1,7 @@
 // A force model whose answer is known: a spring to a point, with faults and delays on demand.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "ipc/base/clock.hpp"
@@ -16,6 +17,7 @@ public:
     bool not_a_number = false;
     ManualClock* clock = nullptr;  // a step then takes `cost`, at the level
     Duration cost{0};
+    bool keeps_sums = false;  // a step with a share of its work takes as much less
     int* destroyed = nullptr;
     int resets = 0;
 
@@ -31,11 +33,13 @@ public:
     void reset(const ToolState&) noexcept override { ++resets; }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept override {
         place_ = tool.T_world_tool;
+        const double share = keeps_sums ? std::clamp(static_cast<double>(budget.share), 0.1, 1.0) : 1.0;
         if (clock != nullptr) {
-            clock->advance(Duration(static_cast<std::int64_t>(static_cast<double>(cost.count()) *
+            clock->advance(Duration(static_cast<std::int64_t>(static_cast<double>(cost.count()) * share *
                                                               static_cast<double>(budget.fidelity))));
         }
         StepResult result;
+        result.load.fresh = static_cast<float>(share);
         result.wrench_world.force_n = stiffness_n_m * (rest_world_m - tool.T_world_tool.p_m);
         result.wrench_world.torque_n_m = -turn_stiffness_n_m * rotation_vector_rad(tool.T_world_tool.q);
         if (not_a_number) result.wrench_world.force_n.y() = std::numeric_limits<double>::quiet_NaN();

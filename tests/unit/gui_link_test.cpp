@@ -64,6 +64,12 @@ TEST(RegionChecks, RefuseNumbersAndTextsThatCannotBe) {
     h.force_rate_hz = std::numeric_limits<double>::infinity();
     EXPECT_FALSE(sensible(h));
     h = {};
+    h.fresh_mean = 1.5F;
+    EXPECT_FALSE(sensible(h));
+    h = {};
+    h.fresh_least = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(sensible(h));
+    h = {};
     h.lateness_max_ns = std::numeric_limits<std::int64_t>::min();
     EXPECT_FALSE(sensible(h));
     h = {};

@@ -1,0 +1,211 @@
+// The rate on simulated time: a core that gets slower or faster, is taken away in turns, or stands still.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "rt/govern/rate_hold.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kGoal_hz = 1000.0;
+
+// A loop without pause on a core of which it has a part. A step costs so much of the core, a twentieth of it
+// whatever its share; the rest is made in eighths, rounded up.
+struct Core {
+    std::function<double(double t_s)> update_s = [](double) { return 0.9e-3; };
+    std::function<bool(double t_s)> ours = [](double) { return true; };
+    bool rests = false;
+
+    struct Update {
+        double t_s, share;
+    };
+    std::vector<Update> run(double seconds, double goal_hz = kGoal_hz) const {
+        constexpr double kTick_s = 1e-6;
+        RateHold hold;
+        std::vector<Update> all;
+        double left_s = 0.0, rest_until_s = 0.0;
+        for (double t_s = 0.0; t_s < seconds; t_s += kTick_s) {
+            if (!ours(t_s) || t_s < rest_until_s) continue;
+            if (left_s <= 0.0) {
+                const Instant now = Instant{} + std::chrono::nanoseconds(std::llround(1e9 * t_s));
+                const double rest_s = rests ? hold.rest_s(now, goal_hz) : 0.0;
+                if (rest_s > 0.0) {
+                    rest_until_s = t_s + rest_s;
+                    continue;
+                }
+                all.push_back({t_s, std::ceil(8.0 * hold.share(now, goal_hz)) / 8.0});
+                left_s += update_s(t_s) * (0.05 + 0.95 * all.back().share);
+            }
+            left_s -= kTick_s;
+        }
+        return all;
+    }
+};
+
+// Fewest and most updates in any tenth of a second within [from_s, to_s], of those that are wanted.
+struct Windows {
+    double least = 1e9, most = 0.0;
+};
+Windows windows(const std::vector<Core::Update>& all, double from_s, double to_s, double goal_hz = kGoal_hz) {
+    Windows w;
+    for (double begin_s = from_s; begin_s + 0.1 <= to_s; begin_s += 0.5e-3) {
+        const auto count = std::count_if(all.begin(), all.end(), [&](const Core::Update& u) {
+            return u.t_s >= begin_s && u.t_s < begin_s + 0.1;
+        });
+        w.least = std::min(w.least, static_cast<double>(count) / (0.1 * goal_hz));
+        w.most = std::max(w.most, static_cast<double>(count) / (0.1 * goal_hz));
+    }
+    return w;
+}
+double worst_window(const std::vector<Core::Update>& all, double from_s, double to_s,
+                    double goal_hz = kGoal_hz) {
+    return windows(all, from_s, to_s, goal_hz).least;
+}
+
+double mean_share(const std::vector<Core::Update>& all, double from_s, double to_s) {
+    double sum = 0.0, n = 0.0;
+    for (const Core::Update& u : all)
+        if (u.t_s >= from_s && u.t_s < to_s) sum += u.share, n += 1.0;
+    return sum / n;
+}
+
+TEST(RateHold, a_loop_at_its_goal_or_above_is_left_alone) {
+    for (const double update_s : {0.2e-3, 0.9e-3, 0.999e-3, 1.0e-3}) {
+        Core core;
+        core.update_s = [=](double) { return update_s; };
+        EXPECT_GT(mean_share(core.run(1.0), 0.0, 1.0), 0.999) << update_s;  // the first window has a border
+    }
+}
+
+// One of three programs on the core, in turns of a millisecond, and a picture that is not drawn all the time.
+TEST(RateHold, neither_are_turns_nor_pictures_that_a_window_evens_out) {
+    Core core;
+    core.ours = [](double t_s) {
+        const bool drawing = std::fmod(t_s, 0.05) < 0.02;
+        return static_cast<int>(t_s * 1e3) % (drawing ? 3 : 2) == 0;
+    };
+    core.update_s = [](double) { return 0.41e-3; };  // 1054 updates/s of it
+    EXPECT_GT(mean_share(core.run(2.0), 0.0, 2.0), 0.99);
+}
+
+TEST(RateHold, a_core_that_gets_slower_by_half_at_once_costs_less_than_four_percent_of_any_window) {
+    for (const double phase_s : {0.0, 0.3e-3, 2.2e-3, 4.9e-3}) {
+        Core core;
+        core.update_s = [=](double t_s) { return t_s < 0.5 + phase_s ? 0.98e-3 : 1.47e-3; };
+        const auto all = core.run(2.0);
+        EXPECT_GE(worst_window(all, 0.0, 2.0), 0.96);
+        // What is given up is what is lacking: 0.98 of the goal at 1.47 times the time.
+        EXPECT_NEAR(mean_share(all, 1.0, 2.0), (1.0 / (0.98 * 1.47) - 0.05) / 0.95, 0.04);
+        EXPECT_EQ(mean_share(all, 0.0, 0.5), 1.0);
+    }
+}
+
+TEST(RateHold, so_it_does_in_turns_of_a_millisecond) {
+    Core core;
+    core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
+    core.update_s = [](double t_s) { return t_s < 0.5 ? 0.32e-3 : 0.48e-3; };
+    EXPECT_GE(worst_window(core.run(2.0), 0.0, 2.0), 0.95);
+}
+
+TEST(RateHold, when_the_core_is_fast_again_nothing_is_given_up_any_more) {
+    Core core;
+    core.update_s = [](double t_s) { return t_s > 0.5 && t_s < 1.0 ? 2.5e-3 : 0.95e-3; };
+    const auto all = core.run(2.0);
+    EXPECT_GE(worst_window(all, 0.0, 2.0), 0.95);
+    EXPECT_EQ(mean_share(all, 1.11, 2.0), 1.0);
+}
+
+TEST(RateHold, a_short_stall_is_made_good_within_the_window) {
+    Core core;
+    core.update_s = [](double) { return 0.99e-3; };
+    core.ours = [](double t_s) { return t_s < 0.5 || t_s > 0.51; };
+    const auto all = core.run(1.0);
+    EXPECT_LT(worst_window(all, 0.4, 0.52), 0.95);  // nothing can be made good before it is over
+    EXPECT_GE(worst_window(all, 0.43, 1.0), 0.97);
+}
+
+TEST(RateHold, a_long_stall_is_made_good_by_no_more_than_a_quarter_of_a_window) {
+    for (const double stall_s : {0.1, 1.0, 30.0}) {
+        Core core;
+        core.ours = [=](double t_s) { return t_s < 0.5 || t_s > 0.5 + stall_s; };
+        const auto all = core.run(stall_s + 1.0);
+        const auto after = [&](double from_s, double to_s) {
+            return std::count_if(all.begin(), all.end(), [&](const Core::Update& u) {
+                return u.t_s >= 0.5 + stall_s + from_s && u.t_s < 0.5 + stall_s + to_s;
+            });
+        };
+        EXPECT_LE(after(0.0, 0.1), 125 + 12);  // the loop alone makes 111
+        EXPECT_EQ(mean_share(all, stall_s + 0.65, stall_s + 1.0), 1.0);
+    }
+}
+
+TEST(RateHold, a_goal_out_of_reach_leaves_the_least_share_and_no_debt) {
+    Core core;
+    core.update_s = [](double t_s) { return t_s < 1.0 ? 20e-3 : 0.9e-3; };
+    const auto all = core.run(2.0);
+    EXPECT_NEAR(mean_share(all, 0.3, 1.0), RateHold::kLeast, 1e-9);
+    EXPECT_EQ(mean_share(all, 1.2, 2.0), 1.0);
+}
+
+TEST(RateHold, slow_goals_and_fast_ones_are_held_alike) {
+    for (const double goal_hz : {50.0, 300.0, 4000.0, 20000.0}) {
+        Core core;
+        core.update_s = [=](double t_s) { return (t_s < 0.5 ? 0.98 : 1.47) / goal_hz; };
+        const double least = goal_hz < 200.0 ? 0.6 : goal_hz < 1000.0 ? 0.9 : 0.96;  // counts are whole
+        EXPECT_GE(worst_window(core.run(2.0, goal_hz), 0.0, 2.0, goal_hz), least) << goal_hz;
+    }
+}
+
+TEST(RateHold, a_loop_ahead_of_its_goal_rests_and_gives_nothing_up) {
+    for (const double update_s : {0.05e-3, 0.3e-3, 0.9e-3}) {
+        Core core;
+        core.rests = true;
+        core.update_s = [=](double) { return update_s; };
+        const auto all = core.run(1.0);
+        EXPECT_LE(windows(all, 0.2, 1.0).most, 1.05) << update_s;
+        EXPECT_GE(windows(all, 0.2, 1.0).least, 0.99) << update_s;
+        EXPECT_EQ(mean_share(all, 0.0, 1.0), 1.0) << update_s;
+    }
+}
+
+TEST(RateHold, a_core_whose_speed_leaps_to_and_fro_makes_the_goal_on_average_and_in_every_window) {
+    Core core;
+    core.rests = true;
+    core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
+    core.update_s = [](double t_s) { return std::fmod(t_s, 0.7) < 0.3 ? 0.27e-3 : 0.41e-3; };
+    const auto all = core.run(3.0);
+    const double mean_hz = static_cast<double>(std::count_if(
+                               all.begin(), all.end(), [](const Core::Update& u) { return u.t_s >= 0.2; })) /
+                           2.8;
+    EXPECT_NEAR(mean_hz, kGoal_hz, 0.01 * kGoal_hz);
+    EXPECT_GE(windows(all, 0.1, 3.0).least, 0.95);
+    EXPECT_LE(windows(all, 0.1, 3.0).most, 1.1);
+}
+
+TEST(RateHold, any_times_and_goals_give_a_share_and_a_rest) {
+    RateHold hold;
+    const Instant now = Instant{} + std::chrono::hours(1);
+    for (const double goal_hz : {1.0, 1e7})
+        for (const Duration d : {Duration{0}, Duration{-5}, Duration::max() / 4, -Duration::max() / 4}) {
+            for (int i = 0; i < 100; ++i) {
+                const double share = hold.share(now + i * Duration{1000}, goal_hz);
+                EXPECT_GE(share, RateHold::kLeast);
+                EXPECT_LE(share, 1.0);
+            }
+            const double rest_s = hold.rest_s(now, goal_hz);
+            EXPECT_GE(rest_s, 0.0);
+            EXPECT_LE(rest_s, RateHold::kRestMost_s);
+            const double share = hold.share(now + d, goal_hz);
+            EXPECT_GE(share, RateHold::kLeast);
+            EXPECT_LE(share, 1.0);
+        }
+}
+
+}  // namespace
+}  // namespace tact
