@@ -150,6 +150,8 @@ json controller_report(const RtRegion& region) {
                     {"max", us(static_cast<double>(h.cycle_cost_max_ns))}}},
                   {"schedule_flags", h.schedule_flags},
                   {"schedule", schedule_text(h.schedule_flags)},
+                  {"fresh", {{"mean", h.fresh_mean}, {"least", h.fresh_least}}},
+                  {"rested", h.rested},
                   {"bad_input", h.bad_input},
                   {"events", h.events}};
     if (const auto lateness = newest(region.lateness)) j["servo"]["lateness_us"] = lateness_us(*lateness);
@@ -204,6 +206,12 @@ std::string report_summary(const json& r) {
         add("force rate %.1f Hz; lateness us p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f; overruns %.0f\n",
             number(r["force_rate_hz"]), number(l["p50"]), number(l["p99"]), number(l["p999"]),
             number(l["max"]), number(r["servo"]["overruns"]));
+        if (r["servo"]["free_running"].get<bool>())
+            add("free running; of each step's work %.0f %% done anew in the last 0.1 s, %.0f %% at least; "
+                "rested "
+                "%.0f %% of the time\n",
+                100.0 * number(r["servo"]["fresh"]["mean"]), 100.0 * number(r["servo"]["fresh"]["least"]),
+                100.0 * number(r["servo"]["rested"]));
         add("servo thread: %.0f allocations, %.0f locks, %.0f page faults; %s\n",
             number(r["servo"]["allocations"]), number(r["servo"]["locks"]), number(r["servo"]["page_faults"]),
             r["servo"]["schedule"].get<std::string>().c_str());

@@ -32,6 +32,23 @@ void buttons(const Theme& theme, DashboardState& state) {
     (void)theme;
 }
 
+void lateness(const Theme& theme, const HealthTopic& h) {
+    const Verdict late = lateness_verdict(h.lateness_p99_ns, h.period_ns);
+    row(theme, "Lateness p50", duration_text(1e-9 * static_cast<double>(h.lateness_p50_ns)),
+        format("of %s", duration_text(1e-9 * static_cast<double>(h.period_ns)).c_str()));
+    row(theme, "p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)), late);
+    row(theme, "max", duration_text(1e-9 * static_cast<double>(h.lateness_max_ns)), "in the last second");
+}
+
+// A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
+// step's work it still does anew.
+void free_running(const Theme& theme, const HealthTopic& h) {
+    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_mean)),
+        fresh_verdict(h.fresh_mean));
+    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_least)), "in the last 0.1 s");
+    row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
+}
+
 void law_and_goal(const Theme& theme, DashboardState& state) {
     if (!state.have_levels) return;
     std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
@@ -87,12 +104,11 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         }
         text_small(theme, grade_colour(v.grade), v.words);
         row(theme, "Force rate", rate_text(h.force_rate_hz), rate_verdict(h.force_rate_hz, h.goal_hz));
-        const Verdict late = lateness_verdict(h.lateness_p99_ns, h.period_ns);
-        row(theme, "Lateness p50", duration_text(1e-9 * static_cast<double>(h.lateness_p50_ns)),
-            h.period_ns > 0 ? format("of %s", duration_text(1e-9 * static_cast<double>(h.period_ns)).c_str())
-                            : std::string("free running"));
-        row(theme, "p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)), late);
-        row(theme, "max", duration_text(1e-9 * static_cast<double>(h.lateness_max_ns)), "in the last second");
+        if (h.period_ns > 0) {
+            lateness(theme, h);
+        } else {
+            free_running(theme, h);
+        }
         row(theme, "Overruns", grouped(h.overruns), overrun_verdict(h.overruns, h.cycle));
         const Verdict memory = memory_verdict(h);
         row(theme, "Memory", memory.grade == Grade::good ? "clean" : "unclean", memory);

@@ -45,6 +45,11 @@ Verdict lateness_verdict(std::int64_t p99_ns, std::int64_t period_ns) {
     return {Grade::bad, "late often"};
 }
 
+Verdict fresh_verdict(float mean) {
+    if (mean >= 0.95F) return {Grade::good, "of each step"};
+    return {mean >= 0.5F ? Grade::watch : Grade::bad, "the rest is older sums"};
+}
+
 Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles) {
     if (overruns == 0) return {Grade::good, "none"};
     const double part = static_cast<double>(overruns) / static_cast<double>(cycles > 0 ? cycles : 1);

@@ -24,6 +24,8 @@ struct Verdict {
 // Against the period: a tenth late at the 99th percentile is worth a look, half is bad. Free running: 1 ms
 // counts.
 [[nodiscard]] Verdict lateness_verdict(std::int64_t p99_ns, std::int64_t period_ns);
+// Of a step's work, what is done anew on average: below 95 % is worth a look, below half is bad.
+[[nodiscard]] Verdict fresh_verdict(float mean);
 [[nodiscard]] Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles);
 [[nodiscard]] Verdict state_verdict(RunState state, RunReason reason);
 // Allocations, locks and page faults inside servo cycles: there should be none.
