@@ -90,6 +90,48 @@ TEST(GovernorSummary, windows_in_which_strangers_or_a_slower_core_took_part_are_
     EXPECT_NEAR(r.foreign_share, 0.005, 1e-9);
 }
 
+// Slow for most of its time: only another run can say so.
+TEST(GovernorSummary, a_run_on_a_slow_core_is_measured_by_what_is_fast_in_all_runs) {
+    std::vector<RateSample> slow, fast;
+    RateSample s;
+    for (int i = 0; i <= 200; ++i) {
+        s.t_s = 0.01 * i;
+        slow.push_back(s);
+        s.cycle += i < 60 ? 10 : 7;  // of a core that is never idle
+        s.used_s[0] += 0.01;
+    }
+    for (int i = 0; i <= 200; ++i) {
+        fast.push_back({.t_s = 0.01 * i, .cycle = static_cast<std::uint64_t>(10 * i), .used_s = {0.01 * i}});
+    }
+    const double fast_s = fast_update_s(windows(fast, 0.0, 2.0));
+    EXPECT_NEAR(fast_s, 1e-3, 1e-9);
+    EXPECT_EQ(fast_update_s({}), 0.0);
+    const RateSummary r = summarize(slow, 0.0, 2.0, 1000.0, fast_s);
+    EXPECT_GT(r.disturbed_percent, 70.0);
+    EXPECT_GT(r.rate_worst_quiet_hz, 940.0);
+    EXPECT_EQ(summarize(fast, 0.0, 2.0, 1000.0, fast_s).disturbed_percent, 0.0);
+}
+
+// Half of each update stood for by older sums: twice the rate, nearly, of a core that is no faster.
+TEST(GovernorSummary, an_update_that_did_a_part_of_its_work_is_counted_as_that_part) {
+    std::vector<RateSample> some;
+    RateSample s;
+    const double half = kFixedPart + 0.5 * (1.0 - kFixedPart);
+    for (int i = 0; i <= 100; ++i) {
+        s.t_s = 0.1 * i;
+        some.push_back(s);
+        s.cycle += 200;
+        s.given_up += 100.0;
+        s.used_s[0] += 200 * 0.5e-3 * half;
+    }
+    for (const RateWindow100& w : windows(some, 0.0, 10.0)) {
+        EXPECT_NEAR(w.fresh, 0.5, 1e-9);
+        EXPECT_NEAR(w.update_s, 0.5e-3, 1e-9);
+    }
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).fresh_mean, 0.5, 1e-9);
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).fresh_least, 0.5, 1e-9);
+}
+
 TEST(Summary, is_a_table_of_the_seeds_numbers_and_ours) {
     const std::vector<SummaryRow> rows{{"5", "updates/s", "550", "1173", "a faster core"},
                                        {"7", "x", "1", "2", ""}};

@@ -31,13 +31,13 @@ double foreign_of(const RateSample& a, const RateSample& b) {
 
 // What went by between an instant in [a, b] and c.
 struct Between {
-    double cycles, controller_s, foreign_share;
+    double cycles, controller_s, given_up, foreign_share;
 };
 Between between(const RateSample& a, const RateSample& b, double from_s, const RateSample& c) {
     const double f = (from_s - a.t_s) / std::max(b.t_s - a.t_s, 1e-12);
     const auto since = [f](double at_a, double at_b, double at_c) { return at_c - std::lerp(at_a, at_b, f); };
     Between r{since(static_cast<double>(a.cycle), static_cast<double>(b.cycle), static_cast<double>(c.cycle)),
-              since(a.used_s[0], b.used_s[0], c.used_s[0]), 0.0};
+              since(a.used_s[0], b.used_s[0], c.used_s[0]), since(a.given_up, b.given_up, c.given_up), 0.0};
     double used = 0.0;
     for (std::size_t i = 0; i < kParties; ++i)
         used += std::max(since(a.used_s[i], b.used_s[i], c.used_s[i]), 0.0);
@@ -49,7 +49,7 @@ Between between(const RateSample& a, const RateSample& b, double from_s, const R
 }  // namespace
 
 std::vector<RateWindow100> windows(const std::vector<RateSample>& samples, double from_s, double to_s,
-                                   double window_s) {
+                                   double window_s, double fast_s) {
     const std::vector<RateSample> in = within(samples, from_s, to_s);
     std::vector<RateWindow100> all;
     for (std::size_t a = 0, b = 0; b < in.size(); ++b) {
@@ -57,20 +57,31 @@ std::vector<RateWindow100> windows(const std::vector<RateSample>& samples, doubl
         while (a + 1 < b && in[a + 1].t_s <= window_from_s + 1e-9) ++a;
         if (b == 0 || in[a].t_s > window_from_s + 1e-9) continue;
         const Between w = between(in[a], in[a + 1], window_from_s, in[b]);
-        all.push_back({in[b].t_s, w.cycles / window_s, w.foreign_share,
-                       w.cycles > 0.0 ? w.controller_s / w.cycles : 0.0});
+        RateWindow100 seen{
+            .t_s = in[b].t_s, .rate_hz = w.cycles / window_s, .foreign_share = w.foreign_share};
+        if (w.cycles > 0.0) {
+            seen.fresh = std::clamp(1.0 - w.given_up / w.cycles, 0.0, 1.0);
+            seen.update_s = w.controller_s / (w.cycles * (kFixedPart + (1.0 - kFixedPart) * seen.fresh));
+        }
+        all.push_back(seen);
     }
-    if (all.empty()) return all;
-    std::vector<double> costs;
-    for (const RateWindow100& w : all) costs.push_back(w.update_s);
-    const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
-    std::nth_element(costs.begin(), middle, costs.end());
+    if (fast_s <= 0.0) fast_s = fast_update_s(all);
     for (RateWindow100& w : all)
-        w.disturbed = w.foreign_share > kForeignShareMax || w.update_s > kSlowerMax * *middle;
+        w.disturbed = w.foreign_share > kForeignShareMax || w.update_s > kSlowerMax * fast_s;
     return all;
 }
 
-RateSummary summarize(const std::vector<RateSample>& samples, double from_s, double to_s, double goal_hz) {
+double fast_update_s(const std::vector<RateWindow100>& windows) {
+    if (windows.empty()) return 0.0;
+    std::vector<double> costs;
+    for (const RateWindow100& w : windows) costs.push_back(w.update_s);
+    const auto quarter = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 4);
+    std::nth_element(costs.begin(), quarter, costs.end());
+    return *quarter;
+}
+
+RateSummary summarize(const std::vector<RateSample>& samples, double from_s, double to_s, double goal_hz,
+                      double fast_s) {
     RateSummary r;
     const std::vector<RateSample> in = within(samples, from_s, to_s);
     if (in.size() < 2) return r;
@@ -83,8 +94,11 @@ RateSummary summarize(const std::vector<RateSample>& samples, double from_s, dou
     for (const RateWindow100& w : windows(samples, from_s, to_s, 1.0))
         r.rate_worst_1s_hz = std::min(r.rate_worst_1s_hz, w.rate_hz);
     std::size_t all = 0, quiet = 0, below = 0;
-    for (const RateWindow100& w : windows(samples, from_s, to_s)) {
+    const auto cycles = static_cast<double>(in.back().cycle - in.front().cycle);
+    if (cycles > 0.0) r.fresh_mean = 1.0 - (in.back().given_up - in.front().given_up) / cycles;
+    for (const RateWindow100& w : windows(samples, from_s, to_s, kWindow_s, fast_s)) {
         ++all;
+        r.fresh_least = std::min(r.fresh_least, w.fresh);
         r.rate_worst_100ms_hz = std::min(r.rate_worst_100ms_hz, w.rate_hz);
         if (w.disturbed) continue;
         r.rate_worst_quiet_hz = quiet == 0 ? w.rate_hz : std::min(r.rate_worst_quiet_hz, w.rate_hz);

@@ -59,6 +59,17 @@ std::vector<const Run*> Rates::runs() const {
     return all;
 }
 
+void Rates::tell_disturbed_windows() {
+    std::vector<RateWindow100> ordinary, first;
+    for (const Run* const r : runs())
+        for (const RateWindow100& w : windows(r->samples, r->phase.settle_s, r->phase.end_s()))
+            (r->fifo ? first : ordinary).push_back(w);
+    fast_update_s = launch::fast_update_s(ordinary);
+    fifo_fast_update_s = launch::fast_update_s(first);
+    for (Run* const r : {&off, &low, &high, &on, &on_seed, &fifo_off, &fifo_on})
+        if (!r->samples.empty()) r->summarize_with(fast_s(*r));
+}
+
 std::optional<Rates> measure_rates(const RatesSettings& s) {
     SharedCore bench(s.core);
     Rates r{.settings = s, .core = bench.core()};
@@ -117,6 +128,7 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
                      .phase = fifo};
         if (!bench.go(r.fifo_on)) return std::nullopt;
     }
+    r.tell_disturbed_windows();
     r.mesh = std::make_shared<const ProgressiveMesh>(read_mesh(SceneFile::open(r.scene.path), 0));
     return r;
 }

@@ -44,9 +44,16 @@ struct Rates {
     double reach_hz = 0.0;                          // with the coarsest picture under load
     Run off{}, low{}, high{}, on{}, on_seed{};
     Run fifo_off{}, fifo_on{};  // with FIFO scheduling, where rights allow it; else not run
+    // Of an update on a fast core, from all runs with that scheduling: one that comes first wakes to other
+    // caches.
+    double fast_update_s = 0.0, fifo_fast_update_s = 0.0;
+    [[nodiscard]] double fast_s(const Run& run) const {
+        return run.fifo ? fifo_fast_update_s : fast_update_s;
+    }
     // Triangles of the surface with so many vertices.
     [[nodiscard]] double triangles(double vertices) const;
     [[nodiscard]] std::vector<const Run*> runs() const;
+    void tell_disturbed_windows();  // once all runs are there
 };
 
 // Nothing: a signal asked to end.

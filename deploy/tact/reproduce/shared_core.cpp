@@ -4,6 +4,8 @@
 #include <sched.h>
 #include <time.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -118,6 +120,8 @@ struct SharedCore::Parts {
     }
 
     bool watch(Run& run, Observer& observer, Child& controller, Child& visual) {
+        given_up = 0.0;
+        trace = {.next = observer.region().trace.pushed() + 1, .missed = 0};
         const double on_s = run.phase.load_on_s(), end_s = run.phase.end_s();
         std::optional<ExternalLoad> load;
         const Instant begin = Monotonic::now();
@@ -136,8 +140,10 @@ struct SharedCore::Parts {
         return true;
     }
 
-    static void take(Run& run, const Observer& observer, Instant begin,
-                     const std::array<pid_t, kParties>& party) {
+    void take(Run& run, const Observer& observer, Instant begin, const std::array<pid_t, kParties>& party) {
+        TraceTopic update{};  // some five since the last sample; the ring has room for seconds of them
+        while (observer.region().trace.next(trace, update))
+            given_up += 1.0 - std::min(1.0, update.items / static_cast<double>(scene.points_felt));
         const auto b = newest(observer.region().bodies);  // of every cycle
         RateSample s{.t_s = to_s(Monotonic::now() - begin)};
         for (std::size_t i = 0; i < kParties; ++i) s.used_s[i] = used_s(party[i]);
@@ -150,6 +156,7 @@ struct SharedCore::Parts {
         s.load = party[2] > 0;
         if (const auto mesh = level_of(*l, kMeshPath)) s.level_mesh = static_cast<double>(mesh->level);
         if (const auto force = level_of(*l, kDockingPath)) s.level_force = static_cast<double>(force->level);
+        s.given_up = given_up;
         run.samples.push_back(s);
     }
 
@@ -161,6 +168,8 @@ struct SharedCore::Parts {
     Metronome metronome;
     std::vector<std::pair<std::string, std::string>> environment;
     FileDescriptor log;
+    RingCursor trace;
+    double given_up = 0.0;  // see RateSample
     ExperimentScene scene;
 };
 
@@ -185,16 +194,18 @@ bool SharedCore::go(Run& run) {
     visual.wait(std::chrono::seconds(5));
     controller.stop();
     controller.wait(std::chrono::seconds(5));
-    const Phase& f = run.phase;
-    const double loaded_from = f.load_on_s() + f.resettle_s;
-    run.free = summarize(run.samples, f.settle_s, f.load_on_s(), run.goal_hz);
-    run.loaded = summarize(run.samples, loaded_from, loaded_from + f.loaded_s, run.goal_hz);
-    if (run.goal_hz > 0.0) {
-        run.settled_free_s = settling_s(run.samples, 0.0, f.load_on_s(), run.goal_hz);
-        if (f.loaded_s > 0.0)
-            run.settled_loaded_s = settling_s(run.samples, f.load_on_s(), f.end_s(), run.goal_hz);
-    }
+    run.summarize_with(0.0);
     return went;
+}
+
+void Run::summarize_with(double fast_s) {
+    const double loaded_from = phase.load_on_s() + phase.resettle_s;
+    free = summarize(samples, phase.settle_s, phase.load_on_s(), goal_hz, fast_s);
+    loaded = summarize(samples, loaded_from, loaded_from + phase.loaded_s, goal_hz, fast_s);
+    if (goal_hz <= 0.0) return;
+    settled_free_s = settling_s(samples, 0.0, phase.load_on_s(), goal_hz);
+    if (phase.loaded_s > 0.0)
+        settled_loaded_s = settling_s(samples, phase.load_on_s(), phase.end_s(), goal_hz);
 }
 
 }  // namespace tact::launch

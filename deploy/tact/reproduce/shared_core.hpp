@@ -36,6 +36,9 @@ struct Run {
     RateSummary free{}, loaded{};
     double settled_free_s = -1.0, settled_loaded_s = -1.0;  // see settling_s()
     double load_share = 0.0;                                // of the core, that the external load got
+    // What follows from the samples; fast_s: of an update on a fast core, 0: the run's own
+    // (rate_samples.hpp).
+    void summarize_with(double fast_s);
 };
 
 struct SharedCoreSettings {
