@@ -28,10 +28,10 @@ plot::Curve triangle_curve(const Rates& r, const Run& run, const std::string& na
 }
 
 // Where windows of a run were disturbed, joined where they touch, in the colour of its curve.
-void shade_disturbed(const std::vector<plot::Panel*>& panels, const Run& run, int colour,
+void shade_disturbed(const Rates& r, const std::vector<plot::Panel*>& panels, const Run& run, int colour,
                      double until_s = 1e9) {
     std::vector<plot::Span> spans;
-    for (const RateWindow100& w : windows(run.samples, 0.2, until_s)) {
+    for (const RateWindow100& w : windows(run.samples, 0.2, until_s, kWindow_s, r.fast_s(run))) {
         if (!w.disturbed) continue;
         const double from_s = w.t_s - kWindow_s;
         if (!spans.empty() && from_s <= spans.back().x_to)
@@ -72,9 +72,9 @@ plot::Plot figure_5(const Rates& r) {
     plot::Panel triangles{
         .y_label = kTriangleLabel,
         .curves = {off_triangles, triangle_curve(r, r.low, "B", 1), triangle_curve(r, r.high, "A", 2)}};
-    shade_disturbed({&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
-    shade_disturbed({&rates, &triangles}, r.low, 1);
-    shade_disturbed({&rates, &triangles}, r.high, 2);
+    shade_disturbed(r, {&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
+    shade_disturbed(r, {&rates, &triangles}, r.low, 1);
+    shade_disturbed(r, {&rates, &triangles}, r.high, 2);
     return {.title = "Figure 5: force rate without external load, by goal",
             .remark = remark_of(r),
             .x_label = "time, s",
@@ -90,7 +90,7 @@ plot::Plot with_load(const Rates& r, const std::string& title,
     int colour = 0;
     for (const auto& [run, name] : runs) {
         const int of = run == &r.on_seed ? 3 : colour++;
-        shade_disturbed({&rates, &triangles}, *run, of);
+        shade_disturbed(r, {&rates, &triangles}, *run, of);
         rates.curves.push_back(rate_curve(*run, name, of));
         triangles.curves.push_back(triangle_curve(r, *run, "", of));
     }
