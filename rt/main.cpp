@@ -30,6 +30,7 @@
 #include "ipc/topics/text.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/loop/config.hpp"
+#include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
@@ -251,6 +252,10 @@ int run(const Options& o, const Overrides& overrides) {
     House::catch_signals(mail);
     const std::unique_ptr<HapticDevice> device = driver.make(device_settings_from(config));
     const DeviceInfo info = device->open();
+    std::optional<HeadFeed> head;
+    if (std::unique_ptr<Tracker> tracker = make_tracker(tracker_settings_from(config)))
+        head.emplace(head_settings_from(config), std::move(tracker), region->head);
+    const std::string head_on = head ? head->open().name : "no head tracker";
     ServoSettings settings = settings_from(config, driver);
     const HandParts hand{device.get(), model.get(), info};
 
@@ -268,8 +273,8 @@ int run(const Options& o, const Overrides& overrides) {
     for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
     if (o.check) {
         device->relax();
-        std::printf("tact-rt: scene %s, device %s, configuration: all good\n", o.scene.c_str(),
-                    info.name.c_str());
+        std::printf("tact-rt: scene %s, device %s, %s, configuration: all good\n", o.scene.c_str(),
+                    info.name.c_str(), head_on.c_str());
         return 0;
     }
 
@@ -288,7 +293,9 @@ int run(const Options& o, const Overrides& overrides) {
     if (driver.emulated && config.safety.timing_latches == "real") {
         spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
     }
-    spdlog::info("{} on {}; {}; session {}", o.scene, info.name, schedule_text(platform.flags), o.session);
+    spdlog::info("{} on {}; {}; {}; session {}", o.scene, info.name, head_on, schedule_text(platform.flags),
+                 o.session);
+    if (head) head->start();
 
     House house({.session = o.session,
                  .seconds = o.seconds,

@@ -10,6 +10,7 @@
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/event.hpp"
+#include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
@@ -23,6 +24,7 @@ struct RtRegion {
     static constexpr char kName[] = "tact.rt";
     Latest<ToolTopic> tool[kHandsMax];
     Latest<BodiesTopic> bodies;
+    Latest<HeadTopic> head;
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
     Latest<LevelsTopic> levels;
@@ -31,8 +33,8 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics =
-        TopicList<ToolTopic, BodiesTopic, HealthTopic, LatenessTopic, LevelsTopic, EventTopic, TraceTopic>;
+    using Topics = TopicList<ToolTopic, BodiesTopic, HeadTopic, HealthTopic, LatenessTopic, LevelsTopic,
+                             EventTopic, TraceTopic>;
 };
 
 struct GuiRegion {

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <variant>
 #include <vector>
@@ -18,10 +19,16 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 // One row a key: where it goes and what it may be. The only list of keys there is.
 struct Key {
     std::string name;
-    std::variant<double*, std::int64_t*, bool*, std::string*> target;
+    std::variant<double*, std::int64_t*, bool*, std::string*, std::span<double>> target;
     double low = -kInf, high = kInf;
     std::vector<std::string> words;  // of a text that is one of a few
 };
+
+std::vector<std::string> tracker_names() {
+    std::vector<std::string> names;
+    for (const TrackerEntry& t : tracker_drivers()) names.emplace_back(t.name);
+    return names;
+}
 
 std::vector<Key> keys_of(RtConfig& c) {
     return {
@@ -37,6 +44,16 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e6, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},
+        {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
+        {"tracker.interface", &c.tracker.interface, 0, 0, {}},
+        {"tracker.format", &c.tracker.format, 0, 0, {"classic", "fd"}},
+        {"tracker.sensors", &c.tracker.sensors, 1, kTrackerSensorsMax, {}},
+        {"tracker.head_sensor", &c.tracker.head_sensor, 0, kTrackerSensorsMax - 1, {}},
+        {"tracker.rate_hz", &c.tracker.rate_hz, 10, 2000, {}},
+        {"tracker.latency_ms", &c.tracker.latency_ms, 0, 100, {}},
+        {"tracker.reach_m", &c.tracker.reach_m, 0.1, 3, {}},
+        {"tracker.position_screen_m", c.tracker.position_screen_m, -10, 10, {}},
+        {"tracker.quat_screen_tracker_xyzw", c.tracker.quat_screen_tracker_xyzw, -1, 1, {}},
         {"shape.force_scale", &c.shape.force_scale, 0, 1e6, {}},
         {"shape.damping_n_s_m", &c.shape.damping_n_s_m, 0, 100, {}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
@@ -80,6 +97,13 @@ std::string complaint(const Key& key) {
     if (const auto* d = std::get_if<double*>(&key.target)) return range(**d, number_text(**d));
     if (const auto* i = std::get_if<std::int64_t*>(&key.target)) {
         return range(static_cast<double>(**i), std::to_string(**i));
+    }
+    if (const auto* many = std::get_if<std::span<double>>(&key.target)) {
+        for (const double d : *many) {
+            const std::string bad = range(d, number_text(d));
+            if (!bad.empty()) return bad;
+        }
+        return {};
     }
     if (const auto* s = std::get_if<std::string*>(&key.target)) {
         if (key.words.empty()) return {};
@@ -131,6 +155,14 @@ void set(const Key& key, const toml::node& node, const std::string& where) {
     } else if (const auto* s = std::get_if<std::string*>(&key.target)) {
         if (!node.is_string()) wrong("a text in quotes");
         **s = node.value<std::string>().value_or("");
+    } else if (const auto* many = std::get_if<std::span<double>>(&key.target)) {
+        const toml::array* const list = node.as_array();
+        const std::string wanted = "a list of " + std::to_string(many->size()) + " numbers";
+        if (list == nullptr || list->size() != many->size()) wrong(wanted.c_str());
+        for (std::size_t n = 0; n < many->size(); ++n) {
+            if (!list->get(n)->is_number()) wrong(wanted.c_str());
+            (*many)[n] = list->get(n)->value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+        }
     }
     const std::string bad = complaint(key);
     if (!bad.empty()) {
@@ -158,7 +190,7 @@ void read_config(const std::string& path, RtConfig& config) {
         if (table == nullptr) {
             throw StartupError(at(path, node.source()) + ": " + section_name,
                                "this key belongs to no section",
-                               "put it under [servo], [device], [shape], [safety] or [governor]");
+                               "put it under [servo], [device], [tracker], [shape], [safety] or [governor]");
         }
         for (const auto& [leaf, value] : *table) {
             const std::string name = section_name + "." + std::string(leaf.str());
@@ -180,6 +212,18 @@ void check_config(const RtConfig& config, const std::string& where) {
     for (const Key& key : keys_of(copy)) {
         const std::string bad = complaint(key);
         if (!bad.empty()) throw StartupError(where + ": " + key.name, bad, "choose a value inside the range");
+    }
+    if (config.tracker.head_sensor >= config.tracker.sensors) {
+        throw StartupError(
+            where + ": tracker.head_sensor",
+            "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
+            "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
+    }
+    const double norm = Quat(config.tracker.quat_screen_tracker_xyzw.data()).norm();
+    if (!(std::abs(norm - 1.0) < 0.01)) {
+        throw StartupError(where + ": tracker.quat_screen_tracker_xyzw",
+                           "its length is " + number_text(norm) + ", a rotation has 1",
+                           "give x, y, z, w of a unit quaternion; no rotation is 0, 0, 0, 1");
     }
 }
 
@@ -229,6 +273,26 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.process_log = c.device.process_log;
     d.sim.watchdog = duration_us(c.device.watchdog_us);
     return d;
+}
+
+TrackerSettings tracker_settings_from(const RtConfig& c) {
+    TrackerSettings t;
+    t.driver = c.tracker.driver;
+    t.interface = c.tracker.interface;
+    t.sim.can.fix.format = c.tracker.format == "fd" ? CanFormat::fd : CanFormat::classic;
+    t.sim.can.fix.sensors = static_cast<unsigned>(c.tracker.sensors);
+    t.sim.can.fix.reach_m = c.tracker.reach_m;
+    t.sim.can.rate_hz = c.tracker.rate_hz;
+    t.sim.can.latency = duration_us(c.tracker.latency_ms * 1e3);
+    return t;
+}
+
+HeadSettings head_settings_from(const RtConfig& c) {
+    HeadSettings h;
+    h.sensor = static_cast<unsigned>(c.tracker.head_sensor);
+    h.T_screen_tracker.p_m = Vec3(c.tracker.position_screen_m.data());
+    h.T_screen_tracker.q = Quat(c.tracker.quat_screen_tracker_xyzw.data()).normalized();
+    return h;
 }
 
 }  // namespace tact

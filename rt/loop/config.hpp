@@ -6,10 +6,13 @@
 // Thread   start-up only
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
 #include "hal/registry.hpp"
+#include "hal/tracker_registry.hpp"
+#include "rt/loop/head_feed.hpp"
 #include "rt/loop/servo.hpp"
 
 namespace tact {
@@ -32,6 +35,19 @@ struct RtConfig {
         double watchdog_us = 10000.0;
         std::string process_log;  // of sim-process: file for its changes of state
     } device;
+    struct Tracker {
+        std::string driver = "none";
+        std::string interface = "can0";
+        std::string format = "classic";  // or "fd"
+        std::int64_t sensors = 1;        // on the bus
+        std::int64_t head_sensor = 0;    // which of them is on the glasses
+        double rate_hz = 240.0;          // of each
+        double latency_ms = 4.0;         // from the motion to the frame
+        double reach_m = 1.6;
+        // Registration: the tracker's origin and axes in the frame of the screen.
+        std::array<double, 3> position_screen_m{0.0, 0.0, 0.0};
+        std::array<double, 4> quat_screen_tracker_xyzw{0.0, 0.0, 0.0, 1.0};
+    } tracker;
     struct Shape {
         double force_scale = 1.0;
         double damping_n_s_m = 0.0;
@@ -72,6 +88,8 @@ void check_config(const RtConfig& config, const std::string& where);
 
 [[nodiscard]] ServoSettings settings_from(const RtConfig& config, const DeviceEntry& driver);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
+[[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
+[[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);
 [[nodiscard]] Duration duration_us(double us);
 
 }  // namespace tact

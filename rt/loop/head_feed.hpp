@@ -1,0 +1,54 @@
+// From the head tracker to the head topic: filtered, in the frame of the screen.
+//
+// Thread   "head", ordinary scheduling; it sees every sample of a tracker of up to 500 Hz and publishes each
+// once.
+//          step() may be called instead, by a test.
+// Fails by the topic's state and link. Nothing of it reaches the force.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <thread>
+
+#include "hal/api/tracker.hpp"
+#include "hal/tracker/head_filter.hpp"
+#include "ipc/shm/latest.hpp"
+#include "ipc/topics/head.hpp"
+
+namespace tact {
+
+struct HeadSettings {
+    unsigned sensor = 0;    // on the glasses
+    Pose T_screen_tracker;  // registration
+    HeadFilterSettings filter;
+};
+
+class HeadFeed {
+public:
+    static constexpr Duration kEvery = std::chrono::milliseconds(2);
+
+    // The topic outlives the feed.
+    HeadFeed(const HeadSettings& settings, std::unique_ptr<Tracker> tracker, Latest<HeadTopic>& topic);
+    ~HeadFeed();
+    HeadFeed(const HeadFeed&) = delete;
+    HeadFeed& operator=(const HeadFeed&) = delete;
+
+    TrackerInfo open();  // the tracker; throws StartupError
+    void start();        // the thread
+    void step(Instant now) noexcept;
+
+private:
+    void publish() noexcept;
+
+    HeadSettings settings_;
+    std::unique_ptr<Tracker> tracker_;
+    Latest<HeadTopic>& topic_;
+    HeadFilter filter_;
+    TrackerSample newest_;
+    std::uint64_t filtered_ = 0;  // sequence of the sample that the filter saw last
+    TrackerLink link_ = TrackerLink::closed;
+    std::atomic<bool> leave_{false};
+    std::thread thread_;
+};
+
+}  // namespace tact
