@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hal/api/haptic_device.hpp"
+#include "hal/arm/arm_table.hpp"
 #include "hal/sim/sim_device.hpp"
 
 namespace tact {
@@ -13,6 +14,7 @@ namespace tact {
 struct DeviceSettings {
     std::string driver = "sim";
     SimSettings sim;
+    ArmFigures arm;           // of real arms
     std::string process_log;  // of "sim-process": file for its changes of state; empty: none
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ipc/base/error.hpp"
+#include "rt/loop/config_parts.hpp"
 
 namespace tact {
 
@@ -188,9 +189,13 @@ void read_config(const std::string& path, RtConfig& config) {
         const std::string section_name(section.str());
         const toml::table* table = node.as_table();
         if (table == nullptr) {
-            throw StartupError(at(path, node.source()) + ": " + section_name,
-                               "this key belongs to no section",
-                               "put it under [servo], [device], [tracker], [shape], [safety] or [governor]");
+            throw StartupError(
+                at(path, node.source()) + ": " + section_name, "this key belongs to no section",
+                "put it under [servo], [device], [arm], [tracker], [shape], [safety] or [governor]");
+        }
+        if (section_name == "arm") {
+            read_arm_section(*table, path, config.arm);
+            continue;
         }
         for (const auto& [leaf, value] : *table) {
             const std::string name = section_name + "." + std::string(leaf.str());
@@ -271,6 +276,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.sim.hand.script = c.device.hand;
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
     d.process_log = c.device.process_log;
+    d.arm = c.arm;
     d.sim.watchdog = duration_us(c.device.watchdog_us);
     return d;
 }

@@ -48,6 +48,7 @@ struct RtConfig {
         std::array<double, 3> position_screen_m{0.0, 0.0, 0.0};
         std::array<double, 4> quat_screen_tracker_xyzw{0.0, 0.0, 0.0, 1.0};
     } tracker;
+    ArmFigures arm = arm_figures("premium-1.5");  // of real devices; [arm] is read by config_arm.cpp
     struct Shape {
         double force_scale = 1.0;
         double damping_n_s_m = 0.0;
