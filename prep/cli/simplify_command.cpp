@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ipc/base/error.hpp"
 #include "prep/cli/console.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 struct Options {
     std::string in, out;
     SimplifySettings settings;
-    std::uint32_t relax_rounds = 1;
+    std::optional<std::uint32_t> rounds;
     bool json = false;
 };
 
@@ -42,7 +43,7 @@ void simplify_file(const Options& o) {
     const double read_s = seconds_since(begin);
     const auto start = std::chrono::steady_clock::now();
     Simplified result = simplify(mesh, o.settings, progress);
-    relax(mesh, result, o.relax_rounds, progress);
+    relax(mesh, result, o.rounds.value_or(relax_rounds(mesh, result)), progress);
     const double simplify_s = seconds_since(start);
     report(progress, 0.99, "writing the mesh");
     write_ply(o.out, result.mesh);
@@ -95,10 +96,11 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
         ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
     command
-        ->add_option("--relax", o->relax_rounds,
-                     "rounds of moving what is left nearer to the original; 0: none")
-        ->check(CLI::Range(0U, 20U))
-        ->capture_default_str();
+        ->add_option(
+            "--relax", o->rounds,
+            "rounds of moving what is left nearer to the original; 0: none (default: 1, and up to 40 "
+            "where a mesh with borders has few vertices)")
+        ->check(CLI::Range(0U, 100U));
     command->add_flag("--json", o->json, "print what was done as JSON");
     return [o] { simplify_file(*o); };
 }

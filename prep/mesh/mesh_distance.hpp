@@ -19,7 +19,7 @@ struct MeshDistance {
 
 class MeshGrid {
 public:
-    explicit MeshGrid(const TriangleMesh& mesh) : mesh_(mesh) {
+    explicit MeshGrid(const TriangleMesh& mesh, double cells_most = 256.0) : mesh_(mesh) {
         Eigen::Vector3d high = Eigen::Vector3d::Constant(-1e300);
         low_ = -high;
         for (std::uint32_t v = 0; v < mesh.vertices(); ++v) {
@@ -28,7 +28,7 @@ public:
         }
         diagonal_m_ = (high - low_).norm();
         // A surface fills about n² of n³ cells; this leaves a few triangles in each of those.
-        const double cells = std::clamp(std::sqrt(static_cast<double>(mesh.triangles())), 4.0, 256.0);
+        const double cells = std::clamp(std::sqrt(static_cast<double>(mesh.triangles())), 4.0, cells_most);
         cell_ = (high - low_).maxCoeff() / cells;
         for (int i = 0; i < 3; ++i) size_[i] = static_cast<int>((high - low_)[i] / cell_) + 1;
         list_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);

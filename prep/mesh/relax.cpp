@@ -6,13 +6,18 @@
 //
 // with the sample's normal n_s, its barycentric place b and offset e_s. Border edges are sampled too and pull
 // on the border, across their own direction.
+//
+// Nothing here holds a vertex that slides along the surface, and in many rounds that is where the gain is. So
+// that none slides off it, each stays as near to the original as it was, or as the typical offset.
 #include "prep/mesh/relax.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/mesh_stars.hpp"
 #include "prep/mesh/nearest_point.hpp"
 
@@ -23,8 +28,13 @@ constexpr std::uint32_t kNone = UINT32_MAX;
 constexpr std::uint32_t kSamplesPerVertex = 20;
 constexpr int kSolverSteps = 12;
 constexpr double kStay = 0.02;  // mu
-constexpr double kBorderWeight = 4.0;
-constexpr double kTurnCosine = 0.5;  // as in contractor_checks.cpp
+constexpr double kBorderWeight = 6.0;
+constexpr double kStray = 16.0;            // of the mean of the squared offsets
+constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees in all rounds
+constexpr std::uint32_t kRoundsMost = 40;  // by default
+constexpr std::size_t kPullsMost = 60000;
+constexpr std::size_t kHeldMost = 200000;  // triangles of the original
+constexpr double kTurnCosine = 0.5;        // as in contractor_checks.cpp
 constexpr double kFoldCosine = -0.9;
 
 using Vec = Eigen::Vector3d;
@@ -46,6 +56,7 @@ struct Row {
 class Relaxer {
 public:
     Relaxer(const TriangleMesh& original, Simplified& simplified);
+    void hold();
     void round();
     void store();
 
@@ -59,6 +70,11 @@ private:
                 original_.position_m[3 * std::size_t{v} + 2]};
     }
     std::vector<Vec> solve();
+    void limit_stray();
+    [[nodiscard]] double from_border(const Vec& p) const;
+    [[nodiscard]] double from_original(std::uint32_t v, const Vec& p) const {
+        return star_.border()[v] != kNone ? from_border(p) : grid_->squared(p);
+    }
     bool move(std::uint32_t v, const Vec& to);
     [[nodiscard]] Vec double_area(const Corners& c) const {
         return (at_[c[1]] - at_[c[0]]).cross(at_[c[2]] - at_[c[0]]);
@@ -69,11 +85,15 @@ private:
     std::vector<std::uint32_t> went_;  // original vertex -> vertex of the simplified mesh
     std::vector<Vec> at_;
     std::vector<Corners> triangle_;
+    std::vector<Vec> start_;  // normals before the first round
     MeshStars star_;
     std::vector<Sample> sample_;
     std::vector<Row> row_;
-    std::vector<Vec>
-        facing_;  // of each triangle: the sum of the normals of the samples that are nearest to it
+    // The sum of the normals of the samples that are nearest to a triangle, and nearest to a vertex.
+    std::vector<Vec> facing_, facing_at_;
+    std::vector<std::array<Vec, 2>> border_;  // edges of the original
+    std::optional<MeshGrid> grid_;            // of the original, where vertices are held to it
+    std::vector<double> stray_;               // of each vertex: how far from it, squared
 };
 
 std::vector<Corners> corners(const TriangleMesh& mesh) {
@@ -96,9 +116,13 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
         const float* p = &simplified.mesh.position_m[3 * v];
         at_.emplace_back(p[0], p[1], p[2]);
     }
+    for (const Corners& c : triangle_) start_.push_back(double_area(c));
     take_samples();
     take_border_samples();
 }
+
+// Coarse, as the queries are few.
+void Relaxer::hold() { grid_.emplace(original_, 64.0); }
 
 // Centres of triangles, weighted by area; of every so many where there are more than are worth their time.
 void Relaxer::take_samples() {
@@ -123,9 +147,10 @@ void Relaxer::take_border_samples() {
         if (w == kNone || went_[v] == kNone) continue;
         const Vec along = original(w) - original(v);
         const double length = along.norm();
-        if (length > 0.0)
-            sample_.push_back(
-                {original(v) + 0.5 * along, along / length, kBorderWeight * length * length, went_[v], true});
+        if (!(length > 0.0)) continue;
+        border_.push_back({original(v), original(w)});
+        sample_.push_back(
+            {original(v) + 0.5 * along, along / length, kBorderWeight * length * length, went_[v], true});
     }
 }
 
@@ -159,6 +184,7 @@ void Relaxer::pull(Sample& sample) {
     sample.near = c[largest];
     const Vec n = double_area(c);
     facing_[triangle] += sample.weight * sample.normal;
+    facing_at_[sample.near] += sample.weight * sample.normal;
     if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a part that is gone
     const Vec foot = best.part[0] * at_[c[0]] + best.part[1] * at_[c[1]] + best.part[2] * at_[c[2]];
     row_.push_back({c, best.part, sample.normal, sample.weight, sample.normal.dot(sample.at - foot)});
@@ -240,9 +266,33 @@ std::vector<Vec> Relaxer::solve() {
     return x;
 }
 
+// Squared.
+double Relaxer::from_border(const Vec& p) const {
+    double best = 1e300;
+    for (const auto& [a, b] : border_) {
+        const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+        best = std::min(best, (p - a - s * (b - a)).squaredNorm());
+    }
+    return best;
+}
+
+void Relaxer::limit_stray() {
+    double surface = 0.0, border = 0.0, surface_weight = 0.0, border_weight = 0.0;
+    for (const Row& row : row_) {
+        const bool on_border = row.corner[1] == row.corner[2];  // two rows a sample
+        (on_border ? border : surface) += row.weight * row.offset * row.offset;
+        (on_border ? border_weight : surface_weight) += on_border ? 0.5 * row.weight : row.weight;
+    }
+    surface *= kStray / std::max(surface_weight, 1e-300);
+    border *= kStray / std::max(border_weight, 1e-300);
+    for (std::uint32_t v = 0; v < at_.size(); ++v)
+        stray_.push_back(std::max(from_original(v, at_[v]), star_.border()[v] != kNone ? border : surface));
+}
+
 // False, and nothing done, where a triangle would turn over or two would come to lie on each other.
 bool Relaxer::move(std::uint32_t v, const Vec& to) {
     const Vec from = at_[v];
+    if (grid_ && from_original(v, to) > stray_[v]) return false;
     std::vector<std::pair<Vec, std::uint32_t>> before;
     for (const std::uint32_t t : star_.triangles(v)) before.push_back({double_area(triangle_[t]), t});
     at_[v] = to;
@@ -254,7 +304,11 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
         const Vec now = double_area(triangle_[t]);
         if (!(was.dot(now) > kTurnCosine * was.norm() * now.norm()) || now.norm() < 0.1 * was.norm())
             return refuse();
-        if (now.dot(facing_[t]) < 0.0 && was.dot(facing_[t]) >= 0.0) return refuse();
+        if (now.dot(start_[t]) < kStartCosine * now.norm() * start_[t].norm()) return refuse();
+        const Corners& c = triangle_[t];
+        Vec facing = facing_[t];
+        if (facing.isZero(0.0)) facing = facing_at_[c[0]] + facing_at_[c[1]] + facing_at_[c[2]];
+        if (now.dot(facing) < 0.0 && was.dot(facing) >= 0.0) return refuse();
     }
     for (const auto& [was, t] : before) {
         const Vec now = double_area(triangle_[t]);
@@ -272,12 +326,14 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
 void Relaxer::round() {
     row_.clear();
     facing_.assign(triangle_.size(), Vec::Zero());
+    facing_at_.assign(at_.size(), Vec::Zero());
     for (Sample& sample : sample_) {
         if (sample.border)
             pull_border(sample);
         else
             pull(sample);
     }
+    if (grid_ && stray_.empty()) limit_stray();
     const std::vector<Vec> shift = solve();
     for (std::uint32_t v = 0; v < at_.size(); ++v) {
         if (shift[v].allFinite() && !move(v, at_[v] + shift[v])) move(v, at_[v] + 0.3 * shift[v]);
@@ -293,10 +349,22 @@ void Relaxer::store() {
 
 }  // namespace
 
+std::uint32_t relax_rounds(const TriangleMesh& original, const Simplified& simplified) {
+    const MeshStars star(simplified.mesh);
+    const auto border = static_cast<std::size_t>(
+        std::count_if(star.border().begin(), star.border().end(), [](auto n) { return n != kNone; }));
+    if (border == 0 || original.triangles() > kHeldMost) return 1;
+    const std::size_t pulls =
+        std::min(original.triangles(), kSamplesPerVertex * simplified.mesh.vertices()) + border * border / 16;
+    return static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(kPullsMost / std::max<std::size_t>(pulls, 1), 1, kRoundsMost));
+}
+
 void relax(const TriangleMesh& original, Simplified& simplified, std::uint32_t rounds,
            const Progress& progress) {
     if (rounds == 0 || simplified.mesh.triangles() == 0) return;
     Relaxer relaxer(original, simplified);
+    if (rounds > 1 && original.triangles() <= kHeldMost) relaxer.hold();
     for (std::uint32_t i = 0; i < rounds; ++i) {
         report(progress, static_cast<double>(i) / rounds, "simplify: moving vertices to the original");
         relaxer.round();
