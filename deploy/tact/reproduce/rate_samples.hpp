@@ -35,7 +35,7 @@ struct RateSample {
 constexpr double kWindow_s = 0.1;
 constexpr double kForeignShareMax = 0.03, kSlowerMax = 1.05;
 constexpr double kLowestOfGoal = 0.95;
-// Of an update's processor time, what does not depend on the points that it sums anew: 12 of 290 us here.
+// Of an update's processor time, what does not depend on the points that it sums anew; an estimate.
 constexpr double kFixedPart = 0.04;
 
 struct RateWindow100 {
