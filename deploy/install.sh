@@ -54,11 +54,16 @@ tact_install_packages() {
     fi
 }
 
-# tact_build PRESET [TARGET...]: configures when needed and builds. Says nothing when there is nothing to do.
+# tact_build PRESET [TARGET...]: configures when needed and builds. Says nothing when there is nothing to do. A
+# compiler cache is used where one is installed; what it holds of other checkouts fits this one too.
 tact_build() {
     local preset=$1 log=build/configure-$1.log
     shift
     mkdir -p build
+    if command -v ccache >/dev/null && [ -z "${CMAKE_CXX_COMPILER_LAUNCHER+given}" ]; then
+        export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+        export CCACHE_SLOPPINESS=pch_defines,time_macros
+    fi
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         cat "$log" >&2
         echo "configure $preset: failed (its words are above)" >&2
