@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ipc/base/error.hpp"
+#include "tests/support/says.hpp"
 #include "tests/unit/hal_arm_samples.hpp"
 
 namespace tact {
@@ -19,13 +20,6 @@ std::string error_of(const ArmFigures& f) {
         return e.what();
     }
     return {};
-}
-
-bool says(const std::string& text, std::initializer_list<const char*> parts) {
-    for (const char* part : parts) {
-        if (text.find(part) == std::string::npos) return false;
-    }
-    return true;
 }
 
 TEST(ArmTable, a_premium_15_needs_no_configuration) {

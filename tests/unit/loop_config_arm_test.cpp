@@ -8,6 +8,7 @@
 #include "hal/arm/arm_parameters.hpp"
 #include "ipc/base/error.hpp"
 #include "rt/loop/config.hpp"
+#include "tests/support/says.hpp"
 
 namespace tact {
 namespace {
@@ -34,13 +35,6 @@ std::string error_of(const std::string& text) {
         return e.what();
     }
     return {};
-}
-
-bool says(const std::string& text, std::initializer_list<const char*> parts) {
-    for (const char* part : parts) {
-        if (text.find(part) == std::string::npos) return false;
-    }
-    return true;
 }
 
 TEST(ConfigArm, what_the_file_says_of_the_arm_reaches_the_device) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "ipc/base/error.hpp"
+#include "tests/support/says.hpp"
 
 namespace tact {
 namespace {
@@ -37,13 +38,6 @@ std::string error_of(const std::string& text) {
         return e.what();
     }
     return {};
-}
-
-bool says(const std::string& text, std::initializer_list<const char*> parts) {
-    for (const char* part : parts) {
-        if (text.find(part) == std::string::npos) return false;
-    }
-    return true;
 }
 
 TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
