@@ -4,13 +4,12 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "ipc/base/error.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/target.hpp"
 #include "prep/mesh/mesh_folds.hpp"
-#include "prep/mesh/relax.hpp"
+#include "prep/mesh/simplify_to_keep.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
 #include "prep/mesh_file/write_ply.hpp"
 
@@ -21,8 +20,7 @@ namespace fs = std::filesystem;
 
 struct Options {
     std::string in, out;
-    SimplifySettings settings;
-    std::optional<std::uint32_t> rounds;
+    KeepSettings settings;
     bool json = false;
 };
 
@@ -42,8 +40,8 @@ void simplify_file(const Options& o) {
                            "export it again");
     const double read_s = seconds_since(begin);
     const auto start = std::chrono::steady_clock::now();
-    Simplified result = simplify(mesh, o.settings, progress);
-    relax(mesh, result, o.rounds.value_or(relax_rounds(mesh, result)), progress);
+    const Kept kept = simplify_to_keep(mesh, o.settings, progress);
+    const Simplified& result = kept.simplified;
     const double simplify_s = seconds_since(start);
     report(progress, 0.99, "writing the mesh");
     write_ply(o.out, result.mesh);
@@ -58,6 +56,7 @@ void simplify_file(const Options& o) {
                                           {"vertices", result.mesh.vertices()},
                                           {"triangles", result.mesh.triangles()},
                                           {"folds", folds},
+                                          {"boundary_weight", kept.boundary_weight},
                                           {"error", error},
                                           {"seconds", simplify_s},
                                           {"read_seconds", read_s}};
@@ -85,10 +84,11 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
         ->required()
         ->check(CLI::Range(1U, 1U << 28U));
     command
-        ->add_option("--boundary-weight", o->settings.boundary_weight,
-                     "f: how much borders count against the surface (the published method has 1000)")
-        ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
+        ->add_option(
+            "--boundary-weight", o->settings.boundary_weight,
+            "f: how much borders count against the surface (the published method has 1000; default: 100, and "
+            "on open meshes of up to 20000 triangles the best of four that are tried)")
+        ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option(
             "--pair-distance", o->settings.pair_distance,
@@ -97,7 +97,7 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
         ->capture_default_str();
     command
         ->add_option(
-            "--relax", o->rounds,
+            "--relax", o->settings.relax_rounds,
             "rounds of moving what is left nearer to the original; 0: none (default: 1, and up to 40 "
             "where a mesh with borders has few vertices)")
         ->check(CLI::Range(0U, 100U));

@@ -29,7 +29,8 @@ public:
         diagonal_m_ = (high - low_).norm();
         // A surface fills about n² of n³ cells; this leaves a few triangles in each of those.
         const double cells = std::clamp(std::sqrt(static_cast<double>(mesh.triangles())), 4.0, cells_most);
-        cell_ = (high - low_).maxCoeff() / cells;
+        const double widest = (high - low_).maxCoeff();
+        if (widest > 0.0) cell_ = widest / cells;  // else all of it is one point
         for (int i = 0; i < 3; ++i) size_[i] = static_cast<int>((high - low_)[i] / cell_) + 1;
         list_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
         for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {

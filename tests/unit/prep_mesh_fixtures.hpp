@@ -104,4 +104,24 @@ inline Topology topology(const TriangleMesh& mesh) {
     return result;
 }
 
+// A sheet of n x n squares over [0, 1]² with height f(x, y).
+template <class Height>
+TriangleMesh sheet(std::uint32_t n, Height&& f) {
+    TriangleMesh mesh;
+    for (std::uint32_t y = 0; y <= n; ++y) {
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            const float u = static_cast<float>(x) / static_cast<float>(n);
+            const float v = static_cast<float>(y) / static_cast<float>(n);
+            mesh.position_m.insert(mesh.position_m.end(), {u, v, f(u, v)});
+        }
+    }
+    for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+            mesh.triangle.insert(mesh.triangle.end(), {a, b, d, a, d, c});
+        }
+    }
+    return mesh;
+}
+
 }  // namespace tact::test
