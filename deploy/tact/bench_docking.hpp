@@ -3,6 +3,8 @@
 // Method   the servo's force model over a map of 128^3 voxels of 2 A made in memory and 100 000 atoms at the
 //          density of protein; each step the body moves a little, as in a hand. Numbers are of whole steps,
 //          on one core, with the caches as the steps leave them.
+// Quietest the least median of twenty stretches of steps: what the code costs where other users of the
+//          machine slow the core for most of the time
 // Takes    about three seconds, one of them to make the codebook stand-in and the map.
 #pragma once
 
@@ -17,6 +19,7 @@ struct DockingBench {
     double force_us_n200_p99 = 0.0;
     double force_us_atoms100k_p50 = 0.0;  // all atoms
     double force_us_atoms100k_p99 = 0.0;
+    double force_us_n200_quietest = 0.0, force_us_atoms100k_quietest = 0.0;  // see Quietest
     double ns_per_point_n200 = 0.0, ns_per_point_atoms = 0.0;
     std::uint64_t map_bytes = 0;  // of coefficients in memory
 };

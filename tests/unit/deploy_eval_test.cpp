@@ -169,6 +169,8 @@ TEST(BenchDocking, MeasuresSomething) {
     EXPECT_GT(bench.force_us_n200_p50, 0.0);
     EXPECT_GT(bench.force_us_atoms100k_p50, bench.force_us_n200_p50);
     EXPECT_GE(bench.force_us_atoms100k_p99, bench.force_us_atoms100k_p50);
+    EXPECT_LE(bench.force_us_atoms100k_quietest, bench.force_us_atoms100k_p50);
+    EXPECT_GT(bench.force_us_n200_quietest, 0.0);
     EXPECT_FALSE(bench.kernel.empty());
     EXPECT_GT(bench.map_bytes, 128U * 128U * 128U * 4U);
 }
