@@ -1,0 +1,101 @@
+// The safety lines, as the servo loop sees them: what permits a force from outside, and what the controller
+// shows to the outside. The hardware chain cuts the power without the PC; the PC observes, and agrees.
+//
+// In       emergency stop, two channels normally closed; dead-man pedal; whether the amplifier is on
+// Out      enable of the amplifier; watchdog, toggled only while the servo really ticks; lamp
+// Stop     at the first edge, and for whatever cannot be read: an error, a missing line, a broken wire.
+// Contacts
+//          that are closed again only end the stop after a time without a bounce, and then a person still has
+//          to re-arm
+// Thread   open() at start-up; read() and write() from the servo thread alone, they only touch memory; drop()
+//          from any thread; a pump owns the adapter
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+// Bits of LinesSample::inputs. A line that is not fitted reads as it has to.
+enum LineInput : std::uint8_t {
+    kLineStopA = 1U << 0,  // closed
+    kLineStopB = 1U << 1,
+    kLineDeadMan = 1U << 2,    // pressed
+    kLineAmplifier = 1U << 3,  // the amplifier says that it is on
+};
+// Bits of LinesSample::outputs.
+enum LineOutput : std::uint8_t {
+    kLineEnable = 1U << 0,
+    kLineWatchdog = 1U << 1,
+    kLineLamp = 1U << 2,
+};
+
+enum class LinesState : std::uint8_t {
+    stopped,    // something stops, or did so a moment ago
+    waiting,    // all is well; a person has to re-arm
+    permitted,  // the enable line follows the command
+};
+
+enum class LinesCause : std::uint8_t {
+    none,
+    lost,  // adapter, line or reading
+    channels_disagree,
+    emergency_stop,
+    amplifier,  // its read-back does not follow the enable line
+    dead_man,
+    dropped,  // by drop()
+};
+
+enum class Lamp : std::uint8_t { dark, lit, blinking };
+
+struct LinesInfo {
+    std::string name;
+    std::uint8_t inputs = 0;   // LineInput that are fitted
+    std::uint8_t outputs = 0;  // LineOutput that are fitted
+};
+
+struct LinesSample {
+    Instant taken_at{};
+    std::uint64_t sequence = 0;  // rises with every look
+    std::uint64_t trips = 0;     // times that it went to stopped: none is missed by who looks seldom
+    LinesState state = LinesState::stopped;
+    LinesCause cause = LinesCause::lost;  // present or last, until re-armed; the gravest of several
+    std::uint8_t inputs = 0;              // LineInput as read
+    std::uint8_t outputs = 0;             // LineOutput as driven
+};
+
+struct LinesCommand {
+    std::uint64_t heartbeat = 0;  // rises with every servo cycle; the watchdog line toggles when it has moved
+    std::uint64_t rearm = 0;      // rises when a person re-arms: waiting becomes permitted
+    bool enable = false;
+    Lamp lamp = Lamp::dark;
+};
+
+// Counters since open(); they only rise.
+struct LinesHealth {
+    bool up = false;  // the adapter is there
+    std::uint64_t looks = 0;
+    std::uint64_t errors = 0;  // of reading, of writing
+    std::uint64_t trips = 0;
+    std::uint64_t drops = 0;    // asked for by drop()
+    std::uint64_t toggles = 0;  // of the watchdog line
+    std::uint64_t losses = 0;   // times that the adapter went
+    std::uint64_t reopened = 0;
+};
+
+class Lines {
+public:
+    virtual ~Lines() = default;
+    virtual LinesInfo open() = 0;  // start-up; throws StartupError naming line, chip and mend
+    // The newest look; its age is now - taken_at. False, and the sample as it was, before the first.
+    virtual bool read(LinesSample& newest, Instant now) noexcept TACT_RT = 0;
+    virtual void write(const LinesCommand& command, Instant now) noexcept TACT_RT = 0;
+    // The enable line goes low within a look and stays so until re-armed.
+    virtual void drop() noexcept TACT_RT = 0;
+    [[nodiscard]] virtual LinesHealth health() const noexcept TACT_RT = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,57 @@
+// The safety lines on a GPIO chip: which line of which chip is what.
+//
+// Identity  the device node that was opened is looked at before each reading: an adapter that was pulled out
+// may
+//           still say yes to every write, and another chip may get its number
+// Fails by  StartupError at open(), naming line, chip and mend; by a reading that is not good afterwards
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/io/gpio_access.hpp"
+#include "hal/io/line_port.hpp"
+
+namespace tact {
+
+// Each line is a number or a name of the chip's, with a '!' before it where low is active; empty: not fitted.
+struct GpioPortSettings {
+    std::string chip;  // label, name or path
+    std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier;
+    std::string enable, watchdog, lamp;
+    GpioBias bias = GpioBias::as_is;  // of the inputs
+    bool edges = false;               // the chip has interrupts
+};
+
+class GpioPort final : public LinePort {
+public:
+    explicit GpioPort(GpioPortSettings settings);
+
+    LinePortInfo open() override;
+    bool reopen() noexcept override;
+    LineReading read() noexcept override;
+    bool write(std::uint8_t outputs) noexcept override;
+    void wait(Duration longest) noexcept override;
+
+private:
+    void take();
+    [[nodiscard]] bool there() const noexcept;
+    [[nodiscard]] std::uint8_t inputs_of(std::uint32_t bits) const noexcept;
+
+    GpioPortSettings settings_;
+    std::vector<GpioLine> lines_;
+    std::vector<std::uint8_t> meaning_;  // LineInput or LineOutput of each
+    GpioChip chip_;
+    dev_t device_ = 0;
+    ino_t node_ = 0;
+    std::unique_ptr<GpioAccess> access_;
+    std::uint32_t touched_ = 0;
+    std::optional<std::uint8_t> written_;
+    bool failed_ = false;  // in wait()
+};
+
+}  // namespace tact

@@ -1,0 +1,50 @@
+#include "hal/io/pumped_lines.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tact {
+
+PumpedLines::PumpedLines(const LineLogicSettings& settings, std::unique_ptr<LinePort> port, Duration every)
+    : port_(std::move(port)), worker_(settings, *port_), every_(every) {}
+
+PumpedLines::~PumpedLines() {
+    leave_.store(true, std::memory_order_relaxed);
+    if (thread_.joinable()) thread_.join();
+}
+
+LinesInfo PumpedLines::open() {
+    if (thread_.joinable()) return info_;
+    info_ = worker_.open();
+    // The new thread inherits a mask that lets no signal in: they belong to main.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] { live(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    return info_;
+}
+
+void PumpedLines::live() noexcept {
+    pthread_setname_np(pthread_self(), "lines");
+    sched_param param{};
+    param.sched_priority = kPriority;
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+    while (!leave_.load(std::memory_order_relaxed)) {
+        const Instant begin = Monotonic::now();
+        worker_.round(begin);
+        // A slow adapter is asked again at once, but never without a pause for whoever is below.
+        port_->wait(std::max(begin + every_ - Monotonic::now(), Duration(std::chrono::microseconds(100))));
+    }
+    worker_.end();
+}
+
+bool PumpedLines::read(LinesSample& newest, Instant /*now*/) noexcept { return worker_.read(newest); }
+
+void PumpedLines::write(const LinesCommand& command, Instant /*now*/) noexcept { worker_.write(command); }
+
+}  // namespace tact
