@@ -37,7 +37,8 @@ Structure blob(const Vec3& radii_m, std::uint64_t seed) {
     return s;
 }
 
-const Structure kBall = blob(Vec3(15.0, 15.0, 15.0) * kA, 1), kEgg = blob(Vec3(22.0, 12.0, 9.0) * kA, 2);
+constexpr double kBallRadiusM = 15.0 * kA;
+const Structure kBall = blob(Vec3::Constant(kBallRadiusM), 1), kEgg = blob(Vec3(22.0, 12.0, 9.0) * kA, 2);
 const ClashField& ball() {
     static const ClashField field(kBall);
     return field;
@@ -109,8 +110,10 @@ RC_GTEST_PROP(Clash, PushesApart, ()) {
     Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashResult near = clash_force(c.active, {c.others.data(), 1}, kScale, kGains);
     const Vec3 away = c.active.T_model_body.p_m - c.others[0].T_model_body.p_m;
-    // Both are convex, so going straight away from the other's middle is uphill nowhere.
-    RC_ASSERT(near.wrench_world.force_n.dot(away.normalized()) > -0.02);
+    // Both are convex, so going straight away from the other's middle is uphill nowhere, as long as the
+    // overlap does not reach that middle: beyond it the way out is another one.
+    if (near.depth_model_m < kBallRadiusM)
+        RC_ASSERT(near.wrench_world.force_n.dot(away.normalized()) > -1e-6);
 }
 
 TEST(Clash, AHandThatGoesInCirclesGainsNoEnergy) {
