@@ -59,11 +59,12 @@ EmulatedBoard::EmulatedBoard(const BoardSettings& settings)
     : settings_(settings),
       arm_(arm_parameters(settings.arm)),
       max_ma_(limits_ma(arm_.parameters())),
-      amplifier_(settings.boot, max_ma_),
+      amplifier_(settings.boot, max_ma_, settings.watchdog_ms * 1000U),
       hand_(settings.hand, arm_.parameters().workspace_half_m),
       zero_(settings.power_on),
       boot_(settings.boot) {
     info_.rate_hz = settings.rate_hz;
+    info_.watchdog_ms = settings.watchdog_ms;
     info_.serial = text(settings.serial);
     info_.model = text(settings.model);
     info_.current_ma_max = max_ma_;
@@ -235,7 +236,7 @@ bool EmulatedBoard::next_packet(std::array<std::byte, 64>& packet, std::size_t& 
 
 void EmulatedBoard::restart(std::uint32_t now_us) noexcept {
     ++boot_;
-    amplifier_ = phantom::Amplifier(boot_, max_ma_);
+    amplifier_ = phantom::Amplifier(boot_, max_ma_, settings_.watchdog_ms * 1000U);
     for (std::size_t i = 0; i < 6; ++i) zero_[i] = settings_.power_on[i] + 101 * (boot_ - settings_.boot);
     spoken_ = false;
     sequence_ = 0;

@@ -27,7 +27,7 @@ struct BoardSettings {
     ArmFigures arm = arm_figures("premium-1.5");
     SimHandSettings hand;
     std::string serial = "EMU-1", model = "Tact emulator";  // printable, at most 16 characters
-    std::uint16_t rate_hz = 1000;
+    std::uint16_t rate_hz = 1000, watchdog_ms = 10;
     std::uint16_t boot = 1;
     Counts6 power_on{1200, -340, 77, 15, -9, 4};  // what the encoders show in the calibration pose
     bool ritual = true;

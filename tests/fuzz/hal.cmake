@@ -1,3 +1,4 @@
 # Fuzz targets of hal.
 tact_fuzz(tracker_fuzz SOURCES fuzz/tracker_fuzz.cpp USES base tracker)
 tact_fuzz(phantom_fuzz SOURCES fuzz/phantom_fuzz.cpp USES phantom)
+tact_fuzz(emu_script_fuzz SOURCES fuzz/emu_script_fuzz.cpp USES base emu_script)

@@ -39,7 +39,7 @@ WRAPPED = [
     (r"png\.h|pngconf", ["gui", "deploy/tact/plot_canvas", "tests"]),
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
-    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "tests"]),
+    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz)\s*\(([^()]*)\)", re.S)

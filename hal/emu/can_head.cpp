@@ -1,0 +1,148 @@
+#include "hal/emu/can_head.hpp"
+
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "hal/tracker/socket_can.hpp"
+
+namespace tact::emu {
+
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(20);
+
+ifreq request(const std::string& interface) {
+    ifreq r{};
+    std::copy_n(interface.begin(), std::min(interface.size(), sizeof r.ifr_name - 1), r.ifr_name);
+    return r;
+}
+
+int open_socket(const std::string& interface) {
+    const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
+    if (fd < 0) refuse_interface(CanStep::socket, interface, errno);
+    const auto refuse = [&](CanStep step) {
+        const int error = errno;
+        ::close(fd);
+        refuse_interface(step, interface, error);
+    };
+    ifreq r = request(interface);
+    if (interface.empty() || interface.size() >= sizeof r.ifr_name || ioctl(fd, SIOCGIFINDEX, &r) != 0)
+        refuse(CanStep::interface);
+    const int on = 1;
+    // It only sends: nothing is to queue up.
+    if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0 ||
+        setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0)
+        refuse(CanStep::option);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = r.ifr_ifindex;
+    if (bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) refuse(CanStep::bind);
+    return fd;
+}
+
+}  // namespace
+
+CanHead::CanHead(const SimHeadSettings& settings, std::string interface, Report& report)
+    : interface_(std::move(interface)),
+      report_(report),
+      bus_(settings, clock_),
+      fd_(open_socket(interface_)) {}
+
+CanHead::~CanHead() {
+    leave_.store(true);
+    if (thread_.joinable()) thread_.join();
+    ::close(fd_);
+}
+
+void CanHead::start() {
+    if (!thread_.joinable()) thread_ = std::thread([this] { live(); });
+}
+
+void CanHead::say(const char* what, const char* detail) noexcept {
+    report_.say({Monotonic::now(), "tracker", interface_, what, detail}, {{"sent", sent_.load()}});
+}
+
+void CanHead::say_status() {
+    report_.say({Monotonic::now(), "tracker", interface_, "status", ""},
+                {{"sent", sent_.load()}, {"not_taken", not_taken_.load()}});
+}
+
+void CanHead::live() noexcept {
+    std::array<CanFrame, kCanBatch> frames{};
+    bus_.open();
+    while (!leave_.load(std::memory_order_relaxed)) {
+        const bool flood = flood_.load(std::memory_order_relaxed);
+        const std::size_t room = flood ? kFloodBatch : frames.size();
+        const CanBatch batch = bus_.receive(std::span(frames).first(room), kPatience);
+        for (std::size_t i = 0; i < batch.count; ++i) send(frames[i]);
+        if (flood) clock_.wait_until(clock_.now() + kFloodEvery);
+    }
+}
+
+void CanHead::send(const CanFrame& frame) noexcept {
+    canfd_frame raw{};
+    raw.can_id = frame.id | (frame.kind == CanKind::error ? CAN_ERR_FLAG : 0U);
+    raw.len = frame.length;
+    if (frame.kind == CanKind::fd) raw.flags = CANFD_BRS;
+    std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, sizeof raw.data), raw.data);
+    const std::size_t size = frame.kind == CanKind::fd ? CANFD_MTU : CAN_MTU;
+    const bool taken = ::write(fd_, &raw, size) == static_cast<ssize_t>(size);
+    (taken ? sent_ : not_taken_).fetch_add(1, std::memory_order_relaxed);
+}
+
+void CanHead::set_link(bool up) {
+    ifreq r = request(interface_);
+    if (ioctl(fd_, SIOCGIFFLAGS, &r) == 0) {
+        const int flags = up ? r.ifr_flags | IFF_UP : r.ifr_flags & ~IFF_UP;
+        r.ifr_flags = static_cast<short>(flags);
+        if (ioctl(fd_, SIOCSIFFLAGS, &r) == 0) return;
+    }
+    refuse_interface(CanStep::state, interface_, errno);
+}
+
+bool CanHead::obey(const Order& order) {
+    if (row_of(order.deed).part != Part::tracker) return false;
+    flood_.store(order.deed == Deed::tracker_flood);
+    switch (order.deed) {
+        case Deed::link_down:
+            set_link(false);
+            break;
+        case Deed::link_up:
+            set_link(true);
+            break;
+        case Deed::tracker_silent:
+            bus_.inject(TrackerFault::silent);
+            break;
+        case Deed::tracker_corrupt:
+            bus_.inject(TrackerFault::corrupt);
+            break;
+        case Deed::tracker_nan:
+            bus_.inject(TrackerFault::not_a_number);
+            break;
+        case Deed::tracker_out_of_range:
+            bus_.inject(TrackerFault::out_of_range);
+            break;
+        case Deed::tracker_flood:
+            bus_.inject(TrackerFault::flood);
+            break;
+        case Deed::bus_off:
+            bus_.inject(TrackerFault::bus_off);
+            break;
+        default:  // well
+            bus_.inject(TrackerFault::none);
+            break;
+    }
+    say("fault", row_of(order.deed).words);
+    return true;
+}
+
+}  // namespace tact::emu

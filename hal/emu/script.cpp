@@ -1,0 +1,225 @@
+#include "hal/emu/script.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "ipc/base/error.hpp"
+
+namespace tact::emu {
+
+namespace {
+
+constexpr double kSecondsMax = 1e6;
+
+constexpr std::array kCount{NumberRange{"N", 1, 100'000}};
+constexpr std::array kMilliseconds{NumberRange{"MS", 1, 600'000}};
+constexpr std::array kJoint{NumberRange{"ENCODER", 0, 5}};
+constexpr std::array kJump{NumberRange{"ENCODER", 0, 5}, NumberRange{"COUNTS", -10'000'000, 10'000'000}};
+constexpr std::array kButtons{NumberRange{"BITS", 0, 255}};
+constexpr std::span<const NumberRange> kNone{};
+
+constexpr std::array kDeeds{
+    DeedRow{"plug", Deed::plug, Part::arm, kNone, "", "into the bus"},
+    DeedRow{"unplug", Deed::unplug, Part::arm, kNone, "", "from the bus"},
+    DeedRow{"stall", Deed::stall, Part::arm, kNone, "", "halts its IN endpoint until the host clears it"},
+    DeedRow{"silence", Deed::silence, Part::arm, kMilliseconds, "ms", "neither sends nor hears"},
+    DeedRow{"corrupt", Deed::corrupt, Part::arm, kCount, "", "a bit of the next N states is wrong"},
+    DeedRow{"repeat", Deed::repeat, Part::arm, kCount, "", "the next N states come twice"},
+    DeedRow{"reorder", Deed::reorder, Part::arm, kCount, "", "N states come after the one behind them"},
+    DeedRow{"drop", Deed::drop, Part::arm, kCount, "", "the next N states do not come"},
+    DeedRow{"brown-out", Deed::brown_out, Part::arm, kNone, "", "the supply is low, until well"},
+    DeedRow{"hot", Deed::hot, Part::arm, kNone, "", "over-temperature, until well"},
+    DeedRow{"over-current", Deed::over_current, Part::arm, kNone, "", "until well"},
+    DeedRow{"safety open", Deed::safety_open, Part::arm, kNone, "", "the chain at the board, until well"},
+    DeedRow{"count lost", Deed::count_lost, Part::arm, kNone, "", "an encoder skipped, until well"},
+    DeedRow{"encoder stuck", Deed::encoder_stuck, Part::arm, kJoint, "", "keeps its count, until well"},
+    DeedRow{"encoder jump", Deed::encoder_jump, Part::arm, kJump, "", "so much is added, until well"},
+    DeedRow{"drive dead", Deed::drive_dead, Part::arm, kJoint, "", "a motor without current, until well"},
+    DeedRow{"deaf", Deed::deaf, Part::arm, kNone, "", "takes no command and goes on sending, until well"},
+    DeedRow{"restart", Deed::restart, Part::arm, kNone, "", "power off and on: another boot"},
+    DeedRow{"press", Deed::press, Part::arm, kButtons, "", "buttons that are held down now, as bits"},
+    DeedRow{"well", Deed::well, Part::arm, kNone, "", "every fault that lasts is gone"},
+    DeedRow{"tracker silent", Deed::tracker_silent, Part::tracker, kNone, "", "no frames"},
+    DeedRow{"tracker corrupt", Deed::tracker_corrupt, Part::tracker, kNone, "", "a bit is wrong"},
+    DeedRow{"tracker nan", Deed::tracker_nan, Part::tracker, kNone, "", "its pose is not a number"},
+    DeedRow{"tracker out-of-range", Deed::tracker_out_of_range, Part::tracker, kNone, "", "it jumps away"},
+    DeedRow{"tracker flood", Deed::tracker_flood, Part::tracker, kNone, "",
+            "as many frames as a bus carries"},
+    DeedRow{"tracker well", Deed::tracker_well, Part::tracker, kNone, "", "ends all of these and bus-off"},
+    DeedRow{"can bus-off", Deed::bus_off, Part::tracker, kNone, "", "error frame, then nothing"},
+    DeedRow{"can down", Deed::link_down, Part::tracker, kNone, "", "the interface"},
+    DeedRow{"can up", Deed::link_up, Part::tracker, kNone, "", "the interface"},
+    DeedRow{"status", Deed::status, Part::all, kNone, "", "counters of every part"},
+    DeedRow{"leave", Deed::leave, Part::all, kNone, "", "ends the program"},
+};
+
+constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
+
+std::vector<std::string_view> words_of(std::string_view line) {
+    std::vector<std::string_view> words;
+    std::size_t i = 0;
+    while (i < line.size()) {
+        while (i < line.size() && is_space(line[i])) ++i;
+        const std::size_t begin = i;
+        while (i < line.size() && !is_space(line[i])) ++i;
+        if (i > begin) words.push_back(line.substr(begin, i - begin));
+    }
+    return words;
+}
+
+// For messages: what a terminal can bear.
+std::string shown(std::string_view text) {
+    std::string out;
+    for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
+    return text.size() > 60 ? out + "..." : out;
+}
+
+template <class Number>
+std::optional<Number> number_of(std::string_view word) {
+    Number value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+    return value;
+}
+
+std::string usage(const DeedRow& row) {
+    std::string text = row.words;
+    for (const NumberRange& n : row.numbers) text += std::string(" ") + n.name;
+    if (row.part == Part::arm) text += " [ARM]";
+    return text;
+}
+
+// The words left after those that were used.
+class Words {
+public:
+    explicit Words(std::vector<std::string_view> all) : all_(std::move(all)) {}
+    [[nodiscard]] bool empty() const { return next_ == all_.size(); }
+    [[nodiscard]] std::string_view front() const { return empty() ? std::string_view{} : all_[next_]; }
+    void pop() { ++next_; }
+    // Takes all the words of `text`, or none.
+    bool take(std::string_view text) {
+        const auto wanted = words_of(text);
+        if (wanted.size() > all_.size() - next_) return false;
+        if (!std::equal(wanted.begin(), wanted.end(), all_.begin() + static_cast<std::ptrdiff_t>(next_)))
+            return false;
+        next_ += wanted.size();
+        return true;
+    }
+
+private:
+    std::vector<std::string_view> all_;
+    std::size_t next_ = 0;
+};
+
+std::optional<Duration> take_time(Words& words, const std::string& where) {
+    if (!words.take("at")) return std::nullopt;
+    std::string_view word = words.front();
+    if (!word.empty() && word.back() == 's') word.remove_suffix(1);
+    const auto seconds = number_of<double>(word);
+    // Written so that a value that is not a number is refused too.
+    if (!seconds || !(*seconds >= 0.0 && *seconds <= kSecondsMax))
+        throw StartupError(where, "after \"at\" comes a time and not \"" + shown(words.front()) + "\"",
+                           "write for example: at 3.2 s unplug");
+    words.pop();
+    static_cast<void>(words.take("s"));
+    return Duration(static_cast<std::int64_t>(std::llround(*seconds * 1e9)));
+}
+
+Order read_rest(const DeedRow& row, Words& words, const std::string& where) {
+    Order order;
+    order.deed = row.deed;
+    for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+        const NumberRange& range = row.numbers[i];
+        const auto value = number_of<int>(words.front());
+        if (!value || *value < range.low || *value > range.high)
+            throw StartupError(where,
+                               std::string(range.name) + " is \"" + shown(words.front()) + "\" and not " +
+                                   std::to_string(range.low) + " to " + std::to_string(range.high),
+                               "write: " + usage(row));
+        order.numbers.at(i) = *value;
+        words.pop();
+    }
+    if (*row.unit != 0) static_cast<void>(words.take(row.unit));
+    if (row.part == Part::arm && !words.empty()) {
+        if (!is_serial(words.front()))
+            throw StartupError(where, "no arm is called \"" + shown(words.front()) + "\"",
+                               "give an arm's serial, or none");
+        order.arm = words.front();
+        words.pop();
+    }
+    if (!words.empty())
+        throw StartupError(where, "too many words: \"" + shown(words.front()) + "\"", "write: " + usage(row));
+    return order;
+}
+
+}  // namespace
+
+std::span<const DeedRow> deeds() { return kDeeds; }
+
+const DeedRow& row_of(Deed deed) {
+    return *std::find_if(kDeeds.begin(), kDeeds.end(), [deed](const DeedRow& r) { return r.deed == deed; });
+}
+
+bool is_serial(std::string_view text) noexcept {
+    return !text.empty() && text.size() <= 16 && std::all_of(text.begin(), text.end(), [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
+               c == '_';
+    });
+}
+
+std::optional<Order> parse_order(std::string_view line, const std::string& where) {
+    line = line.substr(0, line.find('#'));
+    if (line.size() > kLineMax)
+        throw StartupError(where, "the line is longer than " + std::to_string(kLineMax) + " characters",
+                           "one order a line");
+    Words words(words_of(line));
+    if (words.empty()) return std::nullopt;
+    const auto at = take_time(words, where);
+    for (const DeedRow& row : kDeeds) {
+        if (!words.take(row.words)) continue;
+        Order order = read_rest(row, words, where);
+        order.at = at;
+        return order;
+    }
+    std::string known;
+    for (const DeedRow& row : kDeeds) known += (known.empty() ? "" : "; ") + usage(row);
+    throw StartupError(where, "there is no order \"" + shown(line) + "\"", "orders: " + known);
+}
+
+std::vector<Order> parse_script(std::string_view text, const std::string& where) {
+    std::vector<Order> orders;
+    std::size_t number = 0;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        const std::string line = where + ", line " + std::to_string(++number);
+        if (auto order = parse_order(text.substr(0, end), line)) {
+            if (orders.size() == kOrdersMax)
+                throw StartupError(line, "more than " + std::to_string(kOrdersMax) + " orders",
+                                   "split the file");
+            orders.push_back(std::move(*order));
+        }
+        text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    }
+    std::stable_sort(orders.begin(), orders.end(),
+                     [](const Order& a, const Order& b) { return a.at < b.at; });
+    return orders;
+}
+
+std::vector<Order> read_script(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw StartupError("fault file " + path, "it cannot be opened", "check the path and its rights");
+    std::string text(kScriptBytesMax + 1, '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    if (file.bad() || text.size() > kScriptBytesMax)
+        throw StartupError("fault file " + path,
+                           "it is no text of at most " + std::to_string(kScriptBytesMax) + " bytes",
+                           "give a fault file (tact-emu --help lists the orders)");
+    return parse_script(text, path);
+}
+
+}  // namespace tact::emu

@@ -1,0 +1,25 @@
+// What an arm's board says of itself to USB, as FunctionFS takes it: the interface of
+// hal/phantom/PROTOCOL.md.
+//
+// Bytes    for a FunctionFS ep0, little endian: descriptors of full and high speed (version 2), then strings.
+//          The protocol refuses full speed; the kernel wants it described all the same.
+// Thread   any; pure
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tact::emu {
+
+inline constexpr std::uint8_t kInterfaceClass = 0xFF, kInterfaceSubclass = 0x54, kInterfaceProtocol = 0x01;
+inline constexpr std::uint8_t kEndpointIn = 0x81, kEndpointOut = 0x02;
+inline constexpr std::uint16_t kPacketBytesMax = 64;
+
+// Period of the endpoints by the rate of the states: bInterval at high speed, in 2^(n-1) of 125 us.
+[[nodiscard]] std::uint8_t interval_of(std::uint16_t rate_hz) noexcept;
+
+[[nodiscard]] std::vector<std::byte> ffs_descriptors(std::uint16_t rate_hz);
+[[nodiscard]] std::vector<std::byte> ffs_strings();
+
+}  // namespace tact::emu
