@@ -2,10 +2,10 @@
 //
 // Fails by  outcome: an exit code that is not 0, and the last lines that the program printed
 // Ends      with this object: a program still running is killed. Where this process is killed the program
-// goes
-//           on: right for a save, which is asked for, bounded, and whole or absent; what is of use to this
-//           process alone is told to end with it by its own option (tact-prep contour --ends-with).
-//           posix_spawn() could not set that, and fork() would copy the page tables of a big program.
+//           goes on: right for a save, which is asked for, bounded, and whole or absent; what is of use
+//           to this process alone is told to end with it by its own option (tact-prep contour
+//           --ends-with). posix_spawn() could not set that, and fork() would copy the page tables of a
+//           big program.
 // Thread    one; start() takes some hundred microseconds
 #pragma once
 

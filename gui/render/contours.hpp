@@ -1,11 +1,11 @@
 // The isosurfaces of the map, up to four, each with its level, colour, opacity and style.
 //
-// Level     the scene's own contour is there at once, baked. Another is extracted by ContourWorker while it
-// is
-//           being moved, and replaced by a progressive mesh when it rests; what was shown stays until then.
+// Level     the scene's own contour is there at once, baked. Another is extracted by ContourWorker while
+//           it is being moved, and replaced by a progressive mesh when it rests; what was shown stays
+//           until then.
 // Knob      approach_vertices() is that of "gui.mesh": a share of what all shown surfaces have at full
-// detail, the
-//           same for each. While a surface is a plain one its next extraction keeps to the share instead.
+//           detail, the same for each. While a surface is a plain one its next extraction keeps to the
+//           share instead.
 // Drawn     opaque ones first. Then what is seen through, from the inside (highest level) to the outside;
 //           within one surface glass is not sorted: it has one colour, so the order hardly shows.
 // Thread    frame thread, context current.

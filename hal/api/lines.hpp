@@ -4,9 +4,8 @@
 // In       emergency stop, two channels normally closed; dead-man pedal; whether the amplifier is on
 // Out      enable of the amplifier; watchdog, toggled only while the servo really ticks; lamp
 // Stop     at the first edge, and for whatever cannot be read: an error, a missing line, a broken wire.
-// Contacts
-//          that are closed again only end the stop after a time without a bounce, and then a person still has
-//          to re-arm
+//          Contacts that are closed again only end the stop after a time without a bounce, and then a
+//          person still has to re-arm
 // Thread   open() at start-up; read() and write() from the servo thread alone, they only touch memory; drop()
 //          from any thread; a pump owns the adapter
 #pragma once

@@ -7,7 +7,7 @@
 //          and the view must not move; lost from 1 s, before the first sample, and for a sensor there is not
 // Force    nothing here reaches the force: a tracker that fails costs the view, never the hand
 // Thread   open() at start-up; read() and health() from any one thread, the servo's too: they only touch
-// memory
+//          memory
 #pragma once
 
 #include <cstdint>

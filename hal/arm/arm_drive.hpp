@@ -1,8 +1,7 @@
 // From a wrench at the tip to the currents of the motors, within what motors and device stand.
 //
-// Limits   the wrench is first held to the device's largest force and torque, then shortened as a whole until
-// no
-//          motor is asked for more than its limit: the hand feels less, never another direction
+// Limits   the wrench is first held to the device's largest force and torque, then shortened as a whole
+//          until no motor is asked for more than its limit: the hand feels less, never another direction
 // Weight   the torques that hold the arm up come first and are not shortened with the wrench; a motor that
 //          cannot even do that does what it can, and nothing of the wrench is shown
 // Fails by currents of zero and valid = false for anything that is not a finite number

@@ -3,16 +3,14 @@
 //
 // Worked out here:
 // - Origin of the Omni. Its maker's software reported, in the inkwell, the joints (0, 0.26889, -0.370813)
-// rad,
-//   the gimbal (0.000108, 0.797273, -1.94046) rad and the tip (0, -65.5107, -88.1142) mm. The formula gives
-//   the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35) mm, to 0.01 mm; and
-//   the three angles give the reported rotation to 1e-5 (hal_arm_kinematics_test). This is also the inkwell's
-//   posture that calibration uses.
-// - Origins of the Premiums: where the makers' box lies whole within reach and farthest from the stretched
-// and the
-//   folded arm: on a grid of 10 mm, cos(elbow) is nowhere below 0.44 (1.5) and 0.58 (1.0). With the reset
-//   pose in the middle, a fifth of the box would be out of reach. Joint limits: what that box needs and 10
-//   degrees more.
+//   rad, the gimbal (0.000108, 0.797273, -1.94046) rad and the tip (0, -65.5107, -88.1142) mm. The
+//   formula gives the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35)
+//   mm, to 0.01 mm; and the three angles give the reported rotation to 1e-5 (hal_arm_kinematics_test).
+//   This is also the inkwell's posture that calibration uses.
+// - Origins of the Premiums: where the makers' box lies whole within reach and farthest from the
+//   stretched and the folded arm: on a grid of 10 mm, cos(elbow) is nowhere below 0.44 (1.5) and 0.58
+//   (1.0). With the reset pose in the middle, a fifth of the box would be out of reach. Joint limits:
+//   what that box needs and 10 degrees more.
 // - Gimbal of the 6DOF: its data sheet gives 0.0023 degrees for yaw and pitch, 0.0080 for roll.
 #include "hal/arm/arm_table.hpp"
 

@@ -6,9 +6,8 @@
 // inkwell     the stylus lies still in the inkwell: Omni
 // automatic   the device calibrates itself and says so: Desktop
 // Force       none before `done`: the driver asks force_allowed() before it gives currents
-// Anew        whatever makes the counts worthless (device lost, brown-out: counts_valid false; the device's
-// own
-//             calibration gone) leads back to the start, also from `done`
+// Anew        whatever makes the counts worthless (device lost, brown-out: counts_valid false; the
+//             device's own calibration gone) leads back to the start, also from `done`
 // Thread      one; step() is TACT_RT
 #pragma once
 

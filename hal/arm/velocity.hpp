@@ -1,13 +1,14 @@
 // Speed from positions that come in steps, at whatever times they come.
 //
 // Method   adaptive window: the longest stretch of newest samples that one straight line explains, each
-// within
-//          a step (after Janabi-Sharifi, Hayward and Chen 2000); derivation in the .cpp
+//          within a step (after Janabi-Sharifi, Hayward and Chen 2000); derivation in the .cpp
 // At rest  exactly 0
-// Slow     at constant speed, and at rest on the edge between two steps, never wrong by more than 2 steps a
-// window Moving   when the hand speeds up, the window shortens by itself: late by about 0.9 sqrt(step /
-// acceleration) Time     samples without progress of time are left out; a gap starts anew Thread   one;
-// TACT_RT, fixed memory
+// Slow     at constant speed, and at rest on the edge between two steps, never wrong by more than 2 steps
+//          a window
+// Moving   when the hand speeds up, the window shortens by itself: late by about
+//          0.9 sqrt(step / acceleration)
+// Time     samples without progress of time are left out; a gap starts anew
+// Thread   one; TACT_RT, fixed memory
 #pragma once
 
 #include <array>

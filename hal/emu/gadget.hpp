@@ -2,8 +2,7 @@
 // dummy_hcd.
 //
 // Life     the constructor makes it, plug() and unplug() move it in and out of the bus, the destructor
-// removes
-//          every trace; what a killed emulator of the same serial left is removed first
+//          removes every trace; what a killed emulator of the same serial left is removed first
 // Reads    of the endpoints block in the kernel; unplug() wakes them with ESHUTDOWN, and until it is plugged
 //          they say EAGAIN
 // Fails by StartupError with the mend: no rights, modules that are missing, no free controller

@@ -3,9 +3,8 @@
 // that fits.
 //
 // Values   bit i belongs to the i-th line of the request, 1 is active
-// Fails by GpioRefusal at the request; by false afterwards. set() may say true though the adapter was pulled
-// out:
-//          only a look at the inputs and at the device node tells
+// Fails by GpioRefusal at the request; by false afterwards. set() may say true though the adapter was
+//          pulled out: only a look at the inputs and at the device node tells
 // Thread   one at a time
 #pragma once
 

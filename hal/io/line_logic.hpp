@@ -1,12 +1,11 @@
 // What the safety lines mean: a function of what was read, of what a person asked and of the time.
 //
 // Trips     at the first look that is not as it has to be, also where the chip tells of an edge between two
-// looks Releases  to waiting, after everything has been well for settings.release without a break; to
-// permitted, when
-//           the re-arm count moves while it waits. A count that moves before that is used up
-// Channels  that differ for longer than settings.discrepancy are a fault of their own: until both have been
-// seen
-//           open together, closing them again is not believed, as with a safety relay
+//           looks
+// Releases  to waiting, after everything has been well for settings.release without a break; to permitted,
+//           when the re-arm count moves while it waits. A count that moves before that is used up
+// Channels  that differ for longer than settings.discrepancy are a fault of their own: until both have
+//           been seen open together, closing them again is not believed, as with a safety relay
 // Runs on   the pump's thread; constant time, remembers what is below
 #pragma once
 

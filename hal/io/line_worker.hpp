@@ -2,7 +2,8 @@
 //
 // Order    read, judge, drive, publish: what stops has lowered the enable line before the servo knows of it
 // Watchdog toggled once in a round in which the servo's heartbeat has moved; a servo that stands leaves it
-// still Lost     an adapter that fails in any way is looked for twice a second; its outputs begin low again
+//          still
+// Lost     an adapter that fails in any way is looked for twice a second; its outputs begin low again
 // Thread   open() and round() on the pump's; write(), read() and drop() as hal/api/lines.hpp says
 #pragma once
 

@@ -4,7 +4,8 @@
 // Bytes    little endian, fixed sizes, at most 64, CRC-32 at the end; reserved bytes are zero
 // Units    integers as on the wire: counts, milliamperes, microseconds of the device's clock
 // Fails by a PacketFault; what is refused is not written to `out`, so it can never become a force or a
-// position Thread   any; TACT_RT
+//          position
+// Thread   any; TACT_RT
 #pragma once
 
 #include <array>

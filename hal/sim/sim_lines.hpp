@@ -1,9 +1,8 @@
 // Emulated safety lines: contacts that tests open, an amplifier whose read-back follows the enable line.
 //
 // SimBoard  the adapter with its wiring; faults may come from any thread
-// SimLines  the board behind the same LineWorker as a real adapter's, in lockstep: each read() is a look at
-// its
-//           `now`, so the same calls give the same states, on any clock
+// SimLines  the board behind the same LineWorker as a real adapter's, in lockstep: each read() is a look
+//           at its `now`, so the same calls give the same states, on any clock
 #pragma once
 
 #include <atomic>

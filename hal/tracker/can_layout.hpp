@@ -3,8 +3,8 @@
 //
 // Bits     little endian ("Intel"): start is the lowest bit, bit 0 the lowest bit of byte 0
 // Units    of a signal as sent; physical value = raw * scale
-// Classic  1 Mbit/s: SYNC opens a period, then POS and QUAT of every sensor, which carry the low bits of its
-// counter FD       1/5 Mbit/s: one POSE a sensor and period
+// Classic  1 Mbit/s: SYNC opens a period, then POS and QUAT of every sensor, which carry the low bits of
+//          its counter FD 1/5 Mbit/s: one POSE a sensor and period
 #pragma once
 
 #include <array>

@@ -1,11 +1,9 @@
 // From a CAN bus to the newest pose of each sensor: one bounded round at a time.
 //
-// Round     at most kBatchesMax batches: a flood costs a bounded time, and what lies in the kernel's queue is
-// then
-//           old, refused as stale and counted until the newest is reached
-// Link      down: goes on by itself; gone: reopened every kReopenEvery; bus off: flagged until a good frame
-// or the
-//           controller's "restarted". After each, counters begin anew.
+// Round     at most kBatchesMax batches: a flood costs a bounded time, and what lies in the kernel's
+//           queue is then old, refused as stale and counted until the newest is reached
+// Link      down: goes on by itself; gone: reopened every kReopenEvery; bus off: flagged until a good
+//           frame or the controller's "restarted". After each, counters begin anew.
 // Mailbox   samples and counters go out through Latest<>: readers never wait and see whole values
 // Thread    round() on one, its own; read() and health() on another
 #pragma once

@@ -1,8 +1,7 @@
 // The head tracker on a CAN bus as Tact uses it: a CanReader on a thread of its own.
 //
-// Thread   "can", FIFO 70 where that is permitted, else ordinary; never the servo's. It wakes for frames or
-// every
-//          10 ms, and takes no signal.
+// Thread   "can", FIFO 70 where that is permitted, else ordinary; never the servo's. It wakes for frames
+//          or every 10 ms, and takes no signal.
 #pragma once
 
 #include <atomic>

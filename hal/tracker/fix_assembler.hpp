@@ -2,8 +2,8 @@
 // and what no tracker can have measured refused.
 //
 // Counters  one more than the last is right; up to kCounterLead more is accepted and the gap counted as
-// missed; the
-//           same again is repeated; anything else is a jump: refused, and counting goes on from there
+//           missed; the same again is repeated; anything else is a jump: refused, and counting goes on
+//           from there
 // Range     a sensor farther from the tracker's origin than reach_m is refused
 // Thread    one; no allocation
 #pragma once

@@ -1,15 +1,13 @@
 // The head's pose without the tracker's noise, and where it will be when the picture is seen.
 //
-// Filter    1 euro filter (Casiez, Roussel, Vogel 2012), position and rotation each: a low-pass whose cut-off
-// rises
-//           with the speed, f = min_cutoff + beta |speed|: still at rest, little lag in motion
-// Steps     of any length: share = 1 - exp(-2 pi f dt), which is exact for a value that stands between the
-// samples,
-//           so the answer does not depend on how time was cut up. A sample that is not newer is left out;
-//           after a gap beyond kGap the filter begins anew.
+// Filter    1 euro filter (Casiez, Roussel, Vogel 2012), position and rotation each: a low-pass whose
+//           cut-off rises with the speed, f = min_cutoff + beta |speed|: still at rest, little lag in
+//           motion
+// Steps     of any length: share = 1 - exp(-2 pi f dt), which is exact for a value that stands between
+//           the samples, so the answer does not depend on how time was cut up. A sample that is not newer
+//           is left out; after a gap beyond kGap the filter begins anew.
 // Predicts  with the twist of the filtered pose itself, kept constant, at most kHorizon past the newest
-// sample:
-//           beyond that the pose stands
+//           sample: beyond that the pose stands
 // Frame     the samples'; twist about its axes, of the sensor's own point
 // Thread    one; no allocation
 #pragma once

@@ -2,8 +2,7 @@
 //
 // Frame    the tracker's own, right-handed; metres, unit quaternions
 // Decode   looks at one frame alone: its length, checksum and values. What comes out is finite and within
-// what the
-//          layout can say, whatever the bytes were; not `none` leaves `out` as it was.
+//          what the layout can say, whatever the bytes were; not `none` leaves `out` as it was.
 // Encode   rounds to the layout's steps and stops at its ends; a pose that is not finite becomes one that is
 //          marked as not valid. CAN cannot carry a value that is not a number.
 // Thread   any; no allocation

@@ -1,8 +1,8 @@
 // A raw SocketCAN socket: the tracker's frames only, taken with recvmmsg into fixed arrays.
 //
-// Kernel   filters let through the configured tracker's identifiers and nothing else; error frames on; frames
-// that
-//          found no room are counted (SO_RXQ_OVFL); the queue holds about one round of the reader
+// Kernel   filters let through the configured tracker's identifiers and nothing else; error frames on;
+//          frames that found no room are counted (SO_RXQ_OVFL); the queue holds about one round of the
+//          reader
 // Thread   one; receive() does not allocate
 // Fails by open(): StartupError naming the interface and the command that mends it. Later by CanFault.
 #pragma once

@@ -6,9 +6,9 @@
 // itself.
 //
 // Stale    a delay above three periods: the frame lay in a queue while newer ones came. Refused.
-// Restart  the two clocks differ by more than a second over one step (the tracker was switched on again, or
-// its
-//          32 bits went round in a long silence), or everything was stale for kStaleAtMost: begun anew.
+// Restart  the two clocks differ by more than a second over one step (the tracker was switched on again,
+//          or its 32 bits went round in a long silence), or everything was stale for kStaleAtMost: begun
+//          anew.
 // Thread   one; no allocation
 #pragma once
 

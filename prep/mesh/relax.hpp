@@ -2,9 +2,12 @@
 //
 // Contraction puts a vertex where the planes of its neighbourhood want it; between the vertices the surface
 // follows as it can. Here samples of the original pull on the triangle that is nearest to each. The triangles
-// stay as they are. Topology  unchanged; a vertex does not move where a triangle would turn over or fold onto
-// its neighbour, nor, in more rounds than one, away from the original. Cost      about 20 samples a vertex
-// and round, not more than the original has.  Thread  any but the servo's.
+// stay as they are.
+//
+// Topology  unchanged; a vertex does not move where a triangle would turn over or fold onto its neighbour,
+//           nor, in more rounds than one, away from the original.
+// Cost      about 20 samples a vertex and round, not more than the original has.
+// Thread    any but the servo's.
 #pragma once
 
 #include "prep/mesh/simplify.hpp"

@@ -2,17 +2,17 @@
 //
 // Pairs     edges; with pair_distance also vertices that are near in space, so that parts may join or vanish.
 // Topology  over edges a contraction is refused where it would pinch, close or double the surface (link
-// condition).
-//           Borders, and edges with more than two triangles, move along themselves, held by planes upright on
-//           them. Any mesh is taken; what cannot be contracted soundly is left as it is.
-// Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or comes
-// to lie within
-//           26 degrees on a neighbour, at the new vertex or across from it.
+//           condition). Borders, and edges with more than two triangles, move along themselves, held by
+//           planes upright on them. Any mesh is taken; what cannot be contracted soundly is left as it
+//           is.
+// Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or
+//           comes to lie within 26 degrees on a neighbour, at the new vertex or across from it.
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of
 //           its mean over the planes that a vertex stands for, never falling along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
-// Cost      about 1.8 us and 250 bytes a vertex, see tests/bench/simplify_bench.cpp.  Thread  any but the
-// servo's. Fails by  StartupError on indices out of range or positions that are not finite.
+// Cost      about 1.8 us and 250 bytes a vertex, see tests/bench/simplify_bench.cpp.
+// Thread    any but the servo's.
+// Fails by  StartupError on indices out of range or positions that are not finite.
 #pragma once
 
 #include <array>

@@ -1,11 +1,10 @@
 // One level of a mesh, to keep: contracted, its vertices then moved nearer to the original, and a small open
 // mesh with the weight of its border that suits it.
 //
-// Weight    how many of the vertices that are left stand on the border follows from f by leaps, and no f is
-// good for
-//           every shape and size. So where the mesh is open and small, kWeightsTried are tried, and the one
-//           with the least sum of surface and border distance is kept, each as a multiple of the best one
-//           tried.
+// Weight    how many of the vertices that are left stand on the border follows from f by leaps, and no f
+//           is good for every shape and size. So where the mesh is open and small, kWeightsTried are
+//           tried, and the one with the least sum of surface and border distance is kept, each as a
+//           multiple of the best one tried.
 // Cost      of each try that of simplify and relax.  Thread  any but the servo's.  Fails by  as simplify.
 #pragma once
 

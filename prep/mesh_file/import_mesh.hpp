@@ -5,8 +5,7 @@
 // Kept     positions and faces; a face with more corners becomes a fan of triangles. The corners of STL are
 //          joined where they are equal. Vertices that no face uses stay; see cleaned() in prep/mesh.
 // Checks   counts against the size of the file before anything is allocated; every index in range, every
-// number
-//          finite and below 1e6 in size; a face has no more than 255 corners.
+//          number finite and below 1e6 in size; a face has no more than 255 corners.
 // Memory   the file, unpacked, no more than 4 GiB, and what is kept of it.  Thread  any but the servo's.
 // Fails by StartupError naming the file, the line or element, the reason and the mend.
 #pragma once

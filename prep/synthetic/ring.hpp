@@ -4,7 +4,9 @@
 //           above it, one long arm towards the axis, and loops between them. It has no symmetry, so its own
 //           map tells its rotation; the six neighbours touch lightly, so the map keeps them apart.
 // Map       Gaussians (sigma 0.225 x resolution) on all atoms of all six, plus noise of 1 % of the largest
-// value. Repeats   the same seed gives the same bytes.  Frame  model, metres; the axis of the ring is z.
+//           value.
+// Repeats   the same seed gives the same bytes.
+// Frame     model, metres; the axis of the ring is z.
 #pragma once
 
 #include <cstdint>

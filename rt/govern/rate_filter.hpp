@@ -3,8 +3,7 @@
 // Judged   off, once the mean is further from the goal than the tolerance plus kSure standard errors of the
 //          mean: a big error is believed after one interval, a small one after as many as it takes
 // Flicker  the standard deviation of an interval's rate, from the differences of intervals next to each
-// other,
-//          so that a step of the load does not count as flicker
+//          other, so that a step of the load does not count as flicker
 // Forgets  by the weight of kIntervalsMax intervals; at once when the rate leaps, and on restart()
 // Bounded  whatever comes in: rates are cut to [0, 10] goals, the flicker to its own limits
 #pragma once

@@ -1,8 +1,7 @@
 // From the head tracker to the head topic: filtered, in the frame of the screen.
 //
-// Thread   "head", ordinary scheduling; it sees every sample of a tracker of up to 500 Hz and publishes each
-// once.
-//          step() may be called instead, by a test.
+// Thread   "head", ordinary scheduling; it sees every sample of a tracker of up to 500 Hz and publishes
+//          each once. step() may be called instead, by a test.
 // Fails by the topic's state and link. Nothing of it reaches the force.
 #pragma once
 

@@ -5,12 +5,10 @@
 //           scheduling). The force loop always has work; the picture while it draws a frame; each external
 //           program while it runs.
 // Picture   a frame costs fixed_s + full_s * level of the levels at its beginning, times a jitter that is
-// drawn
-//           once per frame from the seed; frames begin no faster than fps_max.
+//           drawn once per frame from the seed; frames begin no faster than fps_max.
 // Held      where the settings say so, updates give up a part of their work, or the loop rests, as in rt/loop
 // Governed  as rt/loop does it: an interval at a time, frames that obeyed once each, and nothing judged
-// before
-//           the picture obeyed where the law waits for it.
+//           before the picture obeyed where the law waits for it.
 #pragma once
 
 #include <algorithm>

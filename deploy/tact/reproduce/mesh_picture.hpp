@@ -1,8 +1,7 @@
 // Triangle meshes as pictures: flat shaded with their edges, side by side at one scale.
 //
-// Drawn   orthographic, into a depth buffer of three by three samples a pixel; both sides of a surface, the
-// back
-//         in another tone, so that a border can be told from a fold
+// Drawn   orthographic, into a depth buffer of three by three samples a pixel; both sides of a surface,
+//         the back in another tone, so that a border can be told from a fold
 // Thread  any.  Fails by  StartupError where the file cannot be written
 #pragma once
 

@@ -7,8 +7,7 @@
 // - The external load is one process more. What it really got is measured, since a load that starves proves
 //   nothing.
 // - 2026-11-21: what other people compiled took part in every figure (603 of 997 Hz was seen). Hence the
-// session
-//   of its own with precedence, and the share of strangers in every window.
+//   session of its own with precedence, and the share of strangers in every window.
 #include "deploy/tact/reproduce/rates.hpp"
 
 #include <algorithm>

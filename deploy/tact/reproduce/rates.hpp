@@ -5,9 +5,9 @@
 //          finer (experiment_scene.hpp), such that the goal under load is about a thousand updates a second.
 // Goals    without load 1.45 times the unadapted rate, as the seed's 800 is of its 550, and 2.2 times, as its
 //          1200; with load 0.92 of what the coarsest picture would reach, measured before.
-// FIFO     where rights allow it, the same load once more with the force loop at the goal's rate before all
-// others:
-//          then the load takes no share from it, adapted or not, and what the law holds is the picture's rate
+// FIFO     where rights allow it, the same load once more with the force loop at the goal's rate before
+//          all others: then the load takes no share from it, adapted or not, and what the law holds is
+//          the picture's rate
 // Thread   one; blocks for about a minute, a tenth of that with quick.
 // Fails by StartupError; leaves no process behind.
 #pragma once

@@ -2,9 +2,10 @@
 // the run says otherwise, the picture drawn in software; an external number-crunching load on the same core,
 // switched on part-way.
 //
-// Equal     the law is the only thing that differs between runs: same core, same precedence, same picture
-// rate Sampled   every 5 ms, by reading the topics and the processor clocks of all parties Fails by
-// StartupError; leaves no process behind Thread    one
+// Equal    the law is the only thing that differs between runs: same core, same precedence, same picture rate
+// Sampled  every 5 ms, by reading the topics and the processor clocks of all parties
+// Fails by StartupError; leaves no process behind
+// Thread   one
 #pragma once
 
 #include <memory>

@@ -1,8 +1,7 @@
 // What all models of one docking scene share, whatever they feel: the map as read, structures, point sets.
 //
 // Levels   of each structure: its codebook levels, sizes rising, then all atoms. The first has at most
-// kAlways
-//          points, so that it fits every budget.
+//          kAlways points, so that it fits every budget.
 // Thread   made off the servo thread; never changes afterwards, so copies of a body and rebuilt models share
 //          it without a lock.
 // Fails by StartupError: a scale, gain or place that is not finite, levels that do not rise, bad points.

@@ -2,8 +2,7 @@
 // what left it.
 //
 // In        the gain rises from 0 to 1 over kRampSteps steps, and falls the same way while the clutch is
-// held.
-//           It waits until what left is gone.
+//           held. It waits until what left is gone.
 // Out       after a change of what is in the hand, the last wrench shrinks by 0.04 N and 0.002 N m a step,
 //           whatever happens meanwhile: orders in quick succession do not hold it up. 3.3 N are gone after 83
 //           steps; at 1 kHz that is a twelfth of what the slew limit allows. It is a constant force, as that
