@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hal/phantom/phantom_usb.hpp"
 #include "hal/sim/process_device.hpp"
 #include "ipc/base/error.hpp"
 
@@ -15,10 +16,17 @@ std::unique_ptr<HapticDevice> make_sim_process(const DeviceSettings& s) {
     return std::make_unique<ProcessDevice>(s.sim, s.process_log);
 }
 
+std::unique_ptr<HapticDevice> make_phantom_usb(const DeviceSettings& s) {
+    return std::make_unique<PhantomUsb>(PhantomUsbSettings{
+        .serial = s.serial, .arm = s.arm, .hold_max = s.state_hold, .pump_priority = s.pump_priority});
+}
+
 constexpr std::array kDevices{
     DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
     DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
                 &make_sim_process},
+    DeviceEntry{"phantom-usb", "a Phantom arm on an amplifier board, over USB; see [arm]", false,
+                &make_phantom_usb},
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/device_notice.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
 
@@ -34,6 +35,10 @@ struct DeviceSample {
     std::uint32_t buttons = 0;  // bit 0: clutch
     bool hand_present = false;
     DeviceState state = DeviceState::closed;
+    DeviceNotice notice = DeviceNotice::none;  // what the person at it has to know
+    // From an older sample to the first one that the command which answered it could have moved: the way from
+    // the encoders to the motors in whole samples, never less than it is. 0: unknown.
+    Duration delay{0};
 };
 
 struct DeviceCommand {

@@ -74,7 +74,8 @@ void SimDevice::sample(Instant now) noexcept {
     const Vec3 p = stepped(hand_.pose().p_m, info_.position_step_m);
     const Quat q = quat_from_rotation_vector(stepped(rotation_vector_rad(hand_.pose().q), kTurnStepRad));
     if (newest_.sequence > 0 && now > newest_.taken_at) {
-        const double dt_s = to_s(now - newest_.taken_at);
+        newest_.delay = now - newest_.taken_at;  // the command of one cycle has moved the sample of the next
+        const double dt_s = to_s(newest_.delay);
         const double share = 1.0 - std::exp(-2.0 * std::numbers::pi * kVelocityCutHz * dt_s);
         const Vec3 turned = rotation_vector_rad(q * newest_.T_dev_tool.q.conjugate());
         Twist& t = newest_.twist_dev;

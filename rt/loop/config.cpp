@@ -45,6 +45,8 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e6, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},
+        {"device.serial", &c.device.serial, 0, 0, {}},
+        {"device.pump_priority", &c.device.pump_priority, 0, 94, {}},
         {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
         {"tracker.interface", &c.tracker.interface, 0, 0, {}},
         {"tracker.format", &c.tracker.format, 0, 0, {"classic", "fd"}},
@@ -277,6 +279,10 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
     d.process_log = c.device.process_log;
     d.arm = c.arm;
+    d.serial = c.device.serial;
+    d.pump_priority = static_cast<int>(c.device.pump_priority);
+    // A device says so itself before the loop's own watchdog does, since it knows why.
+    d.state_hold = duration_us(c.safety.sample_age_us_max * (3000.0 / 3500.0));
     d.sim.watchdog = duration_us(c.device.watchdog_us);
     return d;
 }

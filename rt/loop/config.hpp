@@ -34,6 +34,8 @@ struct RtConfig {
         std::int64_t hand_seed = 1;
         double watchdog_us = 10000.0;
         std::string process_log;  // of sim-process: file for its changes of state
+        std::string serial;       // of a real device; empty: the only one
+        std::int64_t pump_priority = 0;
     } device;
     struct Tracker {
         std::string driver = "none";

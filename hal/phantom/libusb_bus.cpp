@@ -1,0 +1,370 @@
+// One libusb context for each time the board is open: Debian's libusb lists devices anew only by udev's
+// events or with a new context, and there is not always a udev.
+#include "hal/phantom/libusb_bus.hpp"
+
+#include <libusb.h>
+#include <poll.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "ipc/base/error.hpp"
+
+namespace tact::phantom {
+
+namespace {
+
+constexpr int kClass = 0xFF, kSubclass = 0x54, kProtocol = 0x01;
+constexpr std::size_t kIn = 4;         // transfers that wait for a state
+constexpr std::size_t kInBytes = 512;  // more than any packet: what is too long is seen to be
+constexpr std::size_t kEvents = 64;
+constexpr unsigned kErrorsMax = 20;  // in a row: it is as good as gone
+constexpr Duration kCloseMax = std::chrono::milliseconds(500);
+
+timespec to_timespec(Duration d) noexcept {
+    const std::int64_t ns = std::max<std::int64_t>(d.count(), 0);
+    return {ns / 1'000'000'000, ns % 1'000'000'000};
+}
+
+// Where the board's interface and endpoints are.
+struct Board {
+    libusb_device* device = nullptr;
+    int interface = 0;
+    unsigned char in = 0, out = 0;
+    std::string serial;
+};
+
+bool find_interface(libusb_device* device, Board& board) {
+    libusb_config_descriptor* config = nullptr;
+    if (libusb_get_config_descriptor(device, 0, &config) != 0) return false;
+    bool found = false;
+    for (int i = 0; i < config->bNumInterfaces && !found; ++i) {
+        if (config->interface[i].num_altsetting < 1) continue;
+        const libusb_interface_descriptor& d = config->interface[i].altsetting[0];
+        if (d.bInterfaceClass != kClass || d.bInterfaceSubClass != kSubclass ||
+            d.bInterfaceProtocol != kProtocol)
+            continue;
+        board = {device, d.bInterfaceNumber, 0, 0, {}};
+        for (int e = 0; e < d.bNumEndpoints; ++e) {
+            if ((d.endpoint[e].bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_INTERRUPT) continue;
+            const unsigned char address = d.endpoint[e].bEndpointAddress;
+            ((address & LIBUSB_ENDPOINT_IN) != 0 ? board.in : board.out) = address;
+        }
+        found = board.in != 0 && board.out != 0;
+    }
+    libusb_free_config_descriptor(config);
+    return found;
+}
+
+std::string place(libusb_device* device) {
+    char text[48];
+    std::snprintf(text, sizeof text, "/dev/bus/usb/%03d/%03d", libusb_get_bus_number(device),
+                  libusb_get_device_address(device));
+    return text;
+}
+
+std::string serial_of(libusb_device* device, libusb_device_handle* handle) {
+    libusb_device_descriptor d{};
+    unsigned char text[64] = {};
+    if (libusb_get_device_descriptor(device, &d) != 0 || d.iSerialNumber == 0) return {};
+    const int n = libusb_get_string_descriptor_ascii(handle, d.iSerialNumber, text, sizeof text - 1);
+    return n > 0 ? std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(n))
+                 : std::string();
+}
+
+class LibusbBus final : public UsbBus {
+public:
+    LibusbBus() = default;
+    ~LibusbBus() override { close(); }
+    LibusbBus(const LibusbBus&) = delete;
+    LibusbBus& operator=(const LibusbBus&) = delete;
+
+    BusFinding open(const std::string& serial) override;
+    void close() noexcept override;
+    std::size_t wait(std::span<BusEvent> events, Duration patience) noexcept override;
+    bool send(std::span<const std::byte> packet) noexcept override;
+    bool clear_stall() noexcept override;
+    Instant now() noexcept override { return Monotonic::now(); }
+
+private:
+    struct In {
+        LibusbBus* bus = nullptr;
+        libusb_transfer* transfer = nullptr;
+        bool busy = false;
+        std::array<unsigned char, kInBytes> bytes{};
+    };
+    [[nodiscard]] BusFinding look(const std::string& serial, Board& board, libusb_device_handle*& handle);
+    [[nodiscard]] BusFinding claim(const Board& board);
+    void queue(In& in) noexcept;
+    void push(BusEventKind kind, std::span<const unsigned char> bytes = {}) noexcept;
+    void handle_now() noexcept;
+    void learn_descriptors() noexcept;
+    static void LIBUSB_CALL received(libusb_transfer* transfer) noexcept;
+    static void LIBUSB_CALL was_sent(libusb_transfer* transfer) noexcept;
+
+    libusb_context* context_ = nullptr;
+    libusb_device_handle* handle_ = nullptr;
+    Board board_;
+    bool claimed_ = false, closing_ = false, stall_said_ = false, gone_ = false;
+    unsigned errors_ = 0;  // in a row
+    std::array<In, kIn> in_;
+    libusb_transfer* out_ = nullptr;
+    bool out_busy_ = false;
+    std::array<unsigned char, 64> out_bytes_{};
+    std::array<BusEvent, kEvents> events_{};
+    std::size_t first_ = 0, count_ = 0;
+    std::array<pollfd, 16> polled_{};
+    nfds_t polled_count_ = 0;
+};
+
+// Opens every candidate, since only an open device tells its serial.
+BusFinding LibusbBus::look(const std::string& serial, Board& board, libusb_device_handle*& handle) {
+    libusb_device** list = nullptr;
+    const ssize_t n = libusb_get_device_list(context_, &list);
+    if (n < 0) return {BusFault::failed, {}, libusb_error_name(static_cast<int>(n))};
+    BusFinding found;
+    std::string denied;
+    bool slow = false;
+    std::vector<std::pair<Board, libusb_device_handle*>> matching;
+    for (ssize_t i = 0; i < n; ++i) {
+        Board b;
+        libusb_device_handle* h = nullptr;
+        if (!find_interface(list[i], b)) continue;
+        const int error = libusb_open(list[i], &h);
+        if (error == LIBUSB_ERROR_ACCESS) denied = place(list[i]);
+        if (error != 0) continue;
+        b.serial = serial_of(list[i], h);
+        found.detail += (found.detail.empty() ? "" : ", ") + (b.serial.empty() ? "(no serial)" : b.serial);
+        if (!serial.empty() && b.serial != serial) {
+            libusb_close(h);
+            continue;
+        }
+        slow = slow || libusb_get_device_speed(list[i]) < LIBUSB_SPEED_HIGH;
+        matching.emplace_back(b, h);
+    }
+    libusb_free_device_list(list, 1);  // what is open keeps its device
+    found.fault = matching.size() == 1 ? (slow ? BusFault::slow : BusFault::none)
+                  : !matching.empty()  ? (serial.empty() ? BusFault::several : BusFault::twins)
+                  : !denied.empty()    ? BusFault::denied
+                                       : BusFault::missing;
+    if (found.fault == BusFault::denied) found.detail = denied;
+    if (found.fault != BusFault::none) {
+        for (const auto& [b, h] : matching) libusb_close(h);
+        return found;
+    }
+    board = matching[0].first;
+    handle = matching[0].second;
+    found.serial = board.serial;
+    return found;
+}
+
+BusFinding LibusbBus::claim(const Board& board) {
+    static_cast<void>(libusb_set_auto_detach_kernel_driver(handle_, 1));
+    const int error = libusb_claim_interface(handle_, board.interface);
+    if (error == 0) {
+        claimed_ = true;
+        return {BusFault::none, board.serial, {}};
+    }
+    // Arrived before its configuration was set.
+    const bool soon = error == LIBUSB_ERROR_NOT_FOUND || error == LIBUSB_ERROR_NO_DEVICE;
+    const BusFault fault = soon                           ? BusFault::not_ready
+                           : error == LIBUSB_ERROR_BUSY   ? BusFault::busy
+                           : error == LIBUSB_ERROR_ACCESS ? BusFault::denied
+                                                          : BusFault::failed;
+    return {fault, {}, std::string("claiming its interface: ") + libusb_error_name(error)};
+}
+
+BusFinding LibusbBus::open(const std::string& serial) {
+    close();
+    if (context_ != nullptr) return {BusFault::failed, {}, "transfers of the last connection do not end"};
+    if (const int error = libusb_init(&context_); error != 0) {
+        context_ = nullptr;
+        return {BusFault::failed, {}, std::string("starting libusb: ") + libusb_error_name(error)};
+    }
+    BusFinding found = look(serial, board_, handle_);
+    if (found.fault == BusFault::none) found = claim(board_);
+    if (found.fault != BusFault::none) {
+        close();
+        return found;
+    }
+    errors_ = 0;
+    gone_ = stall_said_ = false;
+    first_ = count_ = 0;
+    out_ = libusb_alloc_transfer(0);
+    for (In& in : in_) {
+        in.bus = this;
+        in.transfer = libusb_alloc_transfer(0);
+    }
+    learn_descriptors();
+    for (In& in : in_) queue(in);
+    if (gone_ || out_ == nullptr) {
+        close();
+        return {BusFault::not_ready, {}, "it went away while it was being opened"};
+    }
+    return found;
+}
+
+void LibusbBus::learn_descriptors() noexcept {
+    polled_count_ = 0;
+    const libusb_pollfd** list = libusb_get_pollfds(context_);
+    if (list == nullptr) return;
+    for (std::size_t i = 0; list[i] != nullptr && polled_count_ < polled_.size(); ++i)
+        polled_[polled_count_++] = {list[i]->fd, list[i]->events, 0};
+    libusb_free_pollfds(list);
+}
+
+void LibusbBus::queue(In& in) noexcept {
+    if (in.transfer == nullptr || closing_ || gone_) return;
+    libusb_fill_interrupt_transfer(in.transfer, handle_, board_.in, in.bytes.data(),
+                                   static_cast<int>(in.bytes.size()), &LibusbBus::received, &in, 0);
+    in.busy = libusb_submit_transfer(in.transfer) == 0;
+    if (!in.busy) push(BusEventKind::gone);
+}
+
+// The newest events stay: an old state is worth nothing.
+void LibusbBus::push(BusEventKind kind, std::span<const unsigned char> bytes) noexcept {
+    if (kind == BusEventKind::gone) {
+        if (gone_) return;
+        gone_ = true;
+    }
+    if (count_ == kEvents) {
+        first_ = (first_ + 1) % kEvents;
+        --count_;
+    }
+    BusEvent& e = events_[(first_ + count_++) % kEvents];
+    e.kind = kind;
+    e.at = Monotonic::now();
+    e.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), 65));
+    std::memcpy(e.bytes.data(), bytes.data(), std::min(bytes.size(), e.bytes.size()));
+}
+
+void LIBUSB_CALL LibusbBus::received(libusb_transfer* transfer) noexcept {
+    In& in = *static_cast<In*>(transfer->user_data);
+    LibusbBus& bus = *in.bus;
+    in.busy = false;
+    switch (transfer->status) {
+        case LIBUSB_TRANSFER_COMPLETED:
+            bus.errors_ = 0;
+            bus.push(BusEventKind::packet,
+                     std::span(in.bytes).first(static_cast<std::size_t>(transfer->actual_length)));
+            break;
+        case LIBUSB_TRANSFER_CANCELLED:
+            return;
+        case LIBUSB_TRANSFER_NO_DEVICE:
+            return bus.push(BusEventKind::gone);
+        case LIBUSB_TRANSFER_STALL:
+            if (!std::exchange(bus.stall_said_, true)) bus.push(BusEventKind::stalled);
+            return;
+        default:
+            if (++bus.errors_ > kErrorsMax) return bus.push(BusEventKind::gone);
+            bus.push(BusEventKind::receive_failed);
+    }
+    bus.queue(in);
+}
+
+void LIBUSB_CALL LibusbBus::was_sent(libusb_transfer* transfer) noexcept {
+    LibusbBus& bus = *static_cast<LibusbBus*>(transfer->user_data);
+    bus.out_busy_ = false;
+    switch (transfer->status) {
+        case LIBUSB_TRANSFER_COMPLETED:
+            return bus.push(BusEventKind::sent);
+        case LIBUSB_TRANSFER_NO_DEVICE:
+            return bus.push(BusEventKind::gone);
+        case LIBUSB_TRANSFER_STALL:
+            bus.push(BusEventKind::send_failed);
+            if (!std::exchange(bus.stall_said_, true)) bus.push(BusEventKind::stalled);
+            return;
+        default:
+            return bus.push(BusEventKind::send_failed);
+    }
+}
+
+bool LibusbBus::send(std::span<const std::byte> packet) noexcept {
+    if (handle_ == nullptr || out_busy_ || gone_ || packet.size() > out_bytes_.size()) return false;
+    std::memcpy(out_bytes_.data(), packet.data(), packet.size());
+    libusb_fill_interrupt_transfer(out_, handle_, board_.out, out_bytes_.data(),
+                                   static_cast<int>(packet.size()), &LibusbBus::was_sent, this, 0);
+    const int error = libusb_submit_transfer(out_);
+    out_busy_ = error == 0;
+    if (error == LIBUSB_ERROR_NO_DEVICE)
+        push(BusEventKind::gone);
+    else if (error != 0)
+        push(BusEventKind::send_failed);
+    return true;
+}
+
+bool LibusbBus::clear_stall() noexcept {
+    if (handle_ == nullptr || gone_) return false;
+    stall_said_ = false;
+    if (libusb_clear_halt(handle_, board_.in) != 0 || libusb_clear_halt(handle_, board_.out) != 0)
+        return false;
+    for (In& in : in_) {
+        if (!in.busy) queue(in);
+    }
+    return !gone_;
+}
+
+void LibusbBus::handle_now() noexcept {
+    timeval none{};
+    static_cast<void>(libusb_handle_events_timeout_completed(context_, &none, nullptr));
+}
+
+// ppoll instead of libusb's own wait, which rounds up to milliseconds.
+std::size_t LibusbBus::wait(std::span<BusEvent> events, Duration patience) noexcept {
+    const timespec time = to_timespec(patience);
+    if (handle_ == nullptr) {
+        nanosleep(&time, nullptr);
+        return 0;
+    }
+    if (count_ == 0 && !events.empty()) {
+        static_cast<void>(ppoll(polled_.data(), polled_count_, &time, nullptr));
+        handle_now();
+    }
+    const std::size_t n = std::min(count_, events.size());
+    for (std::size_t i = 0; i < n; ++i) events[i] = events_[(first_ + i) % kEvents];
+    first_ = (first_ + n) % kEvents;
+    count_ -= n;
+    return n;
+}
+
+void LibusbBus::close() noexcept {
+    if (context_ == nullptr) return;
+    closing_ = true;
+    const auto busy = [this] {
+        return out_busy_ || std::any_of(in_.begin(), in_.end(), [](const In& in) { return in.busy; });
+    };
+    for (In& in : in_) {
+        if (in.busy) static_cast<void>(libusb_cancel_transfer(in.transfer));
+    }
+    if (out_busy_) static_cast<void>(libusb_cancel_transfer(out_));
+    const Instant end = Monotonic::now() + kCloseMax;
+    while (busy() && Monotonic::now() < end) {
+        timeval tick{0, 10'000};
+        static_cast<void>(libusb_handle_events_timeout_completed(context_, &tick, nullptr));
+    }
+    closing_ = false;
+    if (busy()) return;  // the kernel still has the memory: it stays, and is tried again with the next open()
+    for (In& in : in_) {
+        libusb_free_transfer(in.transfer);
+        in.transfer = nullptr;
+    }
+    libusb_free_transfer(out_);
+    out_ = nullptr;
+    if (handle_ != nullptr) {
+        if (claimed_) static_cast<void>(libusb_release_interface(handle_, board_.interface));
+        libusb_close(handle_);
+    }
+    handle_ = nullptr;
+    claimed_ = false;
+    libusb_exit(context_);
+    context_ = nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<UsbBus> make_libusb_bus() { return std::make_unique<LibusbBus>(); }
+
+}  // namespace tact::phantom

@@ -1,0 +1,95 @@
+// A Phantom arm on an amplifier board of PROTOCOL.md, over USB.
+//
+// open()    finds the board, agrees on a version, waits for its first state; then a pump thread owns the bus
+// read()    newest state: pose, speed, buttons; what PROTOCOL.md's table says is latched here, with its cause
+//           as a notice. Before the arm is calibrated it stands at the origin, nobody's hand is on it, and
+//           the notice says what the person has to do.
+// write()   wrench to currents: the arm's weight while the amplifier is on, motors' heat, limits of arm and
+//           board. No current before the calibration, with a fault, and not before enable was low after it.
+// relax()   any thread, any state: no current from the next packet on, until enable was low
+// Replug    found again by its serial, calibrated anew; never armed by itself
+// Fails by  lost: no board, or 100 ms without a state; fault: as latched; StartupError in open()
+// Thread    open() and destruction on the main one; read() and write() on the servo's, memory only
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "hal/api/haptic_device.hpp"
+#include "hal/arm/arm_kinematics.hpp"
+#include "hal/arm/calibration.hpp"
+#include "hal/arm/velocity.hpp"
+#include "hal/phantom/arm_watch.hpp"
+#include "hal/phantom/usb_pump.hpp"
+
+namespace tact {
+
+struct PhantomUsbSettings {
+    std::string serial;  // empty: the only board there is
+    ArmFigures arm = arm_figures("premium-1.5");
+    Duration hold_max = std::chrono::milliseconds(3);  // the newest state is good for so long
+    int pump_priority = 0;                             // FIFO; 0: ordinary scheduling
+    bool thread = true;                                // false: the caller runs pump().round(), for tests
+};
+
+class PhantomUsb final : public HapticDevice {
+public:
+    // The board on the bus of this machine, through libusb.
+    explicit PhantomUsb(const PhantomUsbSettings& settings);
+    PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phantom::UsbBus> bus);
+    ~PhantomUsb() override;
+    PhantomUsb(const PhantomUsb&) = delete;
+    PhantomUsb& operator=(const PhantomUsb&) = delete;
+
+    DeviceInfo open() override;
+    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT override;
+    IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT override;
+    void relax() noexcept override;
+
+    [[nodiscard]] phantom::UsbPump& pump() noexcept { return *pump_; }
+    [[nodiscard]] CalibrationState calibration() const noexcept { return calibration_.state(); }
+
+private:
+    void find_board();
+    void wait_for_first_state();
+    void start_thread();
+    void live() noexcept;
+    [[nodiscard]] DeviceInfo describe() const;
+    [[nodiscard]] std::string versions() const;
+
+    void latch(DeviceNotice fault) noexcept;
+    void forget_counts() noexcept;
+    void take(Instant now) noexcept;
+    void calibrate(Instant now) noexcept;
+    void heat() noexcept;
+    [[nodiscard]] DeviceNotice silence(Instant now) const noexcept;
+    [[nodiscard]] Joint6 limits_a() const noexcept;
+
+    PhantomUsbSettings settings_;
+    ArmKinematics arm_;
+    Calibration calibration_;
+    ArmVelocity velocity_;
+    phantom::ArmWatch watch_;
+    std::unique_ptr<phantom::UsbBus> bus_;
+    std::unique_ptr<phantom::UsbPump> pump_;
+    std::thread thread_;
+    std::atomic<bool> leave_{false};
+    bool opened_ = false;
+
+    // Of the servo's thread.
+    phantom::PumpNews news_;
+    DeviceSample sample_;
+    std::uint64_t states_ = 0;
+    std::uint32_t generation_ = 0, time_us_ = 0;
+    Joint6 q_ = Joint6::Zero();
+    std::array<MotorHeat, 6> heat_{};
+    std::array<std::int16_t, 6> limit_ma_{};
+    DeviceNotice fault_ = DeviceNotice::none, cause_ = DeviceNotice::none;
+    bool lowered_ = false;  // enable was low since the fault
+    bool gate_ = false;     // enable may go to the board
+    std::uint32_t relaxed_ = 0;
+};
+
+}  // namespace tact

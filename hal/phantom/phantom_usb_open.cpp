@@ -1,0 +1,167 @@
+// What happens on the main thread: finding the board, the first words with it, the pump's thread.
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+
+#include "hal/phantom/libusb_bus.hpp"
+#include "hal/phantom/phantom_usb.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+using phantom::BusFault;
+using phantom::BusFinding;
+using phantom::Link;
+using phantom::LinkRefusal;
+
+namespace {
+
+constexpr Duration kFindMax = std::chrono::seconds(3);   // of a board that is just being plugged
+constexpr Duration kFirstMax = std::chrono::seconds(2);  // until its first state
+constexpr Duration kFlushMax = std::chrono::milliseconds(50);
+
+std::string text(const std::array<char, 16>& chars) {
+    std::string s;
+    for (const char c : chars) {
+        if (c == '\0') break;
+        s += c;
+    }
+    return s;
+}
+
+[[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
+    const std::string what =
+        serial.empty() ? std::string("opening the arm's USB board") : "opening the arm's USB board " + serial;
+    const std::string there = found.detail.empty() ? "" : "; there are: " + found.detail;
+    switch (found.fault) {
+        case BusFault::missing:
+            throw StartupError(what, "no such board is on the bus" + there,
+                               "plug it in and switch it on, or correct device.serial; lsusb lists the bus");
+        case BusFault::several:
+            throw StartupError(what, "there are several boards" + there,
+                               "say which one by device.serial in the configuration");
+        case BusFault::twins:
+            throw StartupError(what, "two boards have this serial",
+                               "give each board a serial of its own; until then plug in one of them");
+        case BusFault::denied:
+            throw StartupError(what, "this user may not open it (" + found.detail + ")",
+                               "run deploy/install.sh, which adds the udev rule deploy/60-tact.rules, and "
+                               "plug the board in again");
+        case BusFault::busy:
+            throw StartupError(what, "another program has it (" + found.detail + ")",
+                               "end that program; lsof names it");
+        case BusFault::slow:
+            throw StartupError(what, "it is at full speed, whose frames are a millisecond long",
+                               "plug it into a port of USB 2 high speed, without a slow hub between");
+        default:
+            throw StartupError(what, found.detail, "unplug it and plug it in again; see dmesg");
+    }
+}
+
+}  // namespace
+
+PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings)
+    : PhantomUsb(settings, phantom::make_libusb_bus()) {}
+
+PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phantom::UsbBus> bus)
+    : settings_(settings),
+      arm_(arm_parameters(settings.arm)),
+      calibration_(arm_.parameters()),
+      velocity_(arm_),
+      watch_(arm_.parameters()),
+      bus_(std::move(bus)),
+      pump_(std::make_unique<phantom::UsbPump>(*bus_, settings.serial)) {}
+
+PhantomUsb::~PhantomUsb() {
+    relax();
+    leave_.store(true, std::memory_order_relaxed);
+    if (thread_.joinable()) thread_.join();
+    pump_->close();
+}
+
+DeviceInfo PhantomUsb::open() {
+    if (opened_) return describe();
+    find_board();
+    wait_for_first_state();
+    opened_ = true;
+    if (settings_.thread) start_thread();
+    return describe();
+}
+
+void PhantomUsb::find_board() {
+    const Instant end = bus_->now() + kFindMax;
+    while (true) {
+        const BusFinding found = pump_->open();
+        if (found.fault == BusFault::none) return;
+        const bool soon = found.fault == BusFault::not_ready || found.fault == BusFault::busy;
+        if (!soon || bus_->now() >= end) refuse(found, settings_.serial);
+        static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
+    }
+}
+
+std::string PhantomUsb::versions() const {
+    return std::to_string(news_.info.version_low) + " to " + std::to_string(news_.info.version_high);
+}
+
+void PhantomUsb::wait_for_first_state() {
+    const Instant end = bus_->now() + kFirstMax;
+    while (bus_->now() < end) {
+        pump_->round(std::chrono::milliseconds(5));
+        if (!pump_->read(news_)) continue;
+        if (news_.link == Link::refused) {
+            const std::string what = "the arm's USB board " + text(news_.info.serial);
+            if (news_.refusal == LinkRefusal::version) {
+                throw StartupError(what,
+                                   "it speaks versions " + versions() + " of the protocol, this program " +
+                                       std::to_string(phantom::kVersion),
+                                   "bring firmware and program to a common version");
+            }
+            throw StartupError(what,
+                               news_.refusal == LinkRefusal::serial
+                                   ? "it gives another serial than its USB descriptor"
+                                   : "its rate or watchdog is impossible",
+                               "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send");
+        }
+        if (news_.link == Link::open && news_.states > 0) return;
+    }
+    throw StartupError("the arm's USB board",
+                       news_.link == Link::open ? "it sends no states" : "it does not answer",
+                       "switch it off and on; hal/phantom/PROTOCOL.md says what it has to send");
+}
+
+DeviceInfo PhantomUsb::describe() const {
+    const ArmParameters& p = arm_.parameters();
+    DeviceInfo info;
+    info.name = p.name + " on " + text(news_.info.model);
+    info.serial = text(news_.info.serial);
+    info.workspace_half_m = p.workspace_half_m;
+    info.force_n_max = p.force_n_max;
+    info.force_n_continuous = p.force_n_continuous;
+    info.torque_n_m_max = p.wrist == Wrist::driven ? p.torque_n_m_max.minCoeff() : 0.0;
+    info.stiffness_n_m_max = p.stiffness_n_m_max;
+    info.position_step_m = arm_.position_step_m(p.calibration_rad);
+    return info;
+}
+
+void PhantomUsb::start_thread() {
+    // The new thread inherits a mask that lets no signal in: they belong to main.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] { live(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void PhantomUsb::live() noexcept {
+    pthread_setname_np(pthread_self(), "usb");
+    if (settings_.pump_priority > 0) {
+        sched_param param{};
+        param.sched_priority = settings_.pump_priority;
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+    }
+    while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
+    const Instant end = bus_->now() + kFlushMax;
+    while (!pump_->quiet() && bus_->now() < end) pump_->round(std::chrono::milliseconds(1));
+}
+
+}  // namespace tact

@@ -1,0 +1,145 @@
+// Moves packets between the bus and the servo: bounded rounds, counters of everything refused, the newest
+// value each way. It decides nothing about forces; what it cannot trust it does not pass on.
+//
+// States    taken as PROTOCOL.md says, stamped in the machine's time, newest wins
+// Commands  newest wins, one on its way at a time; only for the connection that the servo knows (generation),
+//           and never one from before the last relax()
+// Link      Query and Info after every connect, and again when the board falls silent or starts anew; a board
+//           that is gone is looked for every kReopenEvery by the serial that it had
+// Delay     from a state to the first one that shows its command as taken, by the board's own clock: the time
+//           from the encoders to the motors, rounded up to whole states
+// Thread    round() on one; read(), write() on the servo's; relax() on any
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "hal/phantom/packets.hpp"
+#include "hal/phantom/usb_bus.hpp"
+#include "hal/tracker/tracker_clock.hpp"
+#include "ipc/shm/latest.hpp"
+
+namespace tact::phantom {
+
+enum class Link : std::uint8_t { closed, asking, refused, open };
+
+// Why the newest connection was refused.
+enum class LinkRefusal : std::uint8_t { none, version, serial, figures };
+
+struct PumpCounts {
+    std::array<std::uint64_t, kPacketFaults> refused{};  // states and answers, by PacketFault
+    std::uint64_t taken = 0, repeated = 0, stale = 0, clock = 0, restarted = 0, lost = 0;
+    std::uint64_t transfers_failed = 0, stalls = 0, reconnects = 0, sent = 0;
+    std::uint64_t refused_by_board = 0;  // commands
+    std::uint64_t bad_seconds = 0;       // with more than 5 % refused or lost
+    [[nodiscard]] std::uint64_t bad() const noexcept;
+};
+
+// From the pump to the servo.
+struct PumpNews {
+    State state;
+    Info info;
+    PumpCounts counts;
+    std::uint64_t states = 0;          // taken since the start of the program; 0: none
+    std::int64_t taken_at_ns = 0;      // when the counts were latched, machine's time
+    std::int64_t behind_since_ns = 0;  // the board has been more than 5 commands behind since; 0: it is not
+    std::int64_t delay_ns = 0;         // newest; 0: unknown
+    std::uint32_t generation = 0;      // another one after every connect and every start of the board
+    Link link = Link::closed;
+    LinkRefusal refusal = LinkRefusal::none;
+    bool seen_known = false, seen_enable = false;  // of the command that the state has seen
+    std::array<std::int16_t, 6> seen_ma{};
+    bool last_second_bad = false;
+};
+
+// From the servo to the pump.
+struct PumpOrder {
+    std::array<std::int16_t, 6> current_ma{};
+    bool enable = false;
+    std::uint32_t heartbeat = 0;
+    std::uint32_t generation = 0, relaxed = 0;  // that it is for
+    std::uint32_t state_us = 0;                 // board's clock in the state that it answers
+    std::int64_t written_at_ns = 0;
+};
+
+class UsbPump {
+public:
+    static constexpr Duration kReopenEvery = std::chrono::milliseconds(200);
+    static constexpr Duration kAskEvery = std::chrono::milliseconds(100);
+    static constexpr Duration kSilence = std::chrono::milliseconds(50);  // after it the board is asked again
+    static constexpr Duration kPoll = std::chrono::microseconds(50);     // for a command that is due
+    static constexpr std::uint32_t kBehindMax = 5;
+    static constexpr std::size_t kBatch = 16;
+    static constexpr std::size_t kBatchesMax = 4;
+
+    UsbPump(UsbBus& bus, std::string serial) : bus_(bus), serial_(std::move(serial)) {}
+
+    // Start-up: one try to open the bus. From then on round() keeps it open.
+    [[nodiscard]] BusFinding open();
+    // What is due, then what comes within about `patience`.
+    void round(Duration patience) noexcept;
+    // How long the next round may wait: until a command is due.
+    [[nodiscard]] Duration patience() const noexcept;
+    // The motors are off on the wire, or there is no wire.
+    [[nodiscard]] bool quiet() const noexcept;
+    void close() noexcept;
+
+    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mail_->news.read(news); }
+    void write(const PumpOrder& order) noexcept TACT_RT { mail_->order.publish(order); }
+    void relax() noexcept TACT_RT { relaxed_.fetch_add(1, std::memory_order_acq_rel); }
+    [[nodiscard]] std::uint32_t relaxed() const noexcept TACT_RT {
+        return relaxed_.load(std::memory_order_acquire);
+    }
+
+private:
+    struct Mail {
+        Latest<PumpNews> news;
+        Latest<PumpOrder> order;
+    };
+    struct Sent {
+        std::uint32_t sequence = 0, state_us = 0;
+        bool enable = false, answers = false;
+        std::array<std::int16_t, 6> current_ma{};
+    };
+
+    void reopen(Instant now) noexcept;
+    void connected(Instant now) noexcept;
+    void lose(Instant now) noexcept;
+    void send_due(Instant now) noexcept;
+    void send(const Command& command, const PumpOrder& order) noexcept;
+    void take(const BusEvent& event) noexcept;
+    void take_packet(const BusEvent& event) noexcept;
+    void take_info(const Info& info, Instant at) noexcept;
+    void take_state(const State& state, Instant at) noexcept;
+    void look_at_seen(Instant at) noexcept;
+    void count_second(Instant now) noexcept;
+    void publish() noexcept;
+
+    UsbBus& bus_;
+    std::string serial_;
+    std::unique_ptr<Mail> mail_ = std::make_unique<Mail>();
+    std::atomic<std::uint32_t> relaxed_{0};
+
+    PumpNews news_;
+    SequenceGate gate_;
+    SequenceGate::Counts before_;  // of the connections before this one
+    TrackerClock board_clock_{std::chrono::milliseconds(50)};
+    Instant taken_at_{}, heard_at_{}, asked_at_{}, retry_at_{}, second_at_{};
+    std::uint32_t sequence_ = 0, relaxed_sent_ = 0, heartbeat_ = 0;
+    std::uint64_t orders_seen_ = 0;
+    std::uint64_t second_taken_ = 0, second_bad_ = 0;
+    std::uint8_t board_refused_ = 0;
+    unsigned unanswered_ = 0;
+    bool sending_ = false, known_ = false;  // known: Info came over this connection
+    bool query_due_ = false, relax_sending_ = false, stalled_ = false;
+    std::uint32_t relax_wanted_ = 0;
+    std::int64_t written_at_ns_ = 0, interval_ns_ = 1'000'000;
+    static constexpr std::size_t kRing = 64;
+    std::array<Sent, kRing> sent_{};
+    std::uint32_t seen_ = 0;
+    std::array<BusEvent, kBatch> events_{};
+};
+
+}  // namespace tact::phantom

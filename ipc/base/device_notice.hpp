@@ -1,0 +1,92 @@
+// What a haptic device says to the person at it: what it asks for, and why it shows no force. One byte, so
+// that it goes through every topic.
+#pragma once
+
+#include <cstdint>
+
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+enum class DeviceNotice : std::uint8_t {
+    none,
+    // It asks.
+    hold_reset_pose,
+    keep_still,
+    stylus_into_inkwell,
+    stylus_stays_in_inkwell,
+    move_about,
+    // It shows no force until a person resets the fault.
+    gone,
+    silent,
+    commands_not_taken,
+    watchdog_tripped,
+    amplifier_off,
+    over_temperature,
+    brown_out,
+    safety_open,
+    over_current,
+    count_lost,
+    restarted,
+    drive_broken,
+    encoder_stuck,
+    encoder_jumped,
+    // It goes on, and should be looked at.
+    states_refused,
+};
+inline constexpr std::uint8_t kDeviceNotices = 21;
+
+[[nodiscard]] constexpr bool asks(DeviceNotice n) noexcept TACT_RT {
+    return n >= DeviceNotice::hold_reset_pose && n <= DeviceNotice::move_about;
+}
+
+[[nodiscard]] constexpr const char* device_notice_text(DeviceNotice n) noexcept {
+    switch (n) {
+        case DeviceNotice::none:
+            return "";
+        case DeviceNotice::hold_reset_pose:
+            return "hold the arm in its reset pose (thigh level, shin straight down, gimbal straight) and "
+                   "confirm with its button";
+        case DeviceNotice::keep_still:
+            return "keep the arm still";
+        case DeviceNotice::stylus_into_inkwell:
+            return "put the stylus into the inkwell";
+        case DeviceNotice::stylus_stays_in_inkwell:
+            return "leave the stylus in the inkwell";
+        case DeviceNotice::move_about:
+            return "move the arm slowly through its workspace until it has calibrated itself";
+        case DeviceNotice::gone:
+            return "the device is unplugged or has no power";
+        case DeviceNotice::silent:
+            return "the device sent nothing good for three periods";
+        case DeviceNotice::commands_not_taken:
+            return "the device does not take its commands";
+        case DeviceNotice::watchdog_tripped:
+            return "the device's watchdog dropped its amplifier";
+        case DeviceNotice::amplifier_off:
+            return "the amplifier went off by itself";
+        case DeviceNotice::over_temperature:
+            return "a motor or the amplifier is too hot";
+        case DeviceNotice::brown_out:
+            return "the amplifier's supply broke down";
+        case DeviceNotice::safety_open:
+            return "the emergency stop or the dead-man switch is open";
+        case DeviceNotice::over_current:
+            return "a motor took too much current";
+        case DeviceNotice::count_lost:
+            return "an encoder lost count";
+        case DeviceNotice::restarted:
+            return "the device started anew";
+        case DeviceNotice::drive_broken:
+            return "a motor's current is not what was asked for";
+        case DeviceNotice::encoder_stuck:
+            return "an encoder stands still while its motor pushes";
+        case DeviceNotice::encoder_jumped:
+            return "an encoder moved faster than the arm can";
+        case DeviceNotice::states_refused:
+            return "more than 5 % of the device's packets are bad or lost";
+    }
+    return "unknown";
+}
+
+}  // namespace tact
