@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hal/openhaptics/open_haptics.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "hal/sim/process_device.hpp"
 #include "ipc/base/error.hpp"
@@ -21,12 +22,21 @@ std::unique_ptr<HapticDevice> make_phantom_usb(const DeviceSettings& s) {
         .serial = s.serial, .arm = s.arm, .hold_max = s.state_hold, .pump_priority = s.pump_priority});
 }
 
+std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {
+    OpenHapticsSettings settings;
+    settings.library = s.hd_library;
+    settings.device = s.hd_device;
+    return std::make_unique<OpenHaptics>(settings);
+}
+
 constexpr std::array kDevices{
     DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
     DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
                 &make_sim_process},
     DeviceEntry{"phantom-usb", "a Phantom arm on an amplifier board, over USB; see [arm]", false,
                 &make_phantom_usb},
+    DeviceEntry{"openhaptics", "Touch, Omni, Desktop or Premium through their maker's library libHD.so",
+                false, &make_open_haptics},
 };
 
 }  // namespace

@@ -47,6 +47,8 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.process_log", &c.device.process_log, 0, 0, {}},
         {"device.serial", &c.device.serial, 0, 0, {}},
         {"device.pump_priority", &c.device.pump_priority, 0, 94, {}},
+        {"device.hd_library", &c.device.hd_library, 0, 0, {}},
+        {"device.hd_device", &c.device.hd_device, 0, 0, {}},
         {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
         {"tracker.interface", &c.tracker.interface, 0, 0, {}},
         {"tracker.format", &c.tracker.format, 0, 0, {"classic", "fd"}},
@@ -278,6 +280,8 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.sim.hand.script = c.device.hand;
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
     d.process_log = c.device.process_log;
+    d.hd_library = c.device.hd_library;
+    d.hd_device = c.device.hd_device;
     d.arm = c.arm;
     d.serial = c.device.serial;
     d.pump_priority = static_cast<int>(c.device.pump_priority);

@@ -36,6 +36,8 @@ struct RtConfig {
         std::string process_log;  // of sim-process: file for its changes of state
         std::string serial;       // of a real device; empty: the only one
         std::int64_t pump_priority = 0;
+        std::string hd_library;  // of openhaptics: libHD.so; empty: searched
+        std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
     } device;
     struct Tracker {
         std::string driver = "none";

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Includes point downward, and only to what USES says.
 
-Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_test, tact_bench and tact_fuzz, finds
+Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_plugin, tact_test, tact_bench and tact_fuzz, finds
 which target each source belongs to (a header: the target of its .cpp, else the library of its folder), and reports
   1. an include of another folder's header that the target's USES do not lead to,
   2. a folder that includes what ARCHITECTURE's table puts above it or beside it,
@@ -42,7 +42,7 @@ WRAPPED = [
     (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "tests"]),
 ]
-CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz)\s*\(([^()]*)\)", re.S)
+CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT", "CLANG_FROM"}
 SKIP = {"build", "out", ".git", ".cache"}

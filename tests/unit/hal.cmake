@@ -14,3 +14,10 @@ tact_test(unit/hal_emu_script_test.cpp USES base arm tracker emu_script)
 add_test(NAME hal_emu_usage COMMAND sh -c "emu=$<TARGET_FILE:tact-emu>; $emu --arm A --arm B --tracker can0:fd:240:4 --check || exit 1
     $emu --nonsense 2>&1; test $? = 2 || exit 1; $emu --arm A --arm A; test $? = 1 || exit 1; $emu; test $? = 1")
 tact_test(unit/hal_phantom_usb_test.cpp USES base arm phantom phantom_usb hal_api emu_board)
+# A stand-in for the vendor's library, loaded as that is; and one that lacks functions.
+tact_plugin(fake_hd SOURCES support/fake_hd_library.cpp USES openhaptics)
+tact_plugin(fake_hd_old SOURCES support/fake_hd_old.cpp)
+tact_test(unit/hal_openhaptics_test.cpp USES base openhaptics hal_api LABELS tsan)
+add_dependencies(hal_openhaptics_test fake_hd fake_hd_old)
+target_compile_definitions(hal_openhaptics_test PRIVATE TACT_FAKE_HD="$<TARGET_FILE:fake_hd>"
+    TACT_FAKE_HD_OLD="$<TARGET_FILE:fake_hd_old>")

@@ -1,0 +1,72 @@
+#include "hal/openhaptics/hd_library.hpp"
+
+#include <dlfcn.h>
+
+#include <array>
+
+#include "ipc/base/error.hpp"
+
+namespace tact::hd {
+
+namespace {
+
+// The loader's own search (with LD_LIBRARY_PATH) first, by the two names there are links of.
+constexpr std::array kPlaces{"libHD.so",
+                             "libHD.so.3",
+                             "/usr/lib/libHD.so",
+                             "/usr/lib64/libHD.so",
+                             "/usr/lib/x86_64-linux-gnu/libHD.so",
+                             "/usr/local/lib/libHD.so",
+                             "/opt/OpenHaptics/Developer/lib/libHD.so"};
+
+constexpr const char* kMend =
+    "install the maker's OpenHaptics and device driver for Linux, or name the file (device.hd_library)";
+
+void* load(const char* path, std::string& why) {
+    dlerror();
+    void* const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (handle != nullptr) return handle;
+    const char* const words = dlerror();
+    why += std::string(why.empty() ? "" : "; ") + (words != nullptr ? words : path);
+    return nullptr;
+}
+
+template <class Function>
+void find(void* handle, const std::string& path, const char* name, Function& out) {
+    // POSIX gives functions as pointers to data.
+    out = reinterpret_cast<Function>(dlsym(handle, name));
+    if (out == nullptr) {
+        throw StartupError("the haptic library " + path, std::string("it has no function ") + name,
+                           "name the libHD.so of OpenHaptics 3.4 or newer (device.hd_library)");
+    }
+}
+
+}  // namespace
+
+Library::Library(const std::string& path) : path_(path) {
+    std::string why;
+    if (!path.empty()) {
+        handle_ = load(path.c_str(), why);
+    } else {
+        for (const char* const place : kPlaces) {
+            handle_ = load(place, why);
+            path_ = place;
+            if (handle_ != nullptr) break;
+        }
+    }
+    if (handle_ == nullptr)
+        throw StartupError("loading the haptic library libHD.so" + (path.empty() ? "" : " from " + path), why,
+                           kMend);
+    try {
+#define TACT_HD_FIND(type, name, arguments) find(handle_, path_, #name, api_.name);
+        TACT_HD_FUNCTIONS(TACT_HD_FIND)
+#undef TACT_HD_FIND
+    } catch (...) {
+        dlclose(handle_);
+        throw;
+    }
+}
+
+Library::~Library() { dlclose(handle_); }
+
+}  // namespace tact::hd

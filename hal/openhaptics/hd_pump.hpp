@@ -1,0 +1,121 @@
+// One tick of the vendor's scheduler: sample out, command in, errors seen to. Runs inside its servo loop.
+//
+// Frame     as the device's in hal/api: the library's axes are the same; its origin is moved to the middle
+// Enable    force only after an enable edge, and only while heartbeats come: 10 ms without one trip it here,
+//           whatever the servo's thread does
+// Errors    force zero in the same tick, counted by kind, latched until enable was low for a whole tick and
+//           none came for 100 ms; what ends the scheduler, and lost calibration, until the device is opened
+//           again. Nothing is re-armed by itself: the next enable edge is a person's.
+// Numbers   what is not finite, or a transform that is no rotation, is refused and counted; the last good
+//           sample stays and grows old
+// Thread    tick() on the vendor's; read(), write() and relax() on the servo's: they only touch memory
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+
+#include "hal/api/haptic_device.hpp"
+#include "hal/openhaptics/hd_faults.hpp"
+#include "ipc/shm/latest.hpp"
+
+namespace tact::hd {
+
+struct Counts {
+    std::array<std::uint64_t, kFaultKinds> faults{};  // by FaultKind
+    std::uint64_t ticks = 0;
+    std::uint64_t refused_samples = 0;   // not a number, or no rotation
+    std::uint64_t refused_commands = 0;  // not a number
+    std::uint64_t watchdog_trips = 0;
+    std::uint64_t calibrations = 0;
+    unsigned last_code = 0;  // of the library
+    FaultKind last_kind = FaultKind::none;
+};
+
+struct PumpSettings {
+    Vec3 centre_mm = Vec3::Zero();  // of the workspace, in the library's frame
+    double force_n_max = 0.0, torque_n_m_max = 0.0;
+    int styles = 0;  // of calibration
+    Duration watchdog = std::chrono::milliseconds(10);
+};
+
+class Pump {
+public:
+    Pump(const Api& api, Handle device);
+
+    // On the thread that opens, before the first tick.
+    void set(const PumpSettings& settings) noexcept { settings_ = settings; }
+
+    Enum tick(Instant now) noexcept;  // what the callback returns
+
+    // Any thread. The library says that it is calibrated; what a person does so that it will.
+    [[nodiscard]] bool calibrated() const noexcept { return calibrated_.load(std::memory_order_acquire); }
+    [[nodiscard]] const char* ask() const noexcept;
+
+    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT;
+    IoStatus write(const DeviceCommand& command) noexcept TACT_RT;
+    void relax() noexcept;
+    [[nodiscard]] Counts counts() const noexcept;
+
+    static constexpr Duration kQuiet = std::chrono::milliseconds(100);  // without error, to leave a fault
+    static constexpr Duration kLostAfter = std::chrono::milliseconds(100);
+    static constexpr Duration kHold = std::chrono::milliseconds(500);  // still in the reset pose for so long
+    static constexpr double kStillMm = 1.0;
+
+private:
+    // Plain words of sample and command, for Latest.
+    struct SampleWords {
+        std::int64_t taken_at_ns;
+        std::uint64_t sequence;
+        double pos_m[3], quat_xyzw[4], linear_m_s[3], angular_rad_s[3];
+        std::uint32_t buttons;
+        std::uint8_t hand_present, state, ended, reserved;
+    };
+    struct CommandWords {
+        double force_n[3], torque_n_m[3];
+        std::uint64_t heartbeat;
+        std::uint64_t edge;  // enable edges so far; the newest one counts once
+        std::uint32_t enable;
+        std::uint32_t relaxed;  // calls of relax() so far: each drops the force, though overwritten at once
+    };
+    struct Mail {
+        Latest<SampleWords> sample;
+        Latest<CommandWords> command;
+        Latest<Counts> counts;
+    };
+
+    void take_sample(Instant now) noexcept;
+    void calibrate(Instant now) noexcept;
+    [[nodiscard]] bool confirmed(Instant now) noexcept;
+    void take_errors(Instant now) noexcept;
+    void fail(FaultKind kind, bool ends, Instant now) noexcept;
+    void obey(Instant now) noexcept;
+    void show() noexcept;
+    void publish() noexcept;
+
+    const Api* api_;
+    Handle device_;
+    PumpSettings settings_;
+    std::unique_ptr<Mail> mail_;
+
+    // On the vendor's thread.
+    SampleWords sample_{};
+    CommandWords command_{};
+    Counts counts_;
+    DeviceState state_ = DeviceState::ready;
+    std::uint64_t heartbeat_ = 0, edge_ = 0;
+    std::uint32_t relaxed_ = 0;
+    Instant heard_at_{}, failed_at_{}, held_since_{};
+    Vec3 position_mm_ = Vec3::Zero(), held_mm_ = Vec3::Zero();
+    bool ended_ = false, inkwell_ = false, output_on_ = false;
+    bool button_before_ = true;  // one that is down from the start confirms nothing
+    std::atomic<bool> calibrated_{false};
+
+    // On the servo's.
+    std::uint64_t sequence_ = 0, heartbeat_sent_ = 0, edges_sent_ = 0;
+    std::uint32_t relaxed_sent_ = 0;
+    bool low_seen_ = true;  // enable was low since the last edge
+    IoStatus status_ = IoStatus::ok;
+};
+
+}  // namespace tact::hd

@@ -1,0 +1,202 @@
+// Figures: force, stiffness and workspace are what the library reports. The step of a position it does not
+// report; 0.055 mm is what the maker prints for the Touch, the coarsest of these arms. Torque of an arm that
+// has six motors: 48 mN m, what the weakest of the Premium's three gimbal motors stands for ever.
+#include "hal/openhaptics/open_haptics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/servo_clock.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr double kPositionStepM = 5.5e-5;
+constexpr double kTorqueMaxNM = 0.048;
+constexpr unsigned long kRateHz = 1000;
+constexpr Duration kLook = std::chrono::milliseconds(5);
+
+void say_on_stderr(const char* text) { std::fprintf(stderr, "openhaptics: %s\n", text); }
+
+// What a device calls itself, fit for a terminal.
+std::string plain(const char* text, const char* otherwise) {
+    std::string out;
+    for (const char* c = text; c != nullptr && *c != '\0' && out.size() < 60; ++c)
+        out += *c >= ' ' && *c <= '~' ? *c : '?';
+    return out.empty() ? otherwise : out;
+}
+
+std::string hex(unsigned code) {
+    char text[16];
+    static_cast<void>(std::snprintf(text, sizeof text, "0x%X", code));
+    return text;
+}
+
+}  // namespace
+
+OpenHaptics::OpenHaptics(const OpenHapticsSettings& settings)
+    : settings_(settings), own_clock_(std::make_unique<ServoClock>(Duration{0})), clock_(own_clock_.get()) {}
+
+OpenHaptics::OpenHaptics(const OpenHapticsSettings& settings, Clock& clock)
+    : settings_(settings), clock_(&clock) {}
+
+OpenHaptics::~OpenHaptics() { close(); }
+
+hd::Enum OpenHaptics::callback(void* self) noexcept {
+    const OpenHaptics& it = *static_cast<OpenHaptics*>(self);
+    return it.pump_->tick(it.clock_->now());
+}
+
+void OpenHaptics::close() noexcept {
+    if (!library_) return;
+    const hd::Api& api = library_->api();
+    if (running_) {
+        api.hdStopScheduler();
+        api.hdUnschedule(scheduled_);
+    }
+    running_ = false;
+    if (device_ != hd::kInvalidDevice) api.hdDisableDevice(device_);  // forces off
+    device_ = hd::kInvalidDevice;
+    pump_.reset();
+}
+
+// The newest error of the stack, which is emptied.
+void OpenHaptics::check(const std::string& attempt) {
+    const hd::Api& api = library_->api();
+    const hd::ErrorInfo error = api.hdGetError();
+    for (int n = 0; n < 100 && api.hdGetError().code != hd::kSuccess; ++n) {
+    }
+    if (error.code == hd::kSuccess) return;
+    throw StartupError(attempt,
+                       plain(api.hdGetErrorString(error.code), "an error without a name") + " (" +
+                           hex(error.code) + ", " + std::to_string(error.internal) + " inside)",
+                       std::string(hd::meaning(error.code).mends) +
+                           "; the maker's set-up program must know the device (device.hd_device)");
+}
+
+DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
+    const hd::Api& api = library_->api();
+    std::array<double, 6> box_mm{};
+    int dof = 3;
+    DeviceInfo info;
+    double stiffness_n_mm = 0.0;
+    api.hdGetDoublev(hd::kUsableWorkspace, box_mm.data());
+    api.hdGetDoublev(hd::kMaxForce, &info.force_n_max);
+    api.hdGetDoublev(hd::kMaxContinuousForce, &info.force_n_continuous);
+    api.hdGetDoublev(hd::kMaxStiffness, &stiffness_n_mm);
+    api.hdGetIntegerv(hd::kOutputDof, &dof);
+    api.hdGetIntegerv(hd::kCalibrationStyle, &settings.styles);
+    info.name = plain(api.hdGetString(hd::kModelType), "haptic device") + " by OpenHaptics";
+    info.serial = plain(api.hdGetString(hd::kSerialNumber), "");
+    check("asking the haptic device what it is");
+
+    const Vec3 low = Eigen::Map<const Vec3>(box_mm.data()), high = Eigen::Map<const Vec3>(box_mm.data() + 3);
+    const bool box = low.allFinite() && high.allFinite() && ((high - low).array() > 1.0).all() &&
+                     low.cwiseAbs().maxCoeff() < 2000.0 && high.cwiseAbs().maxCoeff() < 2000.0;
+    const bool force = std::isfinite(info.force_n_max) && info.force_n_max > 0.0 &&
+                       info.force_n_max <= 100.0 && std::isfinite(info.force_n_continuous) &&
+                       info.force_n_continuous >= 0.0;
+    if (!box || !force || !std::isfinite(stiffness_n_mm) || stiffness_n_mm < 0.0 || stiffness_n_mm > 100.0)
+        throw StartupError("asking the haptic device what it is",
+                           "workspace, force or stiffness it reports are of no arm there is",
+                           "try it in the maker's diagnostic program; name the library that belongs to it "
+                           "(device.hd_library)");
+    settings.centre_mm = 0.5 * (low + high);
+    info.workspace_half_m = 0.5e-3 * (high - low);
+    info.force_n_continuous = std::min(info.force_n_continuous, info.force_n_max);
+    info.torque_n_m_max = dof >= 6 ? kTorqueMaxNM : 0.0;
+    info.stiffness_n_m_max = 1e3 * stiffness_n_mm;
+    info.position_step_m = kPositionStepM;
+    settings.force_n_max = info.force_n_max;
+    settings.torque_n_m_max = info.torque_n_m_max;
+    return info;
+}
+
+// Waits for the first sample and for calibration.
+void OpenHaptics::home() {
+    const Instant begin = clock_->now();
+    bool said = false;
+    while (true) {
+        const hd::Counts c = pump_->counts();
+        const std::string attempt = "calibrating the haptic device";
+        DeviceSample sample;
+        const bool sampled = pump_->read(sample, clock_->now()) != IoStatus::lost;
+        if (c.last_kind != hd::FaultKind::none && hd::meaning(c.last_kind).ends)
+            throw StartupError(attempt, hd::meaning(c.last_kind).says, hd::meaning(c.last_kind).mends);
+        if (pump_->calibrated() && sampled) return;
+        const Duration waited = clock_->now() - begin;
+        if (waited > settings_.calibration_wait) {
+            const std::string s = std::to_string(static_cast<long>(to_s(waited)));
+            if (c.ticks == 0)
+                throw StartupError("starting the haptic device",
+                                   "its library called for no cycle in " + s + " s",
+                                   "unplug and plug the device; free the processor");
+            if (!sampled)
+                throw StartupError("starting the haptic device",
+                                   "it gave no usable position in " + s + " s (" +
+                                       std::to_string(c.refused_samples) + " refused)",
+                                   "try it in the maker's diagnostic program");
+            throw StartupError(attempt, "it was not brought to its calibration pose within " + s + " s",
+                               std::string("start again and ") + pump_->ask());
+        }
+        if (!said && c.ticks > 2) {
+            (settings_.say != nullptr ? settings_.say : &say_on_stderr)(pump_->ask());
+            said = true;
+        }
+        clock_->wait_until(clock_->now() + kLook);
+    }
+}
+
+DeviceInfo OpenHaptics::open() {
+    close();
+    if (!library_) library_.emplace(settings_.library);
+    const hd::Api& api = library_->api();
+    const std::string which = settings_.device.empty() ? "the default haptic device"
+                                                       : "the haptic device \"" + settings_.device + "\"";
+    const hd::Handle device = api.hdInitDevice(settings_.device.empty() ? nullptr : settings_.device.c_str());
+    check("opening " + which);
+    if (device == hd::kInvalidDevice)
+        throw StartupError("opening " + which, "the library gives no device",
+                           "set it up in the maker's set-up program (device.hd_device)");
+    device_ = device;
+    try {
+        api.hdMakeCurrentDevice(device_);
+        hd::PumpSettings settings;
+        const DeviceInfo info = describe(settings);
+        api.hdDisable(hd::kForceOutput);
+        api.hdDisable(hd::kForceRamping);
+        api.hdEnable(hd::kMaxForceClamping);
+        check("setting up " + which);
+        pump_ = std::make_unique<hd::Pump>(api, device_);
+        pump_->set(settings);
+        api.hdSetSchedulerRate(kRateHz);
+        static_cast<void>(api.hdGetError());  // one that has a single rate keeps it
+        scheduled_ = api.hdScheduleAsynchronous(&OpenHaptics::callback, this, hd::kPriorityMax);
+        running_ = true;
+        api.hdStartScheduler();
+        home();
+        return info;
+    } catch (...) {
+        close();
+        throw;
+    }
+}
+
+IoStatus OpenHaptics::read(DeviceSample& newest, Instant now) noexcept {
+    return pump_ ? pump_->read(newest, now) : IoStatus::lost;
+}
+
+IoStatus OpenHaptics::write(const DeviceCommand& command, Instant /*now*/) noexcept {
+    return pump_ ? pump_->write(command) : IoStatus::lost;
+}
+
+void OpenHaptics::relax() noexcept {
+    if (pump_) pump_->relax();
+}
+
+hd::Counts OpenHaptics::counts() const noexcept { return pump_ ? pump_->counts() : hd::Counts{}; }
+
+}  // namespace tact

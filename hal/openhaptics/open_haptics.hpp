@@ -1,0 +1,57 @@
+// A Touch, Omni, Desktop or Premium through its maker's library, where that is installed.
+//
+// Pump     the library's own scheduler thread, 1 kHz: it calls tick() of hd_pump.hpp, which owns the device
+// Home     open() waits until the library says that the arm is calibrated, and tells what a person does for
+// it Ramp     the library's own is off: the force comes through Tact's output chain; its clamp stays on
+// Thread   open() and destruction at start-up and end; read(), write() and relax() as the contract says
+// Untried  on a real arm: the tests' library takes its place
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "hal/openhaptics/hd_library.hpp"
+#include "hal/openhaptics/hd_pump.hpp"
+
+namespace tact {
+
+struct OpenHapticsSettings {
+    std::string library;  // libHD.so; empty: searched
+    std::string device;   // as named in the maker's set-up program; empty: the default one
+    Duration calibration_wait = std::chrono::seconds(30);
+    void (*say)(const char* text) = nullptr;  // what a person does now; null: on standard error
+};
+
+class OpenHaptics final : public HapticDevice {
+public:
+    explicit OpenHaptics(const OpenHapticsSettings& settings);
+    OpenHaptics(const OpenHapticsSettings& settings, Clock& clock);  // the clock outlives it
+    ~OpenHaptics() override;
+    OpenHaptics(const OpenHaptics&) = delete;
+    OpenHaptics& operator=(const OpenHaptics&) = delete;
+
+    DeviceInfo open() override;
+    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT override;
+    IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT override;
+    void relax() noexcept override;
+
+    [[nodiscard]] hd::Counts counts() const noexcept;
+
+private:
+    static hd::Enum callback(void* self) noexcept;
+    void close() noexcept;
+    void check(const std::string& attempt);
+    DeviceInfo describe(hd::PumpSettings& settings);
+    void home();
+
+    OpenHapticsSettings settings_;
+    std::unique_ptr<Clock> own_clock_;
+    Clock* clock_;
+    std::optional<hd::Library> library_;
+    std::unique_ptr<hd::Pump> pump_;
+    hd::Handle device_ = hd::kInvalidDevice;
+    hd::SchedulerHandle scheduled_ = 0;
+    bool running_ = false;
+};
+
+}  // namespace tact

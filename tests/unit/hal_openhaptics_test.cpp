@@ -1,0 +1,423 @@
+// The maker's library behind the contract: on a stand-in that is loaded as the real one would be.
+#include "hal/openhaptics/open_haptics.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/servo_clock.hpp"
+#include "tests/contract/haptic_device_contract.hpp"
+#include "tests/support/fake_hd.hpp"
+#include "tests/support/says.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::milliseconds;
+
+FakeHd& fake() {
+    static FakeHd* const f = [] {
+        void* const library = dlopen(TACT_FAKE_HD, RTLD_NOW | RTLD_LOCAL);
+        if (library == nullptr) std::abort();
+        return reinterpret_cast<FakeHdAccess>(dlsym(library, kFakeHdAccess))();
+    }();
+    return *f;
+}
+
+// Time passes only here, and for each millisecond the library makes one cycle.
+class TickingClock final : public Clock {
+public:
+    Instant now() noexcept override { return now_; }
+    void wait_until(Instant t) noexcept override {
+        while (now_ < t) {
+            now_ = std::min(t, now_ + milliseconds(1));
+            fake().tick();
+        }
+    }
+    void jump(Instant t) noexcept { now_ = t; }
+
+private:
+    Instant now_ = instant_from_ns(1'000'000'000);
+};
+
+std::string asked;
+void ask(const char* text) { asked = text; }
+
+OpenHapticsSettings settings() {
+    OpenHapticsSettings s;
+    s.library = TACT_FAKE_HD;
+    s.calibration_wait = std::chrono::seconds(5);
+    s.say = &ask;
+    return s;
+}
+
+TickingClock contract_clock;
+
+INSTANTIATE_TEST_SUITE_P(OpenHaptics, HapticDeviceContract,
+                         testing::Values(DeviceCase{
+                             "openhaptics",
+                             [] {
+                                 fake().reset();
+                                 contract_clock.jump(Monotonic::now());
+                                 return std::make_unique<OpenHaptics>(settings(), contract_clock);
+                             },
+                             [](Instant now, Duration d) {
+                                 contract_clock.wait_until(std::max(now, contract_clock.now()) + d);
+                                 return contract_clock.now();
+                             }}),
+                         [](const auto& tested) { return tested.param.name; });
+
+class OpenHapticsTest : public testing::Test {
+protected:
+    OpenHapticsTest() {
+        fake().reset();
+        asked.clear();
+    }
+
+    void open() {
+        device = std::make_unique<OpenHaptics>(settings(), clock);
+        info = device->open();
+    }
+    IoStatus cycle(const Vec3& force_n, bool enable) {
+        command.wrench_dev.force_n = force_n;
+        command.enable = enable;
+        ++command.heartbeat;
+        static_cast<void>(device->write(command, clock.now()));
+        clock.wait_until(clock.now() + milliseconds(1));
+        return device->read(sample, clock.now());
+    }
+    IoStatus cycles(int n, const Vec3& force_n, bool enable) {
+        IoStatus status = IoStatus::ok;
+        for (int i = 0; i < n; ++i) status = cycle(force_n, enable);
+        return status;
+    }
+    void power() {
+        cycles(3, Vec3::Zero(), false);
+        cycles(3, Vec3(1.0, 0.0, 0.0), true);
+        ASSERT_EQ(sample.state, DeviceState::powered);
+        ASSERT_EQ(shown().x(), 1.0);
+    }
+    static Vec3 shown() {
+        return {fake().force_n[0].load(), fake().force_n[1].load(), fake().force_n[2].load()};
+    }
+    std::string refusal() {
+        try {
+            open();
+        } catch (const StartupError& e) {
+            return e.what();
+        }
+        return "it opened";
+    }
+
+    TickingClock clock;
+    std::unique_ptr<OpenHaptics> device;
+    DeviceInfo info;
+    DeviceSample sample;
+    DeviceCommand command;
+};
+
+TEST_F(OpenHapticsTest, a_library_that_is_not_there_is_said_with_every_place_that_was_looked_in) {
+    try {
+        const hd::Library library("");
+        GTEST_SKIP() << "the maker's library is installed here: " << library.path();
+    } catch (const StartupError& e) {
+        EXPECT_TRUE(says(e.what(), {"libHD.so", "/usr/lib/libHD.so", "mend:", "device.hd_library"}))
+            << e.what();
+    }
+    try {
+        const hd::Library library("/nowhere/libHD.so");
+        ADD_FAILURE();
+    } catch (const StartupError& e) {
+        EXPECT_TRUE(says(e.what(), {"/nowhere/libHD.so", "No such file"})) << e.what();
+    }
+}
+
+TEST_F(OpenHapticsTest, a_library_without_one_of_the_functions_is_refused_by_both_names) {
+    try {
+        const hd::Library library(TACT_FAKE_HD_OLD);
+        ADD_FAILURE();
+    } catch (const StartupError& e) {
+        EXPECT_TRUE(says(e.what(), {TACT_FAKE_HD_OLD, "no function hdDisableDevice", "mend:"})) << e.what();
+    }
+}
+
+TEST_F(OpenHapticsTest, millimetres_and_columns_become_a_pose_about_the_middle_of_the_workspace) {
+    open();
+    EXPECT_EQ(info.name, "Fake Arm by OpenHaptics");
+    EXPECT_EQ(info.workspace_half_m, Vec3(0.080, 0.060, 0.035));
+    EXPECT_DOUBLE_EQ(info.stiffness_n_m_max, 500.0);
+    EXPECT_DOUBLE_EQ(info.force_n_max, 3.3);
+    EXPECT_EQ(info.torque_n_m_max, 0.0);
+    fake().position_mm[0] = 12.0;
+    fake().position_mm[1] = 10.0;
+    fake().position_mm[2] = -15.0;
+    fake().buttons = 3;
+    ASSERT_EQ(cycle(Vec3::Zero(), false), IoStatus::ok);
+    EXPECT_LT((sample.T_dev_tool.p_m - Vec3(0.012, 0.0, -0.020)).norm(), 1e-12);
+    EXPECT_LT((sample.T_dev_tool.q * Vec3::UnitX() - Vec3(0.0, 0.0, -1.0)).norm(), 1e-12);
+    EXPECT_LT((sample.T_dev_tool.q * Vec3::UnitZ() - Vec3(1.0, 0.0, 0.0)).norm(), 1e-12);
+    EXPECT_EQ(sample.twist_dev.angular_rad_s, Vec3::Constant(0.25));
+    EXPECT_EQ(sample.buttons, 3U);
+    EXPECT_TRUE(sample.hand_present);
+    fake().inkwell = 1;
+    cycle(Vec3::Zero(), false);
+    EXPECT_FALSE(sample.hand_present);
+}
+
+TEST_F(OpenHapticsTest, velocity_comes_in_metres_and_the_force_within_what_the_arm_can_show) {
+    open();
+    power();
+    cycles(500, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_NEAR(sample.twist_dev.linear_m_s.x(), 1.0 / 5.0, 1e-3);  // force over damping
+    cycles(2, Vec3(30.0, 40.0, 0.0), true);
+    EXPECT_LT((shown() - Vec3(0.6, 0.8, 0.0) * 3.3).norm(), 1e-12);
+    EXPECT_FALSE(fake().ramping.load());
+    EXPECT_TRUE(fake().clamping.load());
+}
+
+TEST_F(OpenHapticsTest, an_arm_with_six_motors_gets_its_torque_in_millinewton_metres) {
+    fake().dof = 6;
+    open();
+    EXPECT_GT(info.torque_n_m_max, 0.0);
+    command.wrench_dev.torque_n_m = Vec3(0.0, 0.02, 0.0);
+    power();
+    EXPECT_NEAR(fake().torque_mn_m[1].load(), 20.0, 1e-9);
+    command.wrench_dev.torque_n_m = Vec3(0.0, 2.0, 0.0);
+    cycle(Vec3::Zero(), true);
+    EXPECT_NEAR(fake().torque_mn_m[1].load(), 1e3 * info.torque_n_m_max, 1e-9);
+}
+
+struct Error {
+    unsigned code;
+    hd::FaultKind kind;
+    bool ends;
+};
+
+TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_needs_a_new_enable_edge) {
+    using Kind = hd::FaultKind;
+    for (const Error& e :
+         {Error{0x200, Kind::motors_warm, false}, Error{0x201, Kind::limit, false},
+          Error{0x202, Kind::limit, false}, Error{0x203, Kind::limit, false},
+          Error{0x204, Kind::limit, false}, Error{0x300, Kind::device, false}, Error{0x302, Kind::link, true},
+          Error{0x304, Kind::timer, true}, Error{0x400, Kind::timer, true}, Error{0x401, Kind::timer, true},
+          Error{0x402, Kind::frame, false}, Error{0x103, Kind::refused, false},
+          Error{0x600, Kind::refused, false}, Error{0x999, Kind::refused, false}}) {
+        SCOPED_TRACE(e.code);
+        fake().reset();
+        open();
+        power();
+        fake().raise(e.code);
+        EXPECT_EQ(cycle(Vec3(1.0, 0.0, 0.0), true), e.ends ? IoStatus::lost : IoStatus::fault);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        EXPECT_EQ(sample.state, DeviceState::fault);
+        const hd::Counts c = device->counts();
+        EXPECT_EQ(c.faults[static_cast<std::size_t>(e.kind)], 1U);
+        EXPECT_EQ(c.last_code, e.code);
+        EXPECT_EQ(c.last_kind, e.kind);
+        // Neither time nor enable that is up all along brings it back.
+        EXPECT_EQ(cycles(300, Vec3(1.0, 0.0, 0.0), true), e.ends ? IoStatus::lost : IoStatus::fault);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        cycles(200, Vec3(1.0, 0.0, 0.0), false);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        cycles(3, Vec3(1.0, 0.0, 0.0), true);
+        if (e.ends) {
+            EXPECT_EQ(shown(), Vec3::Zero());
+            EXPECT_EQ(cycle(Vec3::Zero(), false), IoStatus::lost);
+            info = device->open();
+            EXPECT_EQ(cycles(2, Vec3::Zero(), false), IoStatus::ok);
+            power();
+        } else {
+            EXPECT_EQ(sample.state, DeviceState::powered);
+            EXPECT_EQ(shown().x(), 1.0);
+        }
+        EXPECT_FALSE(std::string(hd::meaning(e.code).says).empty());
+        EXPECT_FALSE(std::string(hd::meaning(e.code).mends).empty());
+    }
+}
+
+TEST_F(OpenHapticsTest, a_fault_that_stays_is_not_left_and_an_edge_during_it_counts_for_nothing) {
+    open();
+    power();
+    fake().always = true;
+    fake().raise(0x200);
+    cycles(150, Vec3::Zero(), false);
+    EXPECT_EQ(sample.state, DeviceState::fault);
+    EXPECT_EQ(device->counts().faults[static_cast<std::size_t>(hd::FaultKind::motors_warm)], 150U);
+    fake().always = false;
+    cycles(2, Vec3::Zero(), false);
+    cycles(2, Vec3(1.0, 0.0, 0.0), true);  // an edge too early
+    cycles(300, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_EQ(shown(), Vec3::Zero());
+    cycles(2, Vec3::Zero(), false);
+    power();
+}
+
+TEST_F(OpenHapticsTest, a_servo_that_stands_still_for_ten_milliseconds_is_answered_with_zero) {
+    open();
+    power();
+    clock.wait_until(clock.now() + milliseconds(9));
+    EXPECT_EQ(shown().x(), 1.0);
+    clock.wait_until(clock.now() + milliseconds(3));
+    EXPECT_EQ(shown(), Vec3::Zero());
+    static_cast<void>(device->read(sample, clock.now()));
+    EXPECT_EQ(sample.state, DeviceState::watchdog_tripped);
+    EXPECT_EQ(device->counts().watchdog_trips, 1U);
+}
+
+TEST_F(OpenHapticsTest, relax_needs_a_new_edge_although_enable_stayed_up) {
+    open();
+    power();
+    device->relax();
+    cycles(20, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_EQ(shown(), Vec3::Zero());
+    cycles(2, Vec3::Zero(), false);
+    power();
+}
+
+TEST_F(OpenHapticsTest, poses_that_cannot_be_are_refused_counted_and_grow_old) {
+    for (auto* const spoil : {&fake().not_a_number, &fake().no_rotation}) {
+        fake().reset();
+        open();
+        ASSERT_EQ(cycle(Vec3::Zero(), false), IoStatus::ok);
+        const std::uint64_t before = sample.sequence;
+        *spoil = true;
+        EXPECT_EQ(cycle(Vec3::Zero(), false), IoStatus::stale);
+        EXPECT_EQ(sample.sequence, before);
+        EXPECT_TRUE(sample.T_dev_tool.finite());
+        EXPECT_EQ(device->counts().refused_samples, 1U);
+        EXPECT_EQ(cycles(110, Vec3::Zero(), false), IoStatus::lost);
+        *spoil = false;
+        EXPECT_EQ(cycle(Vec3::Zero(), false), IoStatus::ok);
+    }
+}
+
+TEST_F(OpenHapticsTest, a_scheduler_that_stops_calling_is_a_lost_device) {
+    open();
+    power();
+    fake().never_calls = true;
+    EXPECT_EQ(cycles(50, Vec3::Zero(), true), IoStatus::stale);
+    EXPECT_EQ(cycles(60, Vec3::Zero(), true), IoStatus::lost);
+    EXPECT_EQ(device->write(command, clock.now()), IoStatus::lost);
+}
+
+TEST_F(OpenHapticsTest, an_arm_that_calibrates_itself_is_waited_for) {
+    fake().needs_update = true;
+    open();
+    EXPECT_EQ(fake().updates.load(), 1U);
+    EXPECT_EQ(device->counts().calibrations, 1U);
+}
+
+TEST_F(OpenHapticsTest, the_stylus_belongs_into_the_inkwell_and_the_words_say_so) {
+    fake().styles = hd::kStyleInkwell;
+    fake().needs_manual = true;
+    EXPECT_TRUE(says(refusal(), {"calibration pose within 5 s", "mend:", "inkwell"}));
+    EXPECT_TRUE(says(asked, {"inkwell"}));
+    EXPECT_EQ(fake().updates.load(), 0U);
+    fake().inkwell = 1;
+    open();
+    EXPECT_EQ(fake().updates.load(), 1U);
+}
+
+TEST_F(OpenHapticsTest, the_reset_pose_is_confirmed_by_a_button_after_half_a_second_of_rest) {
+    // The clock presses the button after a second.
+    class Person final : public Clock {
+    public:
+        explicit Person(TickingClock& t) : t_(t), begin_(t.now()) {}
+        Instant now() noexcept override { return t_.now(); }
+        void wait_until(Instant t) noexcept override {
+            fake().buttons = t_.now() - begin_ > std::chrono::seconds(1) ? 1 : 0;
+            t_.wait_until(t);
+        }
+
+    private:
+        TickingClock& t_;
+        Instant begin_;
+    } person(clock);
+    fake().styles = hd::kStyleEncoderReset;
+    fake().needs_manual = true;
+    OpenHaptics premium(settings(), person);
+    static_cast<void>(premium.open());
+    EXPECT_EQ(fake().updates.load(), 1U);
+    EXPECT_TRUE(says(asked, {"reset pose", "button"}));
+    // A button that is down from the start, or an arm that moves, confirms nothing.
+    fake().reset();
+    fake().styles = hd::kStyleEncoderReset;
+    fake().needs_manual = true;
+    fake().buttons = 1;
+    EXPECT_TRUE(says(refusal(), {"calibration pose"}));
+}
+
+TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_end_it) {
+    fake().styles = hd::kStyleInkwell;
+    open();
+    power();
+    fake().needs_update = true;
+    fake().inkwell = 1;
+    cycles(200, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_EQ(fake().updates.load(), 0U);
+    EXPECT_EQ(sample.state, DeviceState::powered);
+    cycles(2, Vec3::Zero(), false);
+    EXPECT_EQ(fake().updates.load(), 1U);
+    fake().inkwell = 0;
+    fake().needs_manual = true;
+    EXPECT_EQ(cycles(100, Vec3::Zero(), false), IoStatus::lost);
+    EXPECT_EQ(device->counts().last_kind, hd::FaultKind::calibration);
+}
+
+TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
+    fake().init_error = 0x600;
+    EXPECT_TRUE(
+        says(refusal(), {"default haptic device", "no licence", "0x600", "mend:", "device.hd_device"}));
+    fake().reset();
+    fake().init_error = 0x302;
+    EXPECT_TRUE(says(refusal(), {"0x302", "cable"}));
+    fake().reset();
+    fake().never_calls = true;
+    EXPECT_TRUE(says(refusal(), {"called for no cycle"}));
+    fake().reset();
+    fake().not_a_number = true;
+    EXPECT_TRUE(says(refusal(), {"no usable position"}));
+    fake().reset();
+    fake().force_n_max = std::nan("");
+    EXPECT_TRUE(says(refusal(), {"of no arm there is"}));
+    fake().reset();
+    fake().raise(0x304);
+    EXPECT_TRUE(says(refusal(), {"scheduler broke off", "mend:"}));
+    fake().reset();
+    fake().model = "Evil\x1b[2J";
+    open();
+    EXPECT_EQ(info.name, "Evil?[2J by OpenHaptics");
+}
+
+// The library's thread and the servo's, as they really are.
+TEST_F(OpenHapticsTest, samples_and_forces_cross_between_the_threads) {
+    fake().threaded = true;
+    OpenHapticsSettings s = settings();
+    s.calibration_wait = std::chrono::seconds(60);
+    OpenHaptics own(s);
+    static_cast<void>(own.open());
+    const Instant end = Monotonic::now() + std::chrono::minutes(1);
+    DeviceCommand c;
+    bool felt = false;
+    for (bool enable = false; !felt && Monotonic::now() < end;) {
+        static_cast<void>(own.read(sample, Monotonic::now()));
+        if (sample.state == DeviceState::watchdog_tripped) enable = false;
+        c.enable = enable;
+        c.wrench_dev.force_n = Vec3(1.0, 0.0, 0.0);
+        ++c.heartbeat;
+        static_cast<void>(own.write(c, Monotonic::now()));
+        if (sample.state == DeviceState::ready) enable = true;
+        felt = sample.state == DeviceState::powered && sample.twist_dev.linear_m_s.x() > 0.0;
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    EXPECT_TRUE(felt);
+    own.relax();
+    EXPECT_TRUE(sample.T_dev_tool.finite());
+}
+
+}  // namespace
+}  // namespace tact
