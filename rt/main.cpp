@@ -34,6 +34,7 @@
 #include "rt/loop/house.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
+#include "rt/loop/supervisor.hpp"
 #include "rt/loop/thread_setup.hpp"
 #include "rt/start_bodies.hpp"
 
@@ -256,11 +257,14 @@ int run(const Options& o, const Overrides& overrides) {
     if (std::unique_ptr<Tracker> tracker = make_tracker(tracker_settings_from(config)))
         head.emplace(head_settings_from(config), std::move(tracker), region->head);
     const std::string head_on = head ? head->open().name : "no head tracker";
+    const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
+    const std::string lines_on = lines ? lines->open().name : "no safety lines";
     ServoSettings settings = settings_from(config, driver);
     const HandParts hand{device.get(), model.get(), info};
 
     ServoClock clock(duration_us(config.servo.spin_us));
-    Servo servo({.clock = clock, .hands = {&hand, 1}, .region = *region, .mail = mail}, settings);
+    Servo servo({.clock = clock, .hands = {&hand, 1}, .region = *region, .mail = mail, .lines = lines.get()},
+                settings);
     // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
     struct LastModel {
         Servo& servo;
@@ -273,8 +277,8 @@ int run(const Options& o, const Overrides& overrides) {
     for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
     if (o.check) {
         device->relax();
-        std::printf("tact-rt: scene %s, device %s, %s, configuration: all good\n", o.scene.c_str(),
-                    info.name.c_str(), head_on.c_str());
+        std::printf("tact-rt: scene %s, device %s, %s, %s, configuration: all good\n", o.scene.c_str(),
+                    info.name.c_str(), head_on.c_str(), lines_on.c_str());
         return 0;
     }
 
@@ -293,9 +297,16 @@ int run(const Options& o, const Overrides& overrides) {
     if (driver.emulated && config.safety.timing_latches == "real") {
         spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
     }
-    spdlog::info("{} on {}; {}; {}; session {}", o.scene, info.name, head_on, schedule_text(platform.flags),
-                 o.session);
+    spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, info.name, head_on, lines_on,
+                 schedule_text(platform.flags), o.session);
     if (head) head->start();
+    std::optional<Supervisor> supervisor;
+    // Emulated lines guard nothing: there lateness drops what it drops on an emulated device.
+    if (lines && (config.lines.driver != "sim" || settings.watchdogs.timing_latches)) {
+        supervisor.emplace(mail.pulse, duration_us(config.safety.supervisor_us_max),
+                           [&lines] { lines->drop(); });
+        supervisor->start(thread.thread_id);
+    }
 
     House house({.session = o.session,
                  .seconds = o.seconds,

@@ -40,6 +40,10 @@ void show(const Observer& observer, bool as_json) {
     std::printf("state %s: %s\nscene %s\n", report["state"].get<std::string>().c_str(),
                 report["reason"].get<std::string>().c_str(),
                 report["scene"]["path"].get<std::string>().c_str());
+    if (report.contains("lines")) {
+        std::printf("safety lines %s: %s\n", report["lines"]["state"].get<std::string>().c_str(),
+                    report["lines"]["reason"].get<std::string>().c_str());
+    }
     std::printf("law %s, goal %.0f Hz\n",
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);

@@ -135,6 +135,10 @@ json controller_report(const RtRegion& region) {
     const HealthTopic& h = *health;
     j["state"] = run_state_text(static_cast<RunState>(h.state));
     j["reason"] = run_reason_text(static_cast<RunReason>(h.reason));
+    if (h.lines != 0) {
+        j["lines"] = {{"state", lines_text(static_cast<LinesShown>(h.lines))},
+                      {"reason", run_reason_text(static_cast<RunReason>(h.lines_reason))}};
+    }
     j["force_rate_hz"] = h.force_rate_mean_hz;
     j["servo"] = {{"rate_window_hz", h.force_rate_hz},
                   {"period_us", h.period_ns > 0 ? json(us(static_cast<double>(h.period_ns))) : json(nullptr)},

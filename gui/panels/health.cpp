@@ -103,6 +103,12 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
             badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
         }
         text_small(theme, grade_colour(v.grade), v.words);
+        const auto lines = static_cast<LinesShown>(h.lines);
+        if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
+            const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
+            text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
+                       std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
+        }
         row(theme, "Force rate", rate_text(h.force_rate_hz), rate_verdict(h.force_rate_hz, h.goal_hz));
         if (h.period_ns > 0) {
             lateness(theme, h);

@@ -61,7 +61,7 @@ struct LinesSample {
     std::uint64_t sequence = 0;  // rises with every look
     std::uint64_t trips = 0;     // times that it went to stopped: none is missed by who looks seldom
     LinesState state = LinesState::stopped;
-    LinesCause cause = LinesCause::lost;  // present or last, until re-armed; the gravest of several
+    LinesCause cause = LinesCause::lost;  // present or last, until re-armed; none: has not stood long enough
     std::uint8_t inputs = 0;              // LineInput as read
     std::uint8_t outputs = 0;             // LineOutput as driven
 };

@@ -113,7 +113,7 @@ LineReading GpioPort::read() noexcept {
     std::uint32_t active = 0;
     // The node after the reading: it must have been of a chip that was there.
     if (!access_ || failed_ || !access_->get(active) || !there()) {
-        access_.reset();
+        failed_ = true;
         return {};
     }
     return {.good = true, .closed = inputs_of(active), .touched = inputs_of(std::exchange(touched_, 0))};
@@ -130,6 +130,7 @@ bool GpioPort::write(std::uint8_t outputs) noexcept {
         ok = access_->set(i, (outputs & meaning_[i]) != 0) && ok;
     }
     written_ = ok ? std::optional(outputs) : std::nullopt;
+    if (failed_) access_.reset();  // that was the last word to it
     return ok;
 }
 

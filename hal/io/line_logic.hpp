@@ -44,7 +44,7 @@ private:
 
     LineLogicSettings settings_;
     LinesState state_ = LinesState::stopped;
-    LinesCause cause_ = LinesCause::lost;
+    LinesCause cause_ = LinesCause::none;
     std::uint64_t trips_ = 0, rearms_ = 0, drops_ = 0;
     bool well_ = false;        // since well_since_
     bool differ_ = false;      // the channels, since differ_since_

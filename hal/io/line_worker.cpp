@@ -30,7 +30,10 @@ LineReading LineWorker::look(Instant now) noexcept {
     }
     if (!counts_.up) return {};
     const LineReading in = port_.read();
-    if (!in.good) lose(now);
+    if (!in.good) {
+        static_cast<void>(port_.write(0));  // it may still drive what it cannot read
+        lose(now);
+    }
     return in;
 }
 

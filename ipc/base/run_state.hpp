@@ -27,6 +27,12 @@ enum class RunReason : std::uint8_t {
     too_late,
     gui_silent,
     model_failed,
+    emergency_stop,
+    stop_channels,  // the two of the emergency stop disagree
+    dead_man,
+    amplifier_readback,
+    lines_lost,
+    supervisor,
 };
 
 }  // namespace tact

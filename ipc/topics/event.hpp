@@ -32,6 +32,7 @@ enum class EventCode : std::uint16_t {
     torque_slew_limited,  // a: wanted N m per cycle, b: limit
     body_selected,        // a: id, b: points of its finest level
     bodies_changed,       // a: bodies now, b: options (DockingOption)
+    lines_changed,        // a: LinesShown, b: RunReason of what stops or stopped
 };
 
 struct EventTopic {

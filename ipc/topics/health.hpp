@@ -19,8 +19,11 @@ enum ScheduleFlag : std::uint32_t {
     kScheduleDmaLatency = 1U << 4,  // /dev/cpu_dma_latency held at 0
 };
 
+// Safety lines: LinesState of hal/api/lines.hpp, and none.
+enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
+
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -53,7 +56,9 @@ struct alignas(64) HealthTopic {
     // freely running loop kept its rate by using older partial sums.
     float fresh_mean, fresh_least;
     float rested;               // of that time; it left this to others while it was ahead of its goal
-    std::uint8_t reserved[44];  // zero
+    std::uint8_t lines;         // LinesShown
+    std::uint8_t lines_reason;  // RunReason: what they stop for, or stopped last
+    std::uint8_t reserved[42];  // zero
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 256);
 

@@ -68,6 +68,32 @@ const char* run_reason_text(RunReason reason) noexcept {
             return "the visual process went silent";
         case RunReason::model_failed:
             return "the force model failed";
+        case RunReason::emergency_stop:
+            return "the emergency stop is pressed";
+        case RunReason::stop_channels:
+            return "the emergency stop's two contacts disagree: press it once more";
+        case RunReason::dead_man:
+            return "the dead-man switch is released";
+        case RunReason::amplifier_readback:
+            return "the amplifier's power does not follow its enable line";
+        case RunReason::lines_lost:
+            return "the safety lines cannot be read";
+        case RunReason::supervisor:
+            return "the supervisor dropped the enable line: the servo stood still";
+    }
+    return kUnknown;
+}
+
+const char* lines_text(LinesShown lines) noexcept {
+    switch (lines) {
+        case LinesShown::none:
+            return "";
+        case LinesShown::stopped:
+            return "stop";
+        case LinesShown::waiting:
+            return "wait to be re-armed";
+        case LinesShown::permitted:
+            return "permit";
     }
     return kUnknown;
 }
@@ -118,6 +144,8 @@ const char* event_code_text(EventCode code) noexcept {
             return "body taken into the hand";
         case EventCode::bodies_changed:
             return "bodies changed";
+        case EventCode::lines_changed:
+            return "safety lines";
     }
     return kUnknown;
 }
@@ -257,6 +285,10 @@ std::string event_text(const EventTopic& event) {
             return what + ": body " + a + ", " + b + " points";
         case EventCode::bodies_changed:
             return what + ": " + a + " now";
+        case EventCode::lines_changed: {
+            const std::string why = run_reason_text(code_of<RunReason>(event.b));
+            return what + ": " + lines_text(code_of<LinesShown>(event.a)) + (why.empty() ? "" : ": " + why);
+        }
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);
     }

@@ -31,6 +31,12 @@ std::vector<std::string> tracker_names() {
     return names;
 }
 
+std::vector<std::string> lines_names() {
+    std::vector<std::string> names;
+    for (const LinesEntry& l : lines_drivers()) names.emplace_back(l.name);
+    return names;
+}
+
 std::vector<Key> keys_of(RtConfig& c) {
     return {
         {"servo.period_us", &c.servo.period_us, 50, 100000, {}},
@@ -59,6 +65,22 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"tracker.reach_m", &c.tracker.reach_m, 0.1, 3, {}},
         {"tracker.position_screen_m", c.tracker.position_screen_m, -10, 10, {}},
         {"tracker.quat_screen_tracker_xyzw", c.tracker.quat_screen_tracker_xyzw, -1, 1, {}},
+        {"lines.driver", &c.lines.driver, 0, 0, lines_names()},
+        {"lines.chip", &c.lines.chip, 0, 0, {}},
+        {"lines.emergency_stop_a", &c.lines.emergency_stop_a, 0, 0, {}},
+        {"lines.emergency_stop_b", &c.lines.emergency_stop_b, 0, 0, {}},
+        {"lines.dead_man", &c.lines.dead_man, 0, 0, {}},
+        {"lines.amplifier", &c.lines.amplifier, 0, 0, {}},
+        {"lines.enable", &c.lines.enable, 0, 0, {}},
+        {"lines.watchdog", &c.lines.watchdog, 0, 0, {}},
+        {"lines.lamp", &c.lines.lamp, 0, 0, {}},
+        {"lines.bias", &c.lines.bias, 0, 0, {"none", "up", "down"}},
+        {"lines.edges", &c.lines.edges, 0, 0, {}},
+        {"lines.look_us", &c.lines.look_us, 100, 10000, {}},
+        {"lines.release_ms", &c.lines.release_ms, 20, 50, {}},
+        {"lines.discrepancy_ms", &c.lines.discrepancy_ms, 1, 500, {}},
+        {"lines.follow_ms", &c.lines.follow_ms, 1, 5000, {}},
+        {"lines.age_us_max", &c.lines.age_us_max, 1000, 1e6, {}},
         {"shape.force_scale", &c.shape.force_scale, 0, 1e6, {}},
         {"shape.damping_n_s_m", &c.shape.damping_n_s_m, 0, 100, {}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
@@ -76,6 +98,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"safety.late_us_max", &c.safety.late_us_max, 100, 1e6, {}},
         {"safety.overruns_max", &c.safety.overruns_max, 1, 1000, {}},
         {"safety.timing_latches", &c.safety.timing_latches, 0, 0, {"real", "always", "never"}},
+        {"safety.supervisor_us_max", &c.safety.supervisor_us_max, 1000, 1e6, {}},
         {"safety.gui_silent_ms", &c.safety.gui_silent_ms, 50, 60000, {}},
         {"safety.on_gui_silent", &c.safety.on_gui_silent, 0, 0, {"continue", "ramp"}},
         {"governor.law", &c.governor.law, 0, 0, {kLawNames.begin(), kLawNames.end()}},
@@ -195,7 +218,7 @@ void read_config(const std::string& path, RtConfig& config) {
         if (table == nullptr) {
             throw StartupError(
                 at(path, node.source()) + ": " + section_name, "this key belongs to no section",
-                "put it under [servo], [device], [arm], [tracker], [shape], [safety] or [governor]");
+                "put it under [servo], [device], [arm], [tracker], [lines], [shape], [safety] or [governor]");
         }
         if (section_name == "arm") {
             read_arm_section(*table, path, config.arm);
@@ -269,6 +292,7 @@ ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
     s.governor.gain = c.governor.gain;
     s.governor.tolerance = c.governor.tolerance;
     s.governor_interval = duration_us(c.governor.interval_ms * 1e3);
+    s.lines_age_max = duration_us(c.lines.age_us_max);
     s.gui_silent = duration_us(c.safety.gui_silent_ms * 1e3);
     s.gui_silent_ramps = c.safety.on_gui_silent == "ramp";
     return s;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string>
 
+#include "hal/lines_registry.hpp"
 #include "hal/registry.hpp"
 #include "hal/tracker_registry.hpp"
 #include "rt/loop/head_feed.hpp"
@@ -52,6 +53,20 @@ struct RtConfig {
         std::array<double, 3> position_screen_m{0.0, 0.0, 0.0};
         std::array<double, 4> quat_screen_tracker_xyzw{0.0, 0.0, 0.0, 1.0};
     } tracker;
+    struct Lines {
+        std::string driver = "none";
+        std::string chip = "cp2112_gpio";  // label, name or path
+        // A line each: number or name, '!' before it where low is active; "": not fitted.
+        std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier;
+        std::string enable, watchdog, lamp;
+        std::string bias = "none";  // of the inputs, where the chip has one: "up", "down"
+        bool edges = false;         // the chip has interrupts
+        double look_us = 1000.0;    // between two looks; a slow adapter takes longer
+        double release_ms = 30.0;
+        double discrepancy_ms = 20.0;
+        double follow_ms = 100.0;
+        double age_us_max = 20000.0;
+    } lines;
     ArmFigures arm = arm_figures("premium-1.5");  // of real devices; [arm] is read by config_arm.cpp
     struct Shape {
         double force_scale = 1.0;
@@ -73,6 +88,7 @@ struct RtConfig {
         double late_us_max = 5000.0;
         std::int64_t overruns_max = 5;
         std::string timing_latches = "real";  // "real": on real devices only; "always"; "never"
+        double supervisor_us_max = 5000.0;    // of the servo's silence; with safety lines
         double gui_silent_ms = 500.0;
         std::string on_gui_silent = "continue";  // or "ramp"
     } safety;
@@ -93,6 +109,7 @@ void check_config(const RtConfig& config, const std::string& where);
 
 [[nodiscard]] ServoSettings settings_from(const RtConfig& config, const DeviceEntry& driver);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
+[[nodiscard]] LinesSettings lines_settings_from(const RtConfig& config);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);
 [[nodiscard]] Duration duration_us(double us);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "hal/api/haptic_device.hpp"
+#include "hal/api/lines.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/force/force_model.hpp"
@@ -32,6 +33,15 @@ struct HandCycle {
     std::array<Instant, 8> said_at{};  // per ChainAct: when an event last said so
 };
 
+// Safety lines, where there are any.
+struct LinesCycle {
+    LinesSample sample;
+    LinesCommand command;
+    RunReason stops = RunReason::none;  // force and arming
+    Duration age{0};
+    std::uint64_t trips_at_arming = 0;
+};
+
 struct CycleState {
     std::uint64_t cycle = 0;
     Instant planned{}, now{}, before{};
@@ -45,6 +55,8 @@ struct CycleState {
     RunEvents events;
     RunStatus run;
     Trip trip;
+    LinesCycle lines;
+    std::uint64_t drops_seen = 0;  // by the supervisor
     std::uint32_t hands = 0;
     HandCycle hand[kHandsMax];
 };

@@ -12,6 +12,7 @@
 #include "ipc/shm/latest.hpp"
 #include "ipc/shm/ring.hpp"
 #include "rt/force/force_model.hpp"
+#include "rt/loop/supervisor.hpp"
 
 namespace tact {
 
@@ -140,6 +141,7 @@ struct ServoMail {
     BuildRequest build;
     std::atomic<int> stop_signal{0};  // signal number, or -1: the run's time is over
     std::atomic<bool> ended{false};
+    ServoPulse pulse;
 };
 
 }  // namespace tact

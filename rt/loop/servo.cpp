@@ -31,6 +31,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
     : clock_(parts.clock),
       region_(parts.region),
       mail_(parts.mail),
+      lines_(parts.lines),
       settings_(settings),
       arena_(sizeof(CycleState) + 4096),
       c_(arena_.take<CycleState>(1).data()),
@@ -124,6 +125,7 @@ void Servo::wake(CycleState& c) noexcept {
 
 void Servo::sense(CycleState& c) noexcept {
     take_mail(c);
+    look_at_lines(c);
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
         h.read_status = h.device->read(h.sample, c.now);
@@ -175,7 +177,10 @@ void Servo::safety(CycleState& c) noexcept {
     WatchdogInput look{.now = c.now,
                        .sample_taken_at = c.now,
                        .lateness = std::max(c.lateness, c.behind),
-                       .overran = c.overran};
+                       .overran = c.overran,
+                       .lines = c.lines.stops,
+                       .lines_age = c.lines.age,
+                       .supervisor = supervisor_dropped(c)};
     c.events.hand_present = true;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         const HandCycle& h = c.hand[i];
@@ -204,6 +209,7 @@ void Servo::safety(CycleState& c) noexcept {
         c.events.stop && !dry_ && (still || (!amplifier_on(c.run.state) && c.now - c.run.since > kStopMax));
     if (!dry_) c.run = next_status(c.run, c.events, c.now);
     answer_state_order(c, before.state);
+    rearm_lines(c, before.state);
 
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
@@ -236,6 +242,7 @@ void Servo::actuate(CycleState& c) noexcept {
         h.write_status = h.device->write(
             {.wrench_dev = h.out.wrench_dev, .enable = h.out.enable, .heartbeat = c.cycle}, c.now);
     }
+    drive_lines(c);
 }
 
 void Servo::publish(CycleState& c) noexcept {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "hal/api/haptic_device.hpp"
+#include "hal/api/lines.hpp"
 #include "ipc/base/arena.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pacer.hpp"
@@ -40,6 +41,7 @@ struct ServoSettings {
     Duration gui_silent = std::chrono::milliseconds(500);
     bool gui_silent_ramps = false;  // else it is only said
     std::uint32_t dry_cycles = 1000;
+    Duration lines_age_max = std::chrono::milliseconds(20);  // of their newest look
 };
 
 struct HandParts {
@@ -53,6 +55,7 @@ struct ServoParts {
     std::span<const HandParts> hands;  // 1 or 2
     RtRegion& region;
     ServoMail& mail;
+    Lines* lines = nullptr;  // null: none are fitted
 };
 
 class Servo {
@@ -92,7 +95,8 @@ private:
     void govern(CycleState& c) noexcept TACT_RT;
     void close(CycleState& c) noexcept TACT_RT;
 
-    // Parts of stages: mail in and out (servo_mail.cpp), topics out (servo_publish.cpp).
+    // Parts of stages: mail in and out (servo_mail.cpp), safety lines (servo_lines.cpp), topics out
+    // (servo_publish.cpp).
     void take_model(CycleState& c) noexcept TACT_RT;
     void ask_for_model(CycleState& c) noexcept TACT_RT;
     void take_mail(CycleState& c) noexcept TACT_RT;
@@ -101,6 +105,11 @@ private:
     void tell_bodies(CycleState& c, const ModelBodies& before) noexcept TACT_RT;
     void acknowledge(const ServoOrder& order, CommandResult result) noexcept TACT_RT;
     void answer_state_order(CycleState& c, RunState before) noexcept TACT_RT;
+    void look_at_lines(CycleState& c) noexcept TACT_RT;
+    [[nodiscard]] RunReason lines_stop(const CycleState& c) const noexcept TACT_RT;
+    [[nodiscard]] bool supervisor_dropped(CycleState& c) noexcept TACT_RT;
+    void rearm_lines(CycleState& c, RunState before) noexcept TACT_RT;
+    void drive_lines(CycleState& c) noexcept TACT_RT;
     void note_fault(const CycleState& c) noexcept TACT_RT;
     void say(EventCode code, double a, double b) noexcept TACT_RT;
     void say_acts(CycleState& c, HandCycle& h) noexcept TACT_RT;
@@ -121,6 +130,7 @@ private:
     Clock& clock_;
     RtRegion& region_;
     ServoMail& mail_;
+    Lines* lines_;
     ServoSettings settings_;
     Arena arena_;
     CycleState* c_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "rt/loop/lines_words.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
 
@@ -129,6 +130,10 @@ void Servo::publish_health(const CycleState& c) noexcept {
     t.reason = static_cast<std::uint8_t>(c.run.reason);
     t.gui_attached = c.house.gui_attached != 0 ? 1 : 0;
     t.device_state = static_cast<std::uint8_t>(c.hand[0].sample.state);
+    if (lines_ != nullptr) {
+        t.lines = static_cast<std::uint8_t>(shown(c.lines.sample.state));
+        t.lines_reason = static_cast<std::uint8_t>(reason_of(c.lines.sample.cause));
+    }
     t.fresh_mean = static_cast<float>(statistics_.work.fresh_mean());
     t.fresh_least = static_cast<float>(statistics_.work.fresh_least());
     t.rested = static_cast<float>(statistics_.work.rested());

@@ -181,12 +181,16 @@ void prepare_thread(const ScheduleWish& wish, Platform& platform) {
 }
 
 void prepare_builder_thread(int servo_thread_id) {
+    prepare_helper_thread("builder", servo_thread_id);
+    // On Linux niceness belongs to the thread. What is refused here costs no more than some fairness.
+    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10));
+}
+
+void prepare_helper_thread(const char* name, int servo_thread_id) {
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
-    pthread_setname_np(pthread_self(), "builder");
-    // On Linux niceness belongs to the thread. What is refused here costs no more than some fairness.
-    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10));
+    pthread_setname_np(pthread_self(), name);
     cpu_set_t servo, own;
     CPU_ZERO(&servo);
     CPU_ZERO(&own);

@@ -30,8 +30,9 @@ struct ScheduleWish {
 void prepare_process(const ScheduleWish& wish, Platform& platform);
 // Scheduling class, core, signal mask, touched stack. No allocation afterwards on this thread.
 void prepare_thread(const ScheduleWish& wish, Platform& platform);
-// A thread that may take its time: below ordinary priority, off the core that the servo is pinned to where
-// there is another, no signals.
+// Off the core that the servo is pinned to where there is another, no signals.
+void prepare_helper_thread(const char* name, int servo_thread_id);
+// A thread that may take its time: the same, below ordinary priority.
 void prepare_builder_thread(int servo_thread_id);
 void release_process(Platform& platform);
 

@@ -25,6 +25,7 @@ struct RunEvents {
     bool disarm = false;
     bool reset = false;
     bool hand_present = false;
+    bool arm_barred = false;  // by safety lines: it would trip at once
     bool gui_silent = false;  // only where the configuration asks for a reaction
     RunReason trip = RunReason::none;
 };
@@ -34,18 +35,25 @@ struct RunEvents {
     return s == RunState::armed || s == RunState::active;
 }
 
-// A device that is gone is a fault at any time. What concerns only the force (its timing, its value) is a
-// fault only while a force may come: nobody has to reset a controller that was slow while it loaded a scene.
+// A device that is gone is a fault at any time, and so is an emergency stop. What concerns only the force
+// (its timing, its value) is a fault only while a force may come: nobody has to reset a controller that was
+// slow while it loaded a scene, or whose pedal nobody stood on.
 [[nodiscard]] constexpr bool trips(RunState s, RunReason r) noexcept {
     switch (r) {
         case RunReason::device_lost:
         case RunReason::device_fault:
         case RunReason::sample_stale:
+        case RunReason::emergency_stop:
+        case RunReason::stop_channels:
+        case RunReason::amplifier_readback:
+        case RunReason::lines_lost:
             return s != RunState::off;
         case RunReason::force_not_finite:
         case RunReason::model_failed:
         case RunReason::overruns:
         case RunReason::too_late:
+        case RunReason::dead_man:
+        case RunReason::supervisor:
             return amplifier_on(s);
         case RunReason::none:
         case RunReason::by_command:
@@ -76,7 +84,8 @@ struct RunEvents {
         if (s.state == RunState::active && !e.hand_present) return to(RunState::armed, RunReason::hand_left);
         return s;
     }
-    if (e.arm && !e.stop && !e.disarm && !e.gui_silent) return to(RunState::armed, RunReason::by_command);
+    if (e.arm && !e.arm_barred && !e.stop && !e.disarm && !e.gui_silent)
+        return to(RunState::armed, RunReason::by_command);
     return s;
 }
 

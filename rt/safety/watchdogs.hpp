@@ -31,6 +31,9 @@ struct WatchdogInput {
     bool device_fault = false;
     bool model_failed = false;
     bool force_finite = true;
+    RunReason lines = RunReason::none;  // what the safety lines stop for
+    Duration lines_age{0};
+    bool supervisor = false;  // it has dropped the enable line
 };
 
 struct Trip {
@@ -44,12 +47,17 @@ public:
 
     Trip look(const WatchdogInput& in) noexcept TACT_RT {
         overruns_in_a_row_ = in.overran ? overruns_in_a_row_ + 1 : 0;
+        // A pedal that is up is no fault while no force may come, so it must not hide one that is.
+        const bool mild = in.lines == RunReason::dead_man || in.lines == RunReason::supervisor;
+        if (in.lines != RunReason::none && !mild) return {in.lines, to_us(in.lines_age)};
         if (in.device_lost) return {RunReason::device_lost, 0.0};
         if (in.device_fault) return {RunReason::device_fault, 0.0};
         if (!in.force_finite) return {RunReason::force_not_finite, 0.0};
         if (in.model_failed) return {RunReason::model_failed, 0.0};
         const Duration age = in.now - in.sample_taken_at;
         if (age > settings_.sample_age_max) return {RunReason::sample_stale, to_us(age)};
+        if (mild) return {in.lines, to_us(in.lines_age)};
+        if (in.supervisor) return {RunReason::supervisor, to_us(in.lateness)};
         if (!settings_.timing_latches) return {};
         if (in.lateness > settings_.late_max) return {RunReason::too_late, to_us(in.lateness)};
         if (overruns_in_a_row_ >= settings_.overruns_max) {

@@ -50,7 +50,9 @@ protected:
             const LinesSample& s = newest_;
             EXPECT_GE(s.sequence, before.sequence);
             EXPECT_GE(s.trips, before.trips);
-            EXPECT_EQ(s.state == LinesState::permitted, s.cause == LinesCause::none);
+            if (s.state == LinesState::permitted) {
+                EXPECT_EQ(s.cause, LinesCause::none);
+            }
             if (s.state != LinesState::permitted) {
                 EXPECT_EQ(s.outputs & kLineEnable, 0);
             }

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "hal/sim/sim_device.hpp"
+#include "hal/sim/sim_lines.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/base/clock.hpp"
 #include "rt/force/docking/docking_model.hpp"
@@ -74,13 +75,15 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     ManualClock clock;
     clock.advance(std::chrono::seconds(10));
     ServoMail mail;
+    SimLines lines;
+    static_cast<void>(lines.open());
     std::unique_ptr<ForceModel> model = make_model(1);
     const HandParts hand{&device, model.release(), device.open()};
     ServoSettings settings;
     settings.watchdogs.timing_latches = true;
     settings.chain.passivity = true;
     settings.model_deadline = true;  // long past on the machine's clock: the step's shortest way out
-    Servo servo({clock, {&hand, 1}, *region, mail}, settings);
+    Servo servo({clock, {&hand, 1}, *region, mail, &lines}, settings);
 
     rt_guard::abort_on_violation(guarded());
     servo.warm_up();
@@ -94,13 +97,15 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     const auto recover = [&] {
         device.inject(SimFault::none);
         static_cast<void>(device.open());
-        cycles(5);
+        lines.inject(LinesFault::none);
+        cycles(600);  // lines that were lost are looked for twice a second
         order(CommandKind::reset_fault);
         cycles(2);
         order(CommandKind::arm);
         cycles(50);
         ASSERT_EQ(servo.state().run.state, RunState::active);
     };
+    cycles(50);
     order(CommandKind::arm);
     cycles(1200);
     for (const SimFault fault :
@@ -110,6 +115,17 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
         ASSERT_EQ(servo.state().run.state, RunState::fault);
         recover();
     }
+    for (const LinesFault fault : {LinesFault::stop_pressed, LinesFault::pedal_released,
+                                   LinesFault::amplifier_off, LinesFault::unplugged}) {
+        lines.inject(fault);
+        cycles(150);
+        ASSERT_EQ(servo.state().run.state, RunState::fault);
+        recover();
+    }
+    lines.drop();
+    cycles(5);
+    ASSERT_EQ(servo.state().run.state, RunState::fault);
+    recover();
     clock.advance(std::chrono::milliseconds(8));
     cycles(5);
     ASSERT_EQ(servo.state().run.state, RunState::fault);

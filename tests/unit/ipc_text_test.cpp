@@ -26,8 +26,9 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
 
 TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(run_state_text, RunState::fault, false);
-    expect_own_words(run_reason_text, RunReason::model_failed, true);
-    expect_own_words(event_code_text, EventCode::bodies_changed, true);
+    expect_own_words(run_reason_text, RunReason::supervisor, true);
+    expect_own_words(event_code_text, EventCode::lines_changed, true);
+    expect_own_words(lines_text, LinesShown::permitted, true);
     expect_own_words(level_reason_text, LevelReason::picture_high, false);
     expect_own_words(command_kind_text, CommandKind::set_laplacian, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
@@ -46,6 +47,8 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.5, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
+    EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
+    EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
     EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
     EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");

@@ -69,6 +69,22 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.tracker.reach_m, defaults.tracker.reach_m);
     EXPECT_EQ(config.tracker.position_screen_m, defaults.tracker.position_screen_m);
     EXPECT_EQ(config.tracker.quat_screen_tracker_xyzw, defaults.tracker.quat_screen_tracker_xyzw);
+    EXPECT_EQ(config.lines.driver, defaults.lines.driver);
+    EXPECT_EQ(config.lines.chip, defaults.lines.chip);
+    EXPECT_EQ(config.lines.emergency_stop_a, defaults.lines.emergency_stop_a);
+    EXPECT_EQ(config.lines.emergency_stop_b, defaults.lines.emergency_stop_b);
+    EXPECT_EQ(config.lines.dead_man, defaults.lines.dead_man);
+    EXPECT_EQ(config.lines.amplifier, defaults.lines.amplifier);
+    EXPECT_EQ(config.lines.enable, defaults.lines.enable);
+    EXPECT_EQ(config.lines.watchdog, defaults.lines.watchdog);
+    EXPECT_EQ(config.lines.lamp, defaults.lines.lamp);
+    EXPECT_EQ(config.lines.bias, defaults.lines.bias);
+    EXPECT_EQ(config.lines.edges, defaults.lines.edges);
+    EXPECT_EQ(config.lines.look_us, defaults.lines.look_us);
+    EXPECT_EQ(config.lines.release_ms, defaults.lines.release_ms);
+    EXPECT_EQ(config.lines.discrepancy_ms, defaults.lines.discrepancy_ms);
+    EXPECT_EQ(config.lines.follow_ms, defaults.lines.follow_ms);
+    EXPECT_EQ(config.lines.age_us_max, defaults.lines.age_us_max);
     EXPECT_EQ(config.shape.force_scale, defaults.shape.force_scale);
     EXPECT_EQ(config.shape.damping_n_s_m, defaults.shape.damping_n_s_m);
     EXPECT_EQ(config.safety.force_n_max, defaults.safety.force_n_max);
@@ -86,6 +102,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.safety.late_us_max, defaults.safety.late_us_max);
     EXPECT_EQ(config.safety.overruns_max, defaults.safety.overruns_max);
     EXPECT_EQ(config.safety.timing_latches, defaults.safety.timing_latches);
+    EXPECT_EQ(config.safety.supervisor_us_max, defaults.safety.supervisor_us_max);
     EXPECT_EQ(config.safety.gui_silent_ms, defaults.safety.gui_silent_ms);
     EXPECT_EQ(config.safety.on_gui_silent, defaults.safety.on_gui_silent);
     EXPECT_EQ(config.governor.law, defaults.governor.law);
@@ -112,7 +129,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
         EXPECT_NE(doc_text.str().find("\n" + key + " ="), std::string::npos) << key;
         ++keys;
     }
-    EXPECT_GE(keys, 46);
+    EXPECT_GE(keys, 63);
 }
 
 TEST(Config, an_unknown_key_is_refused_with_line_and_the_likely_one) {

@@ -18,6 +18,7 @@ tact_test(unit/hal_arm_table_test.cpp USES base arm)
 tact_test(unit/hal_phantom_packets_test.cpp USES phantom SYSTEM rapidcheck)
 tact_test(unit/loop_config_test.cpp USES base hal loop govern)
 tact_test(unit/loop_head_feed_test.cpp USES base hal topics loop LABELS tsan)
+tact_test(unit/loop_supervisor_test.cpp USES base loop LABELS tsan)
 tact_test(unit/loop_config_arm_test.cpp USES base arm hal loop)
 tact_test(unit/loop_house_test.cpp USES base topics loop)
 tact_test(unit/rt_start_bodies_test.cpp USES base assets force start)
@@ -26,6 +27,7 @@ tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
+tact_test(scenario/lines_scenario_test.cpp USES base topics hal force loop)
 tact_test(scenario/bodies_scenario_test.cpp USES base topics assets hal force loop)
 tact_test(scenario/governor_scenario_test.cpp USES base topics hal force loop govern)
 

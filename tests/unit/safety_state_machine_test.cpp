@@ -36,6 +36,13 @@ constexpr std::array kEvents{
     Named{"overruns", [](RunEvents& e) { e.trip = RunReason::overruns; }},
     Named{"late", [](RunEvents& e) { e.trip = RunReason::too_late; }},
     Named{"model", [](RunEvents& e) { e.trip = RunReason::model_failed; }},
+    Named{"barred", [](RunEvents& e) { e.arm_barred = true; }},
+    Named{"emergency stop", [](RunEvents& e) { e.trip = RunReason::emergency_stop; }},
+    Named{"stop channels", [](RunEvents& e) { e.trip = RunReason::stop_channels; }},
+    Named{"dead-man", [](RunEvents& e) { e.trip = RunReason::dead_man; }},
+    Named{"read-back", [](RunEvents& e) { e.trip = RunReason::amplifier_readback; }},
+    Named{"lines lost", [](RunEvents& e) { e.trip = RunReason::lines_lost; }},
+    Named{"supervisor", [](RunEvents& e) { e.trip = RunReason::supervisor; }},
 };
 
 RunStatus in(RunState state) { return {state, RunReason::none, instant_from_ns(1)}; }
@@ -43,7 +50,9 @@ RunStatus in(RunState state) { return {state, RunReason::none, instant_from_ns(1
 // What must hold of one transition, whatever the events; the text says what does not.
 std::string broken_rule(const RunStatus& from, const RunEvents& e, const RunStatus& to) {
     const bool device_trip = e.trip == RunReason::device_lost || e.trip == RunReason::device_fault ||
-                             e.trip == RunReason::sample_stale;
+                             e.trip == RunReason::sample_stale || e.trip == RunReason::emergency_stop ||
+                             e.trip == RunReason::stop_channels || e.trip == RunReason::amplifier_readback ||
+                             e.trip == RunReason::lines_lost;
     if (to.state == RunState::active && from.state != RunState::active) {
         if (from.state != RunState::armed || !e.hand_present) return "active not from armed with a hand";
     }
@@ -51,6 +60,7 @@ std::string broken_rule(const RunStatus& from, const RunEvents& e, const RunStat
     if (to.state == RunState::armed && from.state == RunState::off) return "armed straight from off";
     if (to.state == RunState::armed && from.state == RunState::ready && !e.arm)
         return "armed without being asked";
+    if (amplifier_on(to.state) && !amplifier_on(from.state) && e.arm_barred) return "armed though barred";
     if (amplifier_on(to.state) && e.trip != RunReason::none && amplifier_on(from.state))
         return "on in spite of a trip";
     if (amplifier_on(to.state) && (e.close || e.stop || e.disarm || e.gui_silent))
