@@ -242,7 +242,8 @@ private:
         // Without a controller the surface stays as it was last told; at first that is all of it.
         const std::uint32_t most = view_->vertices_max();
         if (path != nullptr && most > 0)
-            vertices_share_ = vertices_for(*path, view_->vertices_min(), most) / static_cast<double>(most);
+            vertices_share_ = vertices_for(*path, fewest_shown(view_->vertices_min(), most), most) /
+                              static_cast<double>(most);
         view_->approach_vertices(static_cast<std::uint32_t>(std::lround(vertices_share_ * most)),
                                  adapt_budget_s(clock_.frame_s()));
         state_.scene.mesh_error_m = view_->error_m();

@@ -9,8 +9,15 @@
 
 namespace tact {
 
+// With fewer than these in all the surfaces of a map are not recognized any more, and a picture is hardly sooner
+// ready: so many cost less than a millisecond, in software too. vertices_min: of the base meshes.
+[[nodiscard]] inline std::uint32_t fewest_shown(std::uint32_t vertices_min,
+                                                std::uint32_t vertices_max) noexcept {
+    return std::min(std::max(vertices_min, std::uint32_t{1000}), vertices_max);
+}
+
 // The governor says what it means by items of items_max. Where it does not know the mesh (yet), or means
-// another one, the level itself is the share of the vertices. Between the base mesh and all of it.
+// another one, the level itself is the share of the vertices. Between vertices_min and all of them.
 [[nodiscard]] inline std::uint32_t vertices_for(const PathLevel& path, std::uint32_t vertices_min,
                                                 std::uint32_t vertices_max) noexcept {
     double wanted = 0.0;

@@ -132,6 +132,13 @@ TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
 }
 
+TEST(MeshLevel, ASurfaceIsNeverCoarserThanCanBeRecognized) {
+    EXPECT_EQ(fewest_shown(66, 6600), 1000U);
+    EXPECT_EQ(fewest_shown(66, 500), 500U);      // no more than there are
+    EXPECT_EQ(fewest_shown(3000, 9000), 3000U);  // a base mesh cannot have fewer
+    EXPECT_EQ(fewest_shown(0, 0), 0U);
+}
+
 TEST(MeshLevel, AdaptingTakesAtMostAQuarterOfAFrameAndNeverVeryLong) {
     EXPECT_EQ(adapt_budget_s(0.0), 0.002);  // the first frame
     EXPECT_EQ(adapt_budget_s(0.016), 0.004);
