@@ -4,39 +4,22 @@
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/doctor.hpp"
+#include "deploy/tact/findings.hpp"
 
 namespace tact::launch {
 namespace {
-
-const char* level_text(FindingLevel level) {
-    switch (level) {
-        case FindingLevel::ok:
-            return "ok";
-        case FindingLevel::warn:
-            return "warn";
-        case FindingLevel::fail:
-            return "fail";
-    }
-    return "unknown";
-}
 
 int doctor(const std::string& session, bool as_json) {
     auto findings = try_surroundings(session);
     const auto machine = judge(read_machine());
     findings.insert(findings.end(), machine.begin(), machine.end());
-    bool good = true;
-    nlohmann::json rows = nlohmann::json::array();
-    for (const Finding& f : findings) {
-        good &= f.level != FindingLevel::fail;
-        rows.push_back(
-            {{"name", f.name}, {"level", level_text(f.level)}, {"says", f.says}, {"mend", f.mend}});
-        if (as_json) continue;
-        std::printf("%-4s  %-14s  %s\n", level_text(f.level), f.name.c_str(), f.says.c_str());
-        if (!f.mend.empty()) std::printf("%22smend: %s\n", "", f.mend.c_str());
-    }
+    const bool good = none_fails(findings);
     if (as_json) {
-        const nlohmann::json report = {{"ok", good}, {"version", TACT_VERSION}, {"findings", rows}};
+        const nlohmann::json report = {
+            {"ok", good}, {"version", TACT_VERSION}, {"findings", findings_json(findings)}};
         std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    } else {
+        print_findings(findings);
     }
     return good ? 0 : 1;
 }

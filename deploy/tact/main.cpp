@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     add_run(app, exit_code);
     add_status(app, exit_code);
     add_doctor(app, exit_code);
+    add_probe(app, exit_code);
     add_info(app, exit_code);
     add_eval(app, exit_code);
     add_bench(app, exit_code);

@@ -2,22 +2,12 @@
 
 #include <dlfcn.h>
 
-#include <array>
-
+#include "hal/probe/known_devices.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::hd {
 
 namespace {
-
-// The loader's own search (with LD_LIBRARY_PATH) first, by the two names there are links of.
-constexpr std::array kPlaces{"libHD.so",
-                             "libHD.so.3",
-                             "/usr/lib/libHD.so",
-                             "/usr/lib64/libHD.so",
-                             "/usr/lib/x86_64-linux-gnu/libHD.so",
-                             "/usr/local/lib/libHD.so",
-                             "/opt/OpenHaptics/Developer/lib/libHD.so"};
 
 constexpr const char* kMend =
     "install the maker's OpenHaptics and device driver for Linux, or name the file (device.hd_library)";
@@ -48,7 +38,7 @@ Library::Library(const std::string& path) : path_(path) {
     if (!path.empty()) {
         handle_ = load(path.c_str(), why);
     } else {
-        for (const char* const place : kPlaces) {
+        for (const char* const place : probe::kHdPlaces) {
             handle_ = load(place, why);
             path_ = place;
             if (handle_ != nullptr) break;

@@ -27,7 +27,7 @@ BELOW = {
     "rt": ["ipc", "hal"],
     "gui": ["ipc"],
     "prep": ["ipc/base", "ipc/assets"],
-    "deploy": ["ipc", "rt/force"],
+    "deploy": ["ipc", "rt/force", "hal/probe"],
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
 # Third-party header -> folders that wrap it.

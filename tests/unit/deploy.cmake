@@ -1,6 +1,7 @@
 # Tests of deploy.
 tact_test(unit/deploy_child_test.cpp USES launch base)
 tact_test(unit/deploy_doctor_test.cpp USES launch)
+tact_test(unit/deploy_probe_test.cpp USES base launch probe)
 find_package(PNG REQUIRED)
 find_package(Freetype REQUIRED)
 tact_test(unit/deploy_plot_test.cpp USES base plot SYSTEM rapidcheck PNG::PNG)

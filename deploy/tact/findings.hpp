@@ -1,0 +1,15 @@
+// How findings of `tact doctor` and `tact probe` are shown.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "deploy/tact/doctor.hpp"
+
+namespace tact::launch {
+
+[[nodiscard]] bool none_fails(const std::vector<Finding>& findings);
+[[nodiscard]] nlohmann::json findings_json(const std::vector<Finding>& findings);  // an array of objects
+void print_findings(const std::vector<Finding>& findings);
+
+}  // namespace tact::launch

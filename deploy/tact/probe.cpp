@@ -1,0 +1,209 @@
+#include "deploy/tact/probe.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tact::launch {
+namespace {
+
+using probe::Buses;
+using probe::CanInterface;
+using probe::GpioChip;
+using probe::UsbDevice;
+
+constexpr const char* kRightsMend =
+    "sudo deploy/install.sh --rights; log in again, and plug the device in again";
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string all;
+    for (const std::string& p : parts) all += (all.empty() ? "" : ", ") + p;
+    return all;
+}
+
+std::string number_of(std::size_t n, bool more, const char* one, const char* many) {
+    return std::to_string(n) + (more ? " or more " : " ") + (n == 1 ? one : many);
+}
+
+std::string name_of(const UsbDevice& d) {
+    char ids[16];
+    static_cast<void>(std::snprintf(ids, sizeof ids, "%04x:%04x", static_cast<unsigned>(d.vendor),
+                                    static_cast<unsigned>(d.product)));
+    std::string name = std::string(d.known != nullptr ? d.known->what : "") + " (" + ids;
+    if (!d.name.empty()) name += ", \"" + d.name + "\"";
+    if (!d.serial.empty()) name += ", serial " + d.serial;
+    return name + ")";
+}
+
+// "" where the user may use it.
+std::string refusal(const probe::Node& n) {
+    if (n.usable) return "";
+    if (n.path.empty()) return "it has no device node";
+    char mode[8];
+    static_cast<void>(std::snprintf(mode, sizeof mode, "%03o", n.mode));
+    return n.mode == 0 ? n.path + " is not there (a container without its devices?)"
+                       : "this user may not open " + n.path + " (group " +
+                             (n.group.empty() ? "unknown" : n.group) + ", mode " + mode + ")";
+}
+
+Finding usb(const Buses& b) {
+    if (!b.usb.visible)
+        return {"usb", FindingLevel::warn,
+                "this kernel or container shows no USB (no /sys/bus/usb): nothing on it can be seen",
+                "run it on the machine that the devices are plugged into; in a container mount /sys and "
+                "/dev/bus/usb"};
+    const auto arms = std::count_if(b.usb.there.begin(), b.usb.there.end(), [](const UsbDevice& d) {
+        return d.known != nullptr && d.known->use == probe::Use::arm;
+    });
+    return {"usb", FindingLevel::ok,
+            number_of(b.usb.there.size(), b.usb.more, "device", "devices") + " on USB, " +
+                number_of(static_cast<std::size_t>(arms), false, "arm", "arms") + " among them",
+            ""};
+}
+
+// One row a device that Tact knows.
+void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>& out) {
+    for (const UsbDevice& d : b.usb.there) {
+        if (d.known == nullptr) continue;
+        const bool arm = d.known->use == probe::Use::arm;
+        const std::string driver = d.known->driver;
+        const bool wanted = arm && wish.driver == driver && (wish.serial.empty() || wish.serial == d.serial);
+        Finding f{arm ? "arm" : "adapter", FindingLevel::ok, name_of(d), ""};
+        if (arm && driver.empty()) {
+            f.says += ": seen, but there is no driver for it here";
+        } else if (arm) {
+            const std::string no = refusal(d.node);
+            if (!no.empty()) {
+                f.level = wanted ? FindingLevel::fail : FindingLevel::warn;
+                f.mend = kRightsMend;
+            } else if (d.speed_mbit != "480" && !d.speed_mbit.empty()) {
+                f.level = FindingLevel::warn;
+                f.mend = "plug it into a port of USB 2 high speed, without a slow hub between";
+            }
+            f.says += ": driver " + driver +
+                      (!no.empty()                   ? "; " + no
+                       : f.level == FindingLevel::ok ? ", may be opened"
+                                                     : ", at only " + d.speed_mbit + " Mbit/s");
+        }
+        out.push_back(std::move(f));
+    }
+}
+
+Finding driver_arm(const Buses& b, const DeviceWish& wish, const std::string& hd_library) {
+    const std::string what = "device.driver = \"" + wish.driver + "\": ";
+    if (wish.driver == "sim" || wish.driver == "sim-process")
+        return {"device", FindingLevel::ok, what + "emulated, needs no device", ""};
+    if (wish.driver == "openhaptics") {
+        if (hd_library.empty())
+            return {
+                "device", FindingLevel::fail,
+                what + "the maker's library libHD.so is not where it is looked for",
+                "install the maker's OpenHaptics and device driver, or name the file (device.hd_library)"};
+        return {"device", FindingLevel::ok,
+                what + hd_library + "; which arms it knows is only seen when tact-rt opens it", ""};
+    }
+    std::vector<std::string> serials;
+    bool known = false;
+    for (const auto& k : probe::kKnownDevices) known = known || wish.driver == k.driver;
+    for (const UsbDevice& d : b.usb.there) {
+        if (d.known != nullptr && d.known->use == probe::Use::arm && wish.driver == d.known->driver &&
+            (wish.serial.empty() || wish.serial == d.serial))
+            serials.push_back(d.serial.empty() ? "without serial" : d.serial);
+    }
+    if (!known)
+        return {"device", FindingLevel::fail, what + "there is no such driver, or none that can be probed",
+                "tact-rt --check names the drivers there are"};
+    const std::string which = wish.serial.empty() ? "" : " with serial " + wish.serial;
+    if (serials.empty())
+        return {"device", FindingLevel::fail,
+                what + (b.usb.visible ? "no such device" + which + " on USB"
+                                      : "no USB can be seen here, so it cannot be told whether it is there"),
+                "plug it in and switch it on, or set device.driver = \"sim\"; lsusb lists the bus"};
+    if (serials.size() > 1)
+        return {"device", FindingLevel::fail, what + "there are several: " + joined(serials),
+                "say which one by device.serial"};
+    return {"device", FindingLevel::ok, what + "there is one" + which, ""};
+}
+
+Finding can(const Buses& b, const DeviceWish& wish) {
+    const bool wanted = wish.tracker == "can";
+    const std::string what = wanted ? "tracker.interface = \"" + wish.tracker_interface + "\": " : "";
+    const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
+    if (!b.can.visible)
+        return {"can", bad, what + "this kernel has no CAN, or hides it: no interface can be seen",
+                wanted ? "sudo modprobe can_raw; in a container use the host's network" : ""};
+    std::vector<std::string> names;
+    const CanInterface* mine = nullptr;
+    for (const CanInterface& c : b.can.there) {
+        names.push_back(c.name + (c.up ? " (up" : " (down") + (c.fd ? ", FD)" : ")"));
+        if (c.name == wish.tracker_interface) mine = &c;
+    }
+    const std::string list = names.empty() ? "no CAN interface" : "CAN interfaces: " + joined(names);
+    if (!wanted) return {"can", FindingLevel::ok, list, ""};
+    if (mine == nullptr)
+        return {"can", bad, what + "there is none of this name; " + list,
+                "plug the adapter in, or set tracker.interface"};
+    if (!mine->up) return {"can", bad, what + "it is down", "sudo deploy/can-up " + mine->name};
+    if (wish.tracker_format == "fd" && !mine->fd)
+        return {
+            "can", bad, what + "it does not do CAN FD, which tracker.format asks for",
+            "sudo deploy/can-up " + mine->name + "; if that says classic, set tracker.format = \"classic\""};
+    return {"can", FindingLevel::ok, what + list, ""};
+}
+
+Finding gpio(const Buses& b, const DeviceWish& wish) {
+    const bool wanted = wish.lines == "gpio";
+    const std::string what = wanted ? "lines.chip = \"" + wish.lines_chip + "\": " : "";
+    const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
+    if (!b.gpio.visible)
+        return {"gpio", bad, what + "this kernel or container shows no GPIO (no /sys/bus/gpio)",
+                wanted ? "run it on the machine that the adapter is plugged into" : ""};
+    std::vector<std::string> names;
+    std::vector<const GpioChip*> mine;
+    for (const GpioChip& c : b.gpio.there) {
+        names.push_back(c.name + (c.label.empty() ? "" : " \"" + c.label + "\""));
+        if (c.label == wish.lines_chip || c.name == wish.lines_chip || c.node.path == wish.lines_chip)
+            mine.push_back(&c);
+    }
+    const std::string list = names.empty() ? "no GPIO chip" : "GPIO chips: " + joined(names);
+    if (!wanted) return {"gpio", FindingLevel::ok, list, ""};
+    if (mine.empty())
+        return {"gpio", bad, what + "there is none of this label, name or path; " + list,
+                "plug the adapter in, or set lines.chip"};
+    if (mine.size() > 1)
+        return {"gpio", bad, what + "several chips have this label; " + list, "name one by its path"};
+    const std::string no = refusal(mine.front()->node);
+    if (!no.empty()) return {"gpio", bad, what + no, kRightsMend};
+    return {"gpio", FindingLevel::ok, what + "there, and may be opened; " + list, ""};
+}
+
+Finding groups(const Person& p) {
+    if (p.root) return {"groups", FindingLevel::ok, "root: needs no group", ""};
+    std::vector<std::string> missing;
+    for (const char* const wanted : {"tact", "realtime"}) {
+        if (std::find(p.groups.begin(), p.groups.end(), wanted) == p.groups.end())
+            missing.emplace_back(wanted);
+    }
+    if (missing.empty()) return {"groups", FindingLevel::ok, "a member of tact and realtime", ""};
+    return {"groups", FindingLevel::warn,
+            "not a member of " + joined(missing) + " (tact: devices; realtime: priority, locked memory)",
+            "sudo deploy/install.sh --rights; log in again"};
+}
+
+}  // namespace
+
+std::vector<Finding> judge_devices(const Buses& buses, const DeviceWish& wish, const Person& person,
+                                   const std::string& hd_library) {
+    std::vector<Finding> out{driver_arm(buses, wish, hd_library), usb(buses)};
+    known_devices(buses, wish, out);
+    if (wish.driver != "openhaptics")
+        out.push_back({"openhaptics", FindingLevel::ok,
+                       hd_library.empty() ? "the maker's library libHD.so is not where it is looked for"
+                                          : "the maker's library is there: " + hd_library,
+                       ""});
+    out.push_back(can(buses, wish));
+    out.push_back(gpio(buses, wish));
+    out.push_back(groups(person));
+    return out;
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,39 @@
+// Which devices there are, whether they are the ones that the configuration asks for, and what is wrong.
+//
+// judge_devices() is pure, so that trees of files and texts of other machines test it. Levels as the
+// doctor's: what the configuration asks for and is not there, or may not be used, fails; what nobody asked for
+// is told, or warned about.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deploy/tact/doctor.hpp"
+#include "hal/probe/buses.hpp"
+
+namespace tact::launch {
+
+// Of the configuration of tact-rt, what it says about devices; the defaults are tact-rt's.
+struct DeviceWish {
+    std::string driver = "sim", serial, hd_library;
+    std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
+    std::string lines = "none", lines_chip = "cp2112_gpio";
+};
+
+// Reads the keys above and looks at no other; tact-rt --check judges the rest. Throws StartupError where the
+// file cannot be read or one of the keys is not a text.
+[[nodiscard]] DeviceWish read_device_wish(const std::string& path);
+
+struct Person {
+    bool root = false;
+    std::vector<std::string> groups;
+};
+
+[[nodiscard]] Person read_person();
+// The library of driver openhaptics: its path where one of the files is there, else "".
+[[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
+
+[[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceWish& wish,
+                                                 const Person& person, const std::string& hd_library);
+
+}  // namespace tact::launch

@@ -1,0 +1,41 @@
+// USB devices that Tact knows by their numbers: one table for `tact probe`, for error texts and for the udev
+// rules, which a test holds to it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace tact::probe {
+
+enum class Use : std::uint8_t { arm, lines, tracker_bus };
+
+struct KnownDevice {
+    Use use;
+    const char* driver;  // of Tact, as in hal/registry.cpp; "": none yet
+    const char* what;
+    std::uint16_t vendor = 0, product = 0;  // 0, 0: found by the class of an interface instead
+    std::uint32_t interface = 0;            // class, subclass, protocol, one byte each
+};
+
+// The interface that hal/phantom/PROTOCOL.md gives an amplifier board.
+inline constexpr std::uint32_t kPhantomInterface = 0xFF5401;
+
+inline constexpr std::array kKnownDevices{
+    KnownDevice{Use::arm, "phantom-usb", "Phantom arm on an amplifier board", 0, 0, kPhantomInterface},
+    KnownDevice{Use::arm, "", "Haptikfabriken or Polhem arm", 0x16c0, 0x0486},
+    KnownDevice{Use::arm, "", "Novint Falcon", 0x0403, 0xcb48},
+    KnownDevice{Use::lines, "gpio", "CP2112, 8 lines", 0x10c4, 0xea90},
+    KnownDevice{Use::lines, "gpio", "MCP2221A, 4 lines", 0x04d8, 0x00dd},
+    KnownDevice{Use::lines, "gpio", "FT232H, 4 lines", 0x0403, 0x6014},
+};
+
+// Where libHD.so is looked for. The loader's own search (with LD_LIBRARY_PATH) first, by the names of its links.
+inline constexpr std::array kHdPlaces{"libHD.so",
+                                      "libHD.so.3",
+                                      "/usr/lib/libHD.so",
+                                      "/usr/lib64/libHD.so",
+                                      "/usr/lib/x86_64-linux-gnu/libHD.so",
+                                      "/usr/local/lib/libHD.so",
+                                      "/opt/OpenHaptics/Developer/lib/libHD.so"};
+
+}  // namespace tact::probe

@@ -1,0 +1,331 @@
+// What tact probe says of made-up machines: trees of files as the kernel shows them.
+#include "deploy/tact/probe.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "deploy/tact/files.hpp"
+#include "ipc/base/error.hpp"
+#include "tests/support/says.hpp"
+
+namespace tact::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Tree {
+public:
+    [[nodiscard]] const fs::path& root() const { return folder_.path(); }
+    void file(const std::string& path, const std::string& text) const {
+        fs::create_directories((root() / path).parent_path());
+        std::ofstream(root() / path) << text;
+    }
+    void usb(const std::string& name, const std::string& vendor, const std::string& product,
+             const std::string& serial, int address) const {
+        const std::string at = "sys/bus/usb/devices/" + name + "/";
+        file(at + "idVendor", vendor + "\n");
+        file(at + "idProduct", product + "\n");
+        file(at + "product", "Board\n");
+        file(at + "serial", serial + "\n");
+        file(at + "speed", "480\n");
+        file(at + "busnum", "1\n");
+        file(at + "devnum", std::to_string(address) + "\n");
+        char node[32];
+        static_cast<void>(std::snprintf(node, sizeof node, "dev/bus/usb/001/%03d", address));
+        file(node, "");
+    }
+    void interface(const std::string& name, const char* c, const char* s, const char* p) const {
+        const std::string at = "sys/bus/usb/devices/" + name + "/";
+        file(at + "bInterfaceClass", c);
+        file(at + "bInterfaceSubClass", s);
+        file(at + "bInterfaceProtocol", p);
+    }
+    void phantom(const std::string& name, const std::string& serial, int address) const {
+        usb(name, "1209", "0001", serial, address);
+        interface(name + ":1.0", "ff\n", "54\n", "01\n");
+    }
+    void can(const std::string& name, const char* flags, int mtu, int type = 280) const {
+        const std::string at = "sys/class/net/" + name + "/";
+        file(at + "type", std::to_string(type) + "\n");
+        file(at + "flags", flags);
+        file(at + "mtu", std::to_string(mtu) + "\n");
+    }
+    // As the kernel lays them out: the chip below its device, the older class beside it, the bus links to it.
+    void gpio(const std::string& name, const std::string& label) const {
+        const fs::path device = root() / "sys/devices/pci/usb1" / name;
+        file("sys/devices/pci/usb1/" + name + "/" + name + "/dev", "254:0\n");
+        file("sys/devices/pci/usb1/" + name + "/gpio/gpiochip512/label", label + "\n");
+        fs::create_directories(root() / "sys/bus/gpio/devices");
+        fs::create_directory_symlink(device / name, root() / "sys/bus/gpio/devices" / name);
+        file("dev/" + name, "");
+    }
+
+private:
+    ScratchFolder folder_;
+};
+
+const Person kMember{false, {"users", "tact", "realtime"}};
+
+struct Answer {
+    std::vector<Finding> findings;
+    [[nodiscard]] Finding one(const std::string& name) const {
+        for (const Finding& f : findings) {
+            if (f.name == name) return f;
+        }
+        return {};
+    }
+    [[nodiscard]] bool fails() const {
+        return std::any_of(findings.begin(), findings.end(),
+                           [](const Finding& f) { return f.level == FindingLevel::fail; });
+    }
+};
+
+Answer ask(const Tree& tree, const DeviceWish& wish, const Person& person = kMember) {
+    return {judge_devices(probe::read_buses(tree.root()), wish, person,
+                          find_hd_library(tree.root(), wish.hd_library))};
+}
+
+DeviceWish phantom_wish() {
+    DeviceWish w;
+    w.driver = "phantom-usb";
+    return w;
+}
+
+TEST(Probe, a_machine_that_shows_nothing_says_so_and_an_emulated_run_is_all_right) {
+    const Tree tree;
+    const Answer a = ask(tree, {});
+    EXPECT_FALSE(a.fails());
+    EXPECT_EQ(a.one("usb").level, FindingLevel::warn);
+    EXPECT_TRUE(says(a.one("usb").says, {"no /sys/bus/usb", "nothing on it can be seen"}));
+    EXPECT_TRUE(says(a.one("can").says, {"no CAN"}));
+    EXPECT_TRUE(says(a.one("gpio").says, {"no GPIO"}));
+}
+
+TEST(Probe, what_the_configuration_asks_for_and_cannot_be_seen_fails_with_a_mend) {
+    const Tree tree;
+    DeviceWish wish = phantom_wish();
+    wish.tracker = "can";
+    wish.lines = "gpio";
+    const Answer a = ask(tree, wish);
+    for (const char* const name : {"device", "can", "gpio"}) {
+        EXPECT_EQ(a.one(name).level, FindingLevel::fail) << name;
+        EXPECT_NE(a.one(name).mend, "") << name;
+    }
+    EXPECT_TRUE(says(a.one("device").says, {"no USB can be seen", "cannot be told"}));
+}
+
+TEST(Probe, an_arm_is_known_by_the_class_of_its_interface_and_told_with_its_serial) {
+    const Tree tree;
+    tree.usb("usb1", "1d6b", "0002", "0000:00", 1);
+    tree.phantom("1-1", "P15-7", 4);
+    const Answer a = ask(tree, phantom_wish());
+    EXPECT_FALSE(a.fails());
+    EXPECT_EQ(a.one("device").level, FindingLevel::ok);
+    EXPECT_TRUE(says(a.one("usb").says, {"2 devices", "1 arm "}));
+    EXPECT_TRUE(says(a.one("arm").says,
+                     {"Phantom arm", "1209:0001", "P15-7", "driver phantom-usb", "may be opened"}));
+}
+
+TEST(Probe, several_arms_need_a_serial_and_the_wrong_one_is_none) {
+    const Tree tree;
+    tree.phantom("1-1", "LEFT", 4);
+    tree.phantom("1-2", "RIGHT", 5);
+    DeviceWish wish = phantom_wish();
+    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"several", "LEFT", "RIGHT"}));
+    EXPECT_TRUE(ask(tree, wish).fails());
+    wish.serial = "RIGHT";
+    EXPECT_FALSE(ask(tree, wish).fails());
+    wish.serial = "MIDDLE";
+    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"no such device with serial MIDDLE"}));
+}
+
+TEST(Probe, a_node_that_may_not_be_opened_fails_for_the_wanted_arm_and_warns_for_another) {
+    const Tree tree;
+    tree.phantom("1-1", "P", 4);
+    probe::Buses buses = probe::read_buses(tree.root());
+    probe::Node& node = buses.usb.there.at(0).node;
+    EXPECT_TRUE(node.usable);
+    node.usable = false;
+    node.group = "root";
+    node.mode = 0664;
+    const Answer wanted{judge_devices(buses, phantom_wish(), kMember, "")};
+    EXPECT_EQ(wanted.one("arm").level, FindingLevel::fail);
+    EXPECT_TRUE(says(wanted.one("arm").says, {"may not open", "group root, mode 664"}));
+    EXPECT_TRUE(says(wanted.one("arm").mend, {"deploy/install.sh --rights"}));
+    const Answer other{judge_devices(buses, {}, kMember, "")};
+    EXPECT_EQ(other.one("arm").level, FindingLevel::warn);
+    fs::remove(tree.root() / "dev/bus/usb/001/004");
+    EXPECT_TRUE(says(ask(tree, phantom_wish()).one("arm").says, {"is not there", "container"}));
+}
+
+TEST(Probe, a_slow_port_is_warned_about) {
+    const Tree tree;
+    tree.phantom("1-1", "P", 4);
+    tree.file("sys/bus/usb/devices/1-1/speed", "12\n");
+    const Answer a = ask(tree, phantom_wish());
+    EXPECT_EQ(a.one("arm").level, FindingLevel::warn);
+    EXPECT_TRUE(says(a.one("arm").says, {"only 12 Mbit/s"}));
+    EXPECT_NE(a.one("arm").mend, "");
+}
+
+TEST(Probe, devices_without_a_driver_here_are_seen_as_such) {
+    for (const probe::KnownDevice& k : probe::kKnownDevices) {
+        if (k.interface != 0) continue;
+        const Tree tree;
+        char vendor[8], product[8];
+        static_cast<void>(std::snprintf(vendor, sizeof vendor, "%04x", static_cast<unsigned>(k.vendor)));
+        static_cast<void>(std::snprintf(product, sizeof product, "%04x", static_cast<unsigned>(k.product)));
+        tree.usb("3-2", vendor, product, "", 9);
+        const Answer a = ask(tree, {});
+        const Finding f = a.one(k.use == probe::Use::arm ? "arm" : "adapter");
+        EXPECT_TRUE(says(f.says, {k.what, vendor, product})) << f.says;
+        EXPECT_EQ(f.says.find("no driver for it") != std::string::npos,
+                  k.use == probe::Use::arm && std::string(k.driver).empty());
+    }
+}
+
+TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
+    const Tree tree;
+    tree.usb("1-3", "16c0", "0486", "", 7);
+    tree.interface("1-3:1.0", "03\n", "00\n", "00\n");
+    fs::create_directories(tree.root() / "sys/bus/usb/devices/1-3:1.0/0003:16C0:0486.0001/hidraw/hidraw2");
+    tree.file("dev/hidraw2", "");
+    tree.usb("1-4", "0403", "cb48", "", 8);
+    tree.interface("1-4:1.0", "ff\n", "ff\n", "ff\n");
+    fs::create_directories(tree.root() / "sys/bus/usb/devices/1-4:1.0/ttyUSB5");
+    const auto usb = probe::usb_devices(tree.root());
+    ASSERT_EQ(usb.there.size(), 2U);
+    ASSERT_EQ(usb.there[0].nodes.size(), 1U);
+    EXPECT_EQ(usb.there[0].nodes[0].path, (tree.root() / "dev/hidraw2").string());
+    EXPECT_TRUE(usb.there[0].nodes[0].usable);
+    ASSERT_EQ(usb.there[1].nodes.size(), 1U);
+    EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
+    EXPECT_FALSE(usb.there[1].nodes[0].usable);
+}
+
+TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
+    const Tree tree;
+    tree.can("eth0", "0x1003\n", 1500, 1);
+    tree.can("can0", "0x40080\n", 16);
+    tree.file("proc/net/can/version", "");
+    DeviceWish wish;
+    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"can0 (down)"}));
+    EXPECT_EQ(ask(tree, wish).one("can").says.find("eth0"), std::string::npos);
+    EXPECT_FALSE(ask(tree, wish).fails());
+    wish.tracker = "can";
+    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"it is down"}));
+    EXPECT_TRUE(says(ask(tree, wish).one("can").mend, {"deploy/can-up can0"}));
+    tree.can("can0", "0x400c1\n", 16);
+    EXPECT_FALSE(ask(tree, wish).fails());
+    wish.tracker_format = "fd";
+    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"CAN FD"}));
+    tree.can("can0", "0x400c1\n", 72);
+    EXPECT_FALSE(ask(tree, wish).fails());
+    wish.tracker_interface = "can7";
+    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"none of this name", "can0 (up, FD)"}));
+}
+
+TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
+    const Tree tree;
+    tree.gpio("gpiochip0", "INT34C5:00");
+    tree.gpio("gpiochip1", "cp2112_gpio");
+    DeviceWish wish;
+    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"gpiochip0 \"INT34C5:00\"", "gpiochip1"}));
+    wish.lines = "gpio";
+    for (const std::string& chip :
+         {std::string("cp2112_gpio"), std::string("gpiochip1"), (tree.root() / "dev/gpiochip1").string()}) {
+        wish.lines_chip = chip;
+        EXPECT_FALSE(ask(tree, wish).fails()) << chip;
+    }
+    wish.lines_chip = "mcp2221";
+    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"none of this label"}));
+    tree.gpio("gpiochip2", "cp2112_gpio");
+    wish.lines_chip = "cp2112_gpio";
+    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"several chips"}));
+    wish.lines_chip = "gpiochip2";
+    fs::remove(tree.root() / "dev/gpiochip2");
+    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"is not there"}));
+}
+
+TEST(Probe, the_makers_library_is_found_where_it_is_put_or_named) {
+    const Tree tree;
+    DeviceWish wish;
+    wish.driver = "openhaptics";
+    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"libHD.so"}));
+    EXPECT_TRUE(ask(tree, wish).fails());
+    tree.file("usr/lib/libHD.so", "");
+    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"/usr/lib/libHD.so", "only seen when"}));
+    wish.hd_library = "/nowhere/libHD.so";
+    EXPECT_TRUE(ask(tree, wish).fails());
+}
+
+TEST(Probe, groups_are_told_by_what_they_are_for) {
+    const Tree tree;
+    EXPECT_EQ(ask(tree, {}, kMember).one("groups").level, FindingLevel::ok);
+    EXPECT_EQ(ask(tree, {}, {true, {}}).one("groups").level, FindingLevel::ok);
+    const Finding f = ask(tree, {}, {false, {"users", "tact"}}).one("groups");
+    EXPECT_EQ(f.level, FindingLevel::warn);
+    EXPECT_TRUE(says(f.says, {"realtime"}));
+    EXPECT_TRUE(says(f.mend, {"--rights"}));
+}
+
+TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
+    const Tree tree;
+    tree.phantom("1-1", std::string(5000, 'x') + "\x1b[2J", 4);
+    tree.file("sys/bus/usb/devices/1-1/product", "\x1b]0;evil\x07 name\n");
+    tree.usb("1-2", "12345", "0001", "", 5);
+    tree.usb("1-3", "-1", "zz", "", 6);
+    tree.file("sys/bus/usb/devices/1-4/idVendor", "");
+    tree.usb("1-5", "1209", "0001", "", 7);
+    tree.file("sys/bus/usb/devices/1-5/busnum", "../../../etc\n");
+    const auto usb = probe::usb_devices(tree.root());
+    ASSERT_EQ(usb.there.size(), 2U);
+    EXPECT_LE(usb.there[0].serial.size(), probe::kTextMax);
+    for (const char c : usb.there[0].name + usb.there[0].serial) EXPECT_TRUE(c >= ' ' && c <= '~');
+    EXPECT_EQ(usb.there[1].node.path, "");
+    EXPECT_FALSE(ask(tree, {}).findings.empty());
+
+    const Tree crowd;
+    for (std::size_t i = 0; i < probe::kEntriesMax + 20; ++i)
+        fs::create_directories(crowd.root() / ("sys/bus/gpio/devices/gpiochip" + std::to_string(i)));
+    const auto gpio = probe::gpio_chips(crowd.root());
+    EXPECT_EQ(gpio.there.size(), probe::kEntriesMax);
+    EXPECT_TRUE(gpio.more);
+
+    // A pipe in place of a file is not waited for.
+    const Tree pipes;
+    fs::create_directories(pipes.root() / "sys/class/net/can0");
+    ASSERT_EQ(mkfifo((pipes.root() / "sys/class/net/can0/type").c_str(), 0600), 0);
+    EXPECT_TRUE(probe::can_interfaces(pipes.root()).there.empty());
+}
+
+TEST(Probe, the_configuration_is_read_for_devices_alone) {
+    const Tree tree;
+    tree.file("a.toml",
+              "[device]\ndriver = \"phantom-usb\"\nserial = \"L\"\n[safety]\nforce_n_max = 1\n"
+              "[tracker]\ndriver = \"can\"\nformat = \"fd\"\n[lines]\ndriver = \"gpio\"\n");
+    const DeviceWish w = read_device_wish((tree.root() / "a.toml").string());
+    EXPECT_EQ(w.driver + w.serial + w.tracker + w.tracker_format + w.lines, "phantom-usbLcanfdgpio");
+    EXPECT_EQ(w.tracker_interface, "can0");
+    const DeviceWish shipped = read_device_wish("deploy/tact.toml");
+    EXPECT_EQ(shipped.driver + shipped.tracker, "simnone");
+    const auto error_of = [&](const std::string& text) -> std::string {
+        tree.file("b.toml", text);
+        try {
+            static_cast<void>(read_device_wish((tree.root() / "b.toml").string()));
+        } catch (const StartupError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(says(error_of("[device\n"), {"b.toml:1", "mend:"}));
+    EXPECT_TRUE(says(error_of("[device]\ndriver = 3\n"), {"device.driver", "text in quotes"}));
+    EXPECT_THROW(read_device_wish("/nowhere/tact.toml"), StartupError);
+}
+
+}  // namespace
+}  // namespace tact::launch
