@@ -1,4 +1,6 @@
+#!/usr/bin/env bash
 # Sourced by deploy/run and deploy/test: installs the Debian packages of deploy/packages.txt that are missing.
+# As a program, `sudo deploy/install.sh --rights` gives a user the rights that real devices need; see its end.
 #
 # Quick when nothing is missing: dpkg is asked once. Uses sudo only if the user is not root. TACT_NO_INSTALL=1
 # skips the installation and only says what is missing.
@@ -71,3 +73,73 @@ tact_build() {
     fi
     NINJA_STATUS="$preset [%f/%t] " cmake --build --preset "$preset" ${1:+--target "$@"}
 }
+
+# tact_install_rights ROOT USER: puts rules, limits, script and unit below ROOT ("" for the machine itself).
+tact_install_rights() {
+    local root=$1 here
+    here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || return 1
+    install -D -m 644 "$here/60-tact.rules" "$root/etc/udev/rules.d/60-tact.rules" &&
+        install -D -m 644 "$here/limits.conf" "$root/etc/security/limits.d/tact.conf" &&
+        install -D -m 755 "$here/can-up" "$root/usr/local/lib/tact/can-up" &&
+        install -D -m 644 "$here/tact-can@.service" "$root/etc/systemd/system/tact-can@.service"
+}
+
+tact_rights_main() {
+    local user=${SUDO_USER:-} root='' group
+    while [ $# -gt 0 ]; do
+        case $1 in
+            --rights) ;;
+            --user) user=${2:-}; shift ;;
+            --into) root=${2:-}; shift ;;
+            *) cat <<'TEXT'
+usage: sudo deploy/install.sh --rights [--user NAME] [--into DIR]
+
+Optional: for real devices only; the emulated ones need none of it. Makes the groups tact (devices) and realtime
+(priority, locked memory), adds the user to both, and installs
+  /etc/udev/rules.d/60-tact.rules        who may open arms and GPIO adapters
+  /etc/security/limits.d/tact.conf       real-time limits
+  /usr/local/lib/tact/can-up and /etc/systemd/system/tact-can@.service
+                                         CAN adapters come up when they are plugged in
+  --user NAME  whom to add (default: who called sudo)
+  --into DIR   only the files, below DIR: for pictures of other machines
+To undo it, remove these files, then: groupdel tact; groupdel realtime
+TEXT
+                [ "$1" = --help ] || [ "$1" = -h ]
+                return ;;
+        esac
+        shift
+    done
+    if [ -n "$root" ]; then
+        tact_install_rights "$root"
+        return
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        echo "install rights: this needs root" >&2
+        echo "  mend: sudo deploy/install.sh --rights" >&2
+        return 1
+    fi
+    if [ -n "$user" ] && ! id "$user" >/dev/null 2>&1; then
+        echo "install rights: there is no user $user" >&2
+        echo "  mend: name one with --user" >&2
+        return 1
+    fi
+    for group in tact realtime; do
+        # Before the rules: udev takes no rule whose group it does not know.
+        getent group "$group" >/dev/null || groupadd --system "$group" || return 1
+        [ -z "$user" ] || [ "$user" = root ] || usermod -aG "$group" "$user" || return 1
+    done
+    tact_install_rights "" || return 1
+    if command -v systemctl >/dev/null && [ -d /run/systemd/system ]; then systemctl daemon-reload; fi
+    if command -v udevadm >/dev/null && udevadm control --ping 2>/dev/null; then
+        udevadm control --reload && udevadm trigger --subsystem-match=usb --subsystem-match=hidraw \
+            --subsystem-match=gpio --subsystem-match=tty --subsystem-match=misc
+    else
+        echo "install rights: no udev runs here (a container?); the files are in place for a machine where one does"
+    fi
+    echo "rights installed${user:+ for $user, who has to log in again}; tact probe shows what is seen"
+}
+
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+    [ $# -gt 0 ] || set -- --usage
+    tact_rights_main "$@"
+fi

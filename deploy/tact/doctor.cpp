@@ -128,10 +128,10 @@ Finding dma_latency(const Machine& m) {
     if (m.dma_latency_error == ENOENT)
         return warn("dma_latency", "/dev/cpu_dma_latency is missing: a core may wake up late",
                     "start with the kernel option idle=poll, or leave it on a virtual machine");
-    return warn("dma_latency",
-                std::string("/dev/cpu_dma_latency cannot be opened: ") + std::strerror(m.dma_latency_error),
-                "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"realtime\", MODE=\"0660\"' | sudo tee "
-                "/etc/udev/rules.d/60-tact-dma-latency.rules; sudo udevadm trigger");
+    return warn(
+        "dma_latency",
+        std::string("/dev/cpu_dma_latency cannot be opened: ") + std::strerror(m.dma_latency_error),
+        "sudo deploy/install.sh --rights (its udev rules give it to the group realtime); log in again");
 }
 
 Finding throttling(const Machine& m) {

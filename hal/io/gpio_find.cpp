@@ -12,7 +12,7 @@ namespace tact {
 namespace {
 
 constexpr const char* kRights =
-    "add yourself to the group gpio (deploy/install.sh has its rules) and log in again";
+    "sudo deploy/install.sh --rights (it makes the group tact and its rules), and log in again";
 
 std::vector<std::string> chip_paths(const std::string& folder) {
     std::vector<std::string> paths;

@@ -45,8 +45,8 @@ std::string text(const std::array<char, 16>& chars) {
                                "give each board a serial of its own; until then plug in one of them");
         case BusFault::denied:
             throw StartupError(what, "this user may not open it (" + found.detail + ")",
-                               "run deploy/install.sh, which adds the udev rule deploy/60-tact.rules, and "
-                               "plug the board in again");
+                               "sudo deploy/install.sh --rights, which installs deploy/60-tact.rules; log in "
+                               "again and plug the board in again");
         case BusFault::busy:
             throw StartupError(what, "another program has it (" + found.detail + ")",
                                "end that program; lsof names it");
