@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -100,8 +101,9 @@ launch::ChildSettings settings_of(const Rig& rig, const std::vector<std::string>
     launch::ChildSettings s;
     const auto config =
         rig.file("tact.toml", "[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n" + more_config);
-    s.arguments = {rig.scene().string(), "--session", rig.session(), "--config", config.string(),
-                   "--priority",         "0"};
+    s.arguments = {rig.scene().string(), "--session", rig.session(), "--config", config.string()};
+    if (std::find(more.begin(), more.end(), "--priority") == more.end())
+        s.arguments.insert(s.arguments.end(), {"--priority", "0"});
     s.arguments.insert(s.arguments.end(), more.begin(), more.end());
     s.output_fd = log_fd;
     s.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang

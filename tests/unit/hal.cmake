@@ -1,4 +1,5 @@
 # Tests of hal's drivers.
+tact_test(unit/hal_emu_cp2112_test.cpp USES emu_lines)
 tact_test(unit/hal_line_logic_test.cpp USES base io)
 tact_test(unit/hal_lines_contract_test.cpp USES base io hal LABELS tsan)
 tact_test(unit/hal_socket_can_test.cpp USES base tracker hal LABELS tsan)

@@ -1,0 +1,5 @@
+# Programs that only tests/hil runs, in its machine.
+tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics assets launch emu_lines)
+set_target_properties(hil_lines_story PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+target_compile_definitions(hil_lines_story PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
+add_dependencies(hil_lines_story tact-rt)

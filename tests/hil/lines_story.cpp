@@ -1,0 +1,302 @@
+// tact-rt as it is shipped, with safety lines on a CP2112 adapter by the kernel's own driver and libgpiod: every stop leads
+// to zero force, latched with its cause, released by nothing but a person; a servo that stands loses its enable line.
+//
+// usage: hil_lines_story [FIFO_PRIORITY CORE]. As root, on a kernel with uhid and hid-cp2112.
+// Exit  0 all is as it has to be, 1 something is not (the last line says what), 77 the kernel has no uhid
+#include <sched.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "hal/emu/cp2112.hpp"
+#include "ipc/topics/text.hpp"
+#include "tests/scenario/rig.hpp"
+
+namespace tact::scenario {
+namespace {
+
+// The wiring of this story.
+enum Pin : unsigned { kStopA, kStopB, kPedal, kAmplifier, kEnable, kWatchdog, kLamp };
+
+// Patient: an emulated processor stands still now and then.
+constexpr const char* kConfig = R"([servo]
+period_us = 1000.0
+model_us_max = 100000.0
+[safety]
+sample_age_us_max = 1e6
+supervisor_us_max = 1e6
+[lines]
+driver = "gpio"
+chip = "cp2112_gpio"
+emergency_stop_a = "0"
+emergency_stop_b = "1"
+dead_man = "2"
+amplifier = "3"
+enable = "4"
+watchdog = "5"
+lamp = "6"
+discrepancy_ms = 500.0
+follow_ms = 5000.0
+age_us_max = 1e6
+)";
+
+void claim(bool good, const std::string& what) {
+    if (good) return;
+    std::printf("not so: %s\n", what.c_str());
+    std::exit(1);
+}
+
+class Story {
+public:
+    Story(std::string priority, std::string core) : core_(std::stoi(core)) {
+        more_ = {"--priority", std::move(priority), "--core", std::move(core)};
+        close_contacts();
+        adapter_.follow(kAmplifier, kEnable);
+        adapter_.plug();
+    }
+
+    void start() {
+        controller_.emplace(rig_, more_, kConfig);
+        claim(watch_.attach(), "a controller comes up; it said: " + controller_->said());
+        to_force("at the start");
+    }
+
+    // One way to stop.
+    struct Stop {
+        const char* name;
+        std::vector<Pin> opens;
+        RunReason reason;
+        bool both_after;  // closed again it is believed only after both contacts were open
+    };
+    void stops(const Stop& stop) {
+        const Instant opened = Monotonic::now();
+        for (const Pin pin : stop.opens) adapter_.set(pin, false);
+        faults(stop.name, stop.reason, opened);
+        claim(until([&] { return !adapter_.level(kEnable); }), name(stop.name) + "the enable line goes low");
+        claim(until([&] { return !adapter_.level(kAmplifier); }), name(stop.name) + "the amplifier is off");
+        // As soon as the contacts differ for long enough, one alone is a fault of the wiring.
+        if (stop.both_after) {
+            claim(until([&] {
+                      return watch_.health().lines_reason == static_cast<int>(RunReason::stop_channels);
+                  }),
+                  name(stop.name) + "the channels are seen to disagree");
+            close_contacts();
+            claim(watch_.cycles_pass(200), "the loop goes on");
+            claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::refused_state,
+                  name(stop.name) + "one contact closed again is not believed");
+            adapter_.set(kStopA, false);
+            adapter_.set(kStopB, false);
+            claim(until([&] {
+                      return watch_.health().lines_reason == static_cast<int>(RunReason::emergency_stop);
+                  }),
+                  name(stop.name) + "both contacts are seen open");
+        }
+        close_contacts();
+        claim(until([&] { return watch_.health().lines == static_cast<int>(LinesShown::waiting); }),
+              name(stop.name) + "closed contacts wait for a person");
+        stays_off(stop.name);
+        recovers(stop.name);
+    }
+
+    void unplugged() {
+        const Instant pulled = Monotonic::now();
+        adapter_.unplug();
+        faults("adapter unplugged", RunReason::lines_lost, pulled);
+        claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::refused_state,
+              "without its adapter nothing is reset");
+        adapter_.plug();
+        claim(until([&] { return watch_.health().lines == static_cast<int>(LinesShown::waiting); }),
+              "the adapter is found again");
+        claim(!adapter_.level(kEnable), "the enable line is low after the adapter came back");
+        stays_off("adapter unplugged");
+        recovers("adapter unplugged");
+    }
+
+    // Above and below everything is as ever; only the servo gets no time.
+    void hogged() {
+        const Instant begun = Monotonic::now();
+        const pid_t hog = fork();
+        if (hog == 0) {
+            cpu_set_t set;
+            CPU_ZERO(&set);
+            CPU_SET(static_cast<std::size_t>(core_), &set);
+            sched_param param{};
+            param.sched_priority = std::stoi(more_[1]);
+            if (sched_setaffinity(0, sizeof set, &set) != 0 || sched_setscheduler(0, SCHED_FIFO, &param) != 0)
+                _exit(1);
+            for (;;) {
+            }
+        }
+        const bool low = until([&] { return !adapter_.level(kEnable); });
+        const double ms = to_s(Monotonic::now() - begun) * 1e3;
+        const std::uint64_t edges = adapter_.edges(kWatchdog);
+        const std::uint64_t cycle = watch_.tool().cycle;
+        int status = 0;
+        const bool ran = waitpid(hog, &status, WNOHANG) == 0;
+        kill(hog, SIGKILL);
+        if (ran) waitpid(hog, &status, 0);
+        claim(ran, "the hog ran on the servo's core at its priority");
+        claim(low, "a servo that gets no time loses its enable line");
+        std::printf(
+            "hog at the servo's priority: enable low after %.0f ms (its silence may be 1000 ms here), %llu "
+            "edges of "
+            "the watchdog line, cycle %llu\n",
+            ms, static_cast<unsigned long long>(edges), static_cast<unsigned long long>(cycle));
+        claim(until([&] { return watch_.state() == RunState::fault; }), "the drop is a fault");
+        std::printf("  and then: %s\n", run_reason_text(static_cast<RunReason>(watch_.health().reason)));
+        claim(watch_.health().reason == static_cast<int>(RunReason::supervisor),
+              "the supervisor is the cause");
+        stays_off("hog");
+        recovers("hog");
+    }
+
+    void killed() {
+        ::kill(controller_->child().pid(), SIGKILL);
+        claim(controller_->child().wait(std::chrono::minutes(1)).has_value(), "a killed controller ends");
+        const std::uint64_t edges = adapter_.edges(kWatchdog);
+        ::usleep(200'000);
+        claim(adapter_.edges(kWatchdog) == edges, "the watchdog line stands when the controller is dead");
+        controller_.reset();
+    }
+
+    void refusals() {
+        const auto says = [&](const std::string& from, const std::string& to, const std::string& wanted) {
+            std::string text = kConfig;
+            text.replace(text.find(from), from.size(), to);
+            const auto config = rig_.file("refused.toml", text);
+            const auto said = run_to_end(rig_, rt_program(),
+                                         {rig_.scene().string(), "--check", "--config", config.string()});
+            claim(said && said->ending.number != 0 && said->text.find(wanted) != std::string::npos,
+                  "tact-rt --check names " + wanted + "; it said: " + (said ? said->text : ""));
+        };
+        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "there are only gpiochip");
+        says("lamp = \"6\"", "lamp = \"11\"", "taking line \"11\"");
+        says("lamp = \"6\"", "lamp = \"5\"", "two meanings");
+        says("lamp = \"6\"", "lamp = \"STATE\"", "there is no such line");
+    }
+
+private:
+    static std::string name(const std::string& stop) { return stop + ": "; }
+    void close_contacts() {
+        for (const Pin pin : {kStopA, kStopB, kPedal}) adapter_.set(pin, true);
+    }
+    void to_force(const std::string& when) {
+        claim(bring_to_force(visual_, watch_),
+              when + ": a force comes; the controller said: " + controller_->said());
+        claim(until([&] { return adapter_.level(kEnable) && adapter_.level(kAmplifier); }),
+              when + ": enable line and amplifier are on; the controller said: " + controller_->said());
+        claim(until([&] { return adapter_.level(kLamp); }), when + ": the lamp is lit");
+        const std::uint64_t edges = adapter_.edges(kWatchdog);
+        claim(until([&] { return adapter_.edges(kWatchdog) > edges + 10; }),
+              when + ": the watchdog line moves");
+    }
+    void faults(const std::string& what, RunReason reason, Instant since) {
+        claim(until([&] {
+                  visual_.frame();
+                  return watch_.state() == RunState::fault;
+              }),
+              name(what) + "it is a fault");
+        const HealthTopic h = watch_.health();
+        claim(h.reason == static_cast<int>(reason),
+              name(what) + "its cause is another: " + run_reason_text(static_cast<RunReason>(h.reason)));
+        claim(watch_.force_n() == 0.0, name(what) + "the force is zero");
+        say_how_fast(what, since);
+    }
+    // From the trace: the first cycle in fault, and whether the force was zero in that very one.
+    void say_how_fast(const std::string& what, Instant since) {
+        claim(watch_.cycles_pass(2), "the loop goes on");
+        RingCursor at = watch_.region().trace.tail();
+        at.next = at.next > 8000 ? at.next - 8000 : 1;
+        TraceTopic t{};
+        std::uint64_t first = 0, before = 0;
+        double age_ms = 0.0;
+        while (watch_.region().trace.next(at, t)) {
+            if (t.taken_at_ns < to_ns(since)) {
+                before = t.cycle;
+                continue;
+            }
+            if ((t.status & 0xFFU) != static_cast<unsigned>(RunState::fault)) continue;
+            const bool zero =
+                t.force_world_n[0] == 0.0F && t.force_world_n[1] == 0.0F && t.force_world_n[2] == 0.0F;
+            claim(zero, name(what) + "force in a cycle with a fault");
+            if (first == 0) {
+                first = t.cycle;
+                age_ms = static_cast<double>(t.taken_at_ns - to_ns(since)) * 1e-6;
+            }
+        }
+        claim(first != 0, name(what) + "the trace has the fault");
+        std::printf(
+            "%-20s zero force in the cycle that saw it (0 later), %llu cycles and %.1f ms after the event\n",
+            what.c_str(), static_cast<unsigned long long>(first - before), age_ms);
+    }
+    // Released contacts alone: nothing comes back, nor by arming.
+    void stays_off(const std::string& what) {
+        claim(watch_.cycles_pass(100), "the loop goes on");
+        claim(command(visual_, watch_, CommandKind::arm) == CommandResult::refused_state,
+              name(what) + "arming out of a fault is refused");
+        claim(watch_.state() == RunState::fault && watch_.force_n() == 0.0 && !adapter_.level(kEnable),
+              name(what) + "without a person all stays off");
+    }
+    void recovers(const std::string& what) {
+        claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::done,
+              name(what) + "a person resets");
+        claim(watch_.state() == RunState::ready && !adapter_.level(kEnable),
+              name(what) + "reset is to ready");
+        to_force(what + ", armed again");
+    }
+
+    Rig rig_;
+    emu::EmulatedLines adapter_;
+    Watch watch_{rig_};
+    Visual visual_{rig_};
+    std::vector<std::string> more_;
+    int core_;
+    std::optional<Controller> controller_;
+};
+
+int tell(const std::string& priority, const std::string& core) {
+    Story story(priority, core);
+    // The chip appears a moment after the adapter.
+    claim(until([] { return access("/dev/gpiochip0", F_OK) == 0 || access("/dev/gpiochip1", F_OK) == 0; }),
+          "a gpiochip comes");
+    story.refusals();
+    story.start();
+    const Story::Stop stops[] = {
+        {"emergency stop", {kStopA, kStopB}, RunReason::emergency_stop, false},
+        {"wire of channel a", {kStopA}, RunReason::emergency_stop, true},
+        {"wire of channel b", {kStopB}, RunReason::emergency_stop, true},
+        {"dead-man", {kPedal}, RunReason::dead_man, false},
+    };
+    for (const Story::Stop& stop : stops) story.stops(stop);
+    story.unplugged();
+    story.unplugged();
+    if (priority != "0") story.hogged();
+    story.killed();
+    std::printf(
+        "emergency stop, broken wires, dead-man, unplugged twice%s: zero force in the cycle that saw it, "
+        "latched, "
+        "re-armed by a person alone\n",
+        priority == "0" ? "" : ", servo starved");
+    return 0;
+}
+
+}  // namespace
+}  // namespace tact::scenario
+
+int main(int argc, char** argv) {
+    if (access("/dev/uhid", R_OK | W_OK) != 0) {
+        std::puts("no /dev/uhid here");
+        return 77;
+    }
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    try {
+        return tact::scenario::tell(argc == 3 ? argv[1] : "0", argc == 3 ? argv[2] : "-2");
+    } catch (const std::exception& e) {
+        std::printf("%s\n", e.what());
+        return 1;
+    }
+}
