@@ -51,7 +51,7 @@ void show(const Observer& observer, bool as_json) {
     std::fputs((table_header() + table_row(*sample)).c_str(), stdout);
 }
 
-int watch(Observer& observer) {
+int watch(Observer& observer, bool as_json) {
     Signals signals;
     std::optional<Places> places;
     Instant due{}, began = Monotonic::now();
@@ -61,7 +61,7 @@ int watch(Observer& observer) {
     while (signals.wait(50) == 0) {
         observer.poll();
         if (!observer.attached()) {
-            if (!said_waiting) std::printf("%s\n", observer.status_text().c_str());
+            if (!said_waiting && !as_json) std::printf("%s\n", observer.status_text().c_str());
             said_waiting = true;
             std::fflush(stdout);
             continue;
@@ -74,6 +74,13 @@ int watch(Observer& observer) {
         }
         said_waiting = false;
         due = Monotonic::now() + std::chrono::seconds(1);
+        if (as_json) {
+            const nlohmann::json report = controller_report(observer.region());
+            std::printf("%s\n",
+                        report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+            std::fflush(stdout);
+            continue;
+        }
         const auto sample =
             take_sample(observer.region(), places ? &*places : nullptr, to_s(Monotonic::now() - began));
         if (!sample) continue;
@@ -86,7 +93,7 @@ int watch(Observer& observer) {
 
 int status(const StatusOptions& o) {
     Observer observer(o.session);
-    if (o.watch) return watch(observer);
+    if (o.watch) return watch(observer, o.json);
     const Instant end = Monotonic::now() + kPatience;
     while (Monotonic::now() < end) {
         observer.poll();
@@ -110,9 +117,8 @@ void add_status(CLI::App& app, int& exit_code) {
     command->add_option("--session", o->session, "name of the session")
         ->type_name("NAME")
         ->capture_default_str();
-    auto* const json = command->add_flag("--json", o->json, "for programs");
-    command->add_flag("--watch", o->watch, "a line a second, also across restarts, until Ctrl-C")
-        ->excludes(json);
+    command->add_flag("--json", o->json, "for programs; with --watch one object a line");
+    command->add_flag("--watch", o->watch, "a line a second, also across restarts, until Ctrl-C");
     command->callback([o, &exit_code] { exit_code = status(*o); });
 }
 

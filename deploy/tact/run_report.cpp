@@ -55,6 +55,19 @@ json governor(const RtRegion& region) {
             {"paths", paths}};
 }
 
+json head(const RtRegion& region) {
+    const auto h = newest(region.head);
+    if (!h) return nullptr;  // no tracker, or nothing from it yet
+    return {{"state", head_state_text(h->state)},
+            {"link", head_link_text(h->link)},
+            {"sequence", h->sequence},
+            {"taken_at_ns", h->taken_at_ns},
+            {"pos_screen_m", h->pos_screen_m},
+            {"quat_screen_head_xyzw", h->quat_screen_head_xyzw},
+            {"quality", h->quality},
+            {"distortion", h->distortion}};
+}
+
 json offset_json(const Offset& o) { return {{"offset_a", o.distance_a}, {"angle_deg", o.angle_deg}}; }
 
 json fit_numbers(const Places& places, const std::vector<BodyAt>& bodies, const BodyAt& judged) {
@@ -166,6 +179,7 @@ json controller_report(const RtRegion& region) {
                                          ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
                                          : json(nullptr)}};
     j["governor"] = governor(region);
+    j["head"] = head(region);
     j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},
                   {"checksum", hex(region.scene_checksum)}};
     return j;

@@ -19,6 +19,7 @@ namespace tact::emu {
 namespace {
 
 constexpr Duration kPatience = std::chrono::milliseconds(20);
+constexpr Duration kReopenEvery = std::chrono::milliseconds(500);
 
 ifreq request(const std::string& interface) {
     ifreq r{};
@@ -60,7 +61,7 @@ CanHead::CanHead(const SimHeadSettings& settings, std::string interface, Report&
 CanHead::~CanHead() {
     leave_.store(true);
     if (thread_.joinable()) thread_.join();
-    ::close(fd_);
+    if (fd_ >= 0) ::close(fd_);
 }
 
 void CanHead::start() {
@@ -83,6 +84,7 @@ void CanHead::live() noexcept {
         const bool flood = flood_.load(std::memory_order_relaxed);
         const std::size_t room = flood ? kFloodBatch : frames.size();
         const CanBatch batch = bus_.receive(std::span(frames).first(room), kPatience);
+        if (fd_ < 0 && clock_.now() >= retry_at_) reopen();
         for (std::size_t i = 0; i < batch.count; ++i) send(frames[i]);
         if (flood) clock_.wait_until(clock_.now() + kFloodEvery);
     }
@@ -96,17 +98,32 @@ void CanHead::send(const CanFrame& frame) noexcept {
     std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length, sizeof raw.data), raw.data);
     const std::size_t size = frame.kind == CanKind::fd ? CANFD_MTU : CAN_MTU;
     const bool taken = ::write(fd_, &raw, size) == static_cast<ssize_t>(size);
+    const int error = errno;
     (taken ? sent_ : not_taken_).fetch_add(1, std::memory_order_relaxed);
+    if (taken || fd_ < 0 || (error != ENODEV && error != ENXIO)) return;
+    ::close(std::exchange(fd_, -1));
+    say("link", "gone");
+}
+
+void CanHead::reopen() noexcept {
+    retry_at_ = clock_.now() + kReopenEvery;
+    try {
+        fd_ = open_socket(interface_);
+        say("link", "found again");
+    } catch (const std::exception&) {  // not there yet
+    }
 }
 
 void CanHead::set_link(bool up) {
+    const int any = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);  // fd_ is the thread's
     ifreq r = request(interface_);
-    if (ioctl(fd_, SIOCGIFFLAGS, &r) == 0) {
-        const int flags = up ? r.ifr_flags | IFF_UP : r.ifr_flags & ~IFF_UP;
-        r.ifr_flags = static_cast<short>(flags);
-        if (ioctl(fd_, SIOCSIFFLAGS, &r) == 0) return;
-    }
-    refuse_interface(CanStep::state, interface_, errno);
+    bool done = ioctl(any, SIOCGIFFLAGS, &r) == 0;
+    const int flags = up ? r.ifr_flags | IFF_UP : r.ifr_flags & ~IFF_UP;
+    r.ifr_flags = static_cast<short>(flags);
+    done = done && ioctl(any, SIOCSIFFLAGS, &r) == 0;
+    const int error = errno;
+    ::close(any);
+    if (!done) refuse_interface(CanStep::state, interface_, error);
 }
 
 bool CanHead::obey(const Order& order) {

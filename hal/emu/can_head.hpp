@@ -2,7 +2,7 @@
 //
 // Flood    at most what a bus of 1 Mbit/s carries: kFloodBatch frames every kFloodEvery
 // Link     down and up are the interface's own, as `ip link set` does; frames that it does not take are
-//          counted
+//          counted; an interface that vanished is looked for twice a second
 // Thread   one of its own; the public functions on another
 // Fails by StartupError naming the interface and the mend
 #pragma once
@@ -35,6 +35,7 @@ public:
 private:
     void live() noexcept;
     void send(const CanFrame& frame) noexcept;
+    void reopen() noexcept;
     void set_link(bool up);
     void say(const char* what, const char* detail) noexcept;
 
@@ -42,7 +43,8 @@ private:
     Report& report_;
     ServoClock clock_{Duration{0}};
     SimHeadBus bus_;
-    int fd_ = -1;
+    int fd_ = -1;  // of the thread once it runs
+    Instant retry_at_{};
     std::atomic<bool> leave_{false}, flood_{false};
     std::atomic<std::uint64_t> sent_{0}, not_taken_{0};
     std::thread thread_;

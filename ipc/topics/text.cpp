@@ -1,5 +1,6 @@
 #include "ipc/topics/text.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -244,6 +245,16 @@ const char* frame_part_text(FramePart part) noexcept {
             break;
     }
     return kUnknown;
+}
+
+const char* head_state_text(std::uint8_t state) noexcept {
+    constexpr std::array kWords{"lost", "frozen", "fresh"};
+    return state < kWords.size() ? kWords[state] : kUnknown;
+}
+
+const char* head_link_text(std::uint8_t link) noexcept {
+    constexpr std::array kWords{"closed", "up", "down", "bus off", "gone"};
+    return link < kWords.size() ? kWords[link] : kUnknown;
 }
 
 std::string event_text(const EventTopic& event) {

@@ -22,6 +22,10 @@ namespace tact {
 [[nodiscard]] const char* command_result_text(CommandResult result) noexcept;
 [[nodiscard]] const char* frame_part_text(FramePart part) noexcept;  // "upload"
 
+// Codes of the head topic: TrackerState and TrackerLink of hal/api/tracker.hpp.
+[[nodiscard]] const char* head_state_text(std::uint8_t state) noexcept;  // "fresh"
+[[nodiscard]] const char* head_link_text(std::uint8_t link) noexcept;    // "bus off"
+
 // One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
 [[nodiscard]] std::string event_text(const EventTopic& event);
 // "FIFO, pinned, memory locked", or "ordinary scheduling".

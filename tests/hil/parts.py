@@ -14,6 +14,9 @@ import zlib
 
 PATIENCE_S = 100
 CLAIM, BULK, CLEAR_HALT = 0x8004550F, 0xC0185502, 0x80045515  # USBDEVFS_*; BULK does interrupt endpoints too
+ACCEL = os.environ.get("TACT_HIL_ACCEL", "kvm")
+# An emulated processor that shares a busy host: a servo at 1 kHz would leave nothing for the others.
+EMULATED = "[servo]\nperiod_us = 5000.0\n"
 STATE, COMMAND, QUERY, INFO = 1, 2, 3, 4                      # kinds of hal/phantom/PROTOCOL.md
 
 
@@ -29,8 +32,9 @@ def wait_for(condition, what):
 class Child:
     """A program whose lines are gathered, and that ends with this object."""
 
-    def __init__(self, *command, lines_of="stdout"):
-        self.lines, self.seen = queue.Queue(), []
+    def __init__(self, *command, lines_of="stdout", quiet=False, leave_out=()):
+        self.quiet, self.leave_out = quiet, leave_out  # not printed; lines with these words are not kept either
+        self.lines, self.seen, self.gone_by = queue.Queue(), [], []
         pipes = {"stdout": None, "stderr": None, lines_of: subprocess.PIPE}
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, text=True, bufsize=1, **pipes)
         self.reader = threading.Thread(target=self._read, args=(getattr(self.process, lines_of),), daemon=True)
@@ -38,7 +42,11 @@ class Child:
 
     def _read(self, stream):
         for line in stream:
-            print(line, end="", flush=True)
+            if any(words in line for words in self.leave_out):
+                continue
+            if not self.quiet:
+                print(line, end="", flush=True)
+            self.gone_by.append(line)
             self.lines.put(line)
         self.lines.put(None)
 
@@ -47,6 +55,10 @@ class Child:
 
     def __exit__(self, *_):
         self.end()
+
+    def said(self):
+        """All its lines so far."""
+        return list(self.gone_by)
 
     def end(self):
         """Its exit code after SIGTERM."""
@@ -180,3 +192,93 @@ def said(call):
         return ""
     except OSError as e:
         return errno.errorcode[e.errno]
+
+
+def text_of(path):
+    with open(path, encoding="utf-8", errors="replace") as f:
+        return f.read()
+
+
+class Watcher(Child):
+    """tact status --watch --json: what the controller says of itself, once a second."""
+
+    def __init__(self, bin_dir):
+        super().__init__(f"{bin_dir}/tact", "status", "--watch", "--json", quiet=True)
+
+    def next(self):
+        """A status that is newer than this call."""
+        while not self.lines.empty():
+            self.lines.get()
+        self.next_line("tact status")  # may have been written before
+        return json.loads(self.next_line("tact status"))
+
+
+class Controller(Child):
+    """tact-rt as shipped, on hil.toml and what `config` says besides; what it says goes to the log."""
+
+    def __init__(self, bin_dir, config, *words):
+        path = "/run/check.toml"
+        with open(path, "w", encoding="utf-8") as f:
+            f.write(with_sections(text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), "hil.toml")),
+                                  EMULATED if ACCEL == "tcg" else "", config))
+        super().__init__(f"{bin_dir}/tact-rt", "/out/small.tact", "--config", path, *words, lines_of="stderr",
+                         leave_out=("overrun", "force limited", "torque limited"))
+        self.watcher = Watcher(bin_dir)
+
+    def end(self):
+        self.watcher.end()
+        return super().end()
+
+    def status(self):
+        assert self.process.poll() is None, f"tact-rt ended with {self.process.returncode}"
+        return self.watcher.next()
+
+    def wait_for(self, condition, what):
+        """The first status that fulfils the condition."""
+        end = time.monotonic() + PATIENCE_S
+        while not condition(now := self.status()):
+            assert time.monotonic() < end, f"{what}: not within {PATIENCE_S} s: {now}"
+        return now
+
+    def until(self, words):
+        """The next line of its log with these words."""
+        while words not in (line := self.next_line(f"tact-rt: {words}")):
+            pass
+        return line
+
+    def servo(self):
+        """/proc of the servo thread."""
+        for tid in os.listdir(f"/proc/{self.process.pid}/task"):
+            if text_of(f"/proc/{self.process.pid}/task/{tid}/comm").strip() == "servo":
+                return f"/proc/{self.process.pid}/task/{tid}"
+        raise AssertionError("no servo thread")
+
+    def watch_servo(self, looks=100):
+        """Asserts that the servo thread has its core and does nothing but sleep and compute: no read, write or ioctl."""
+        folder = self.servo()
+        io = [line for line in text_of(f"{folder}/io").splitlines() if line.startswith(("syscr", "syscw"))]
+        calls = {text_of(f"{folder}/syscall").split()[0] for _ in range(looks)}
+        assert calls <= {"running", "230"}, f"system calls of the servo thread: {calls}"  # 230: clock_nanosleep
+        after = [line for line in text_of(f"{folder}/io").splitlines() if line.startswith(("syscr", "syscw"))]
+        assert io == after, (io, after)
+        assert text_of(f"{folder}/stat").rsplit(")", 1)[1].split()[36] == "1", "it is not on core 1"
+        assert os.sched_getscheduler(int(folder.rsplit("/", 1)[1])) == os.SCHED_FIFO
+
+
+def with_sections(*texts):
+    """One TOML text out of several; the later ones overwrite keys of the earlier."""
+    sections = {}
+    for text in texts:
+        name = ""
+        for line in text.splitlines():
+            if line.startswith("["):
+                name = line.split("]")[0] + "]"
+            elif "=" in line:
+                sections.setdefault(name, {})[line.split("=")[0].strip()] = line
+    return "\n".join("\n".join([name, *keys.values()]) for name, keys in sections.items()) + "\n"
+
+
+def unhurt(status):
+    """Asserts that the servo never allocated, locked or faulted."""
+    servo = status["servo"]
+    assert servo["allocations"] == 0 and servo["locks"] == 0 and servo["page_faults"] == 0, servo

@@ -35,6 +35,13 @@ TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(frame_part_text, FramePart::swap, false);
 }
 
+TEST(Text, HeadCodesAreSpelledOut) {
+    EXPECT_STREQ(head_state_text(2), "fresh");
+    EXPECT_STREQ(head_state_text(3), "unknown");
+    EXPECT_STREQ(head_link_text(3), "bus off");
+    EXPECT_STREQ(head_link_text(255), "unknown");
+}
+
 TEST(Text, EventsCarryTheirNumbersAndUnits) {
     const auto text = [](EventCode code, double a, double b) {
         EventTopic e{};

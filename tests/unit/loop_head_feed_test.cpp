@@ -6,6 +6,7 @@
 #include "hal/sim/sim_tracker.hpp"
 #include "hal/tracker_registry.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/topics/text.hpp"
 
 namespace tact {
 namespace {
@@ -102,6 +103,21 @@ TEST(TrackerRegistry, gives_what_is_named_and_names_what_there_is) {
     } catch (const StartupError& e) {
         EXPECT_NE(std::string(e.what()).find("none, sim, can"), std::string::npos);
     }
+}
+
+TEST(HeadTopicWords, AreTheTrackersStatesAndLinks) {
+    const auto state = [](TrackerState s) {
+        return std::string(head_state_text(static_cast<std::uint8_t>(s)));
+    };
+    EXPECT_EQ(state(TrackerState::lost), "lost");
+    EXPECT_EQ(state(TrackerState::frozen), "frozen");
+    EXPECT_EQ(state(TrackerState::fresh), "fresh");
+    const auto link = [](TrackerLink l) { return std::string(head_link_text(static_cast<std::uint8_t>(l))); };
+    EXPECT_EQ(link(TrackerLink::closed), "closed");
+    EXPECT_EQ(link(TrackerLink::up), "up");
+    EXPECT_EQ(link(TrackerLink::down), "down");
+    EXPECT_EQ(link(TrackerLink::bus_off), "bus off");
+    EXPECT_EQ(link(TrackerLink::gone), "gone");
 }
 
 }  // namespace
