@@ -16,7 +16,9 @@ using phantom::AmplifierState;
 constexpr double kSingular = 1e-3;          // metres, and radians for the wrist
 constexpr std::uint32_t kStepUs = 1'000;    // longest step of the physics
 constexpr std::uint32_t kPauseUs = 50'000;  // of a longer pause only so much is moved
-// The ritual, in seconds after power-on.
+// The ritual, in seconds after the first word; before it the arm waits in its calibration pose. One that comes
+// later begins with the way back to that pose.
+constexpr double kBackS = 1.0;
 constexpr double kPressS = 0.3, kReleaseS = 0.5, kLeaveS = 1.2, kFreeS = 2.2;
 
 std::array<char, 16> text(const std::string& s) {
@@ -76,7 +78,11 @@ EmulatedBoard::EmulatedBoard(const BoardSettings& settings)
 bool EmulatedBoard::hand_free() const noexcept { return ritual_s() >= kFreeS; }
 
 double EmulatedBoard::ritual_s() const noexcept {
-    return settings_.ritual ? static_cast<double>(age_us_) * 1e-6 : kFreeS;
+    return settings_.ritual ? static_cast<double>(ritual_us_) * 1e-6 / settings_.ritual_slow : kFreeS;
+}
+
+void EmulatedBoard::calibrate_again() noexcept {
+    if (hand_free()) ritual_us_ = -static_cast<std::int64_t>(kBackS * 1e6 * settings_.ritual_slow);
 }
 
 double EmulatedBoard::hottest_c() const noexcept {
@@ -86,7 +92,9 @@ double EmulatedBoard::hottest_c() const noexcept {
 }
 
 Pose EmulatedBoard::tool_pose() const noexcept {
-    const double t = std::clamp((ritual_s() - kLeaveS) / (kFreeS - kLeaveS), 0.0, 1.0);
+    const double since_s = ritual_s();
+    const double t =
+        since_s < 0.0 ? -since_s / kBackS : std::clamp((since_s - kLeaveS) / (kFreeS - kLeaveS), 0.0, 1.0);
     if (t >= 1.0) return hand_.pose();
     const double share = t * t * (3.0 - 2.0 * t);  // starts and ends at rest
     const Pose rest = arm_.pose(arm_.parameters().calibration_rad);
@@ -124,7 +132,7 @@ void EmulatedBoard::move(std::uint32_t now_us) noexcept {
     }
     std::uint32_t left = now_us - moved_us_;
     if (left > 0x7FFF'FFFFU) return;  // a clock that went back
-    age_us_ += left;
+    if (spoken_ || ritual_us_ < 0) ritual_us_ += left;
     moved_us_ = now_us;
     left = std::min(left, kPauseUs);
     while (left > 0) {
@@ -184,7 +192,8 @@ phantom::State EmulatedBoard::state(std::uint32_t now_us) noexcept {
         s.status |= phantom::status::kCalibrated;
     s.inputs = static_cast<std::uint16_t>(pressed_ & phantom::input::kButtons);
     if (t >= kPressS && t < kReleaseS) s.inputs |= 1U;
-    if (p.calibration == CalibrationStyle::inkwell && t < kLeaveS) s.inputs |= phantom::input::kInkwell;
+    if (p.calibration == CalibrationStyle::inkwell && t >= 0.0 && t < kLeaveS)
+        s.inputs |= phantom::input::kInkwell;
     s.boot = boot_;
     s.commands_refused = amplifier_.refused();
     return s;
@@ -242,7 +251,7 @@ void EmulatedBoard::restart(std::uint32_t now_us) noexcept {
     sequence_ = 0;
     count_ = 0;
     held_back_.size = 0;
-    age_us_ = 0;
+    ritual_us_ = 0;
     shown_ = {};
     moved_us_ = due_us_ = now_us;
 }

@@ -5,8 +5,8 @@
 // Physics   SimHand, moved by what the motors push less the arm's weight; with the amplifier off the fingers
 //           carry the weight. Encoders in whole counts from wherever they stood at power-on.
 // Heat      the motors' windings warm up; beyond their limit the board says over-temperature
-// Ritual    after power-on the person holds the arm in its calibration pose, presses button 0, then takes it
-//           to where the hand is and lets go; without it the hand moves from the start
+// Ritual    the person holds the arm in its calibration pose until the PC spoke, presses button 0, then takes
+//           it to where the hand is and lets go; without it the hand moves from the start
 // Clock     now_us is the board's, wraps; tick() every half period or more often
 // Fails by  StartupError for figures that make no arm; otherwise as told by its faults
 // Thread    one; allocates nothing after its construction
@@ -31,6 +31,7 @@ struct BoardSettings {
     std::uint16_t boot = 1;
     Counts6 power_on{1200, -340, 77, 15, -9, 4};  // what the encoders show in the calibration pose
     bool ritual = true;
+    double ritual_slow = 1.0;  // takes so many times as long
 };
 
 // What is wrong now. Plain data: set what you want through faults().
@@ -60,6 +61,8 @@ public:
     void restart(std::uint32_t now_us) noexcept;
 
     [[nodiscard]] BoardFaults& faults() noexcept { return faults_; }
+    // The person takes the arm back to its calibration pose, and the ritual comes anew.
+    void calibrate_again() noexcept;
     // Of the person: button bits besides the ritual's own; the stylus in the inkwell.
     void press(std::uint16_t buttons) noexcept { pressed_ = buttons; }
 
@@ -97,7 +100,8 @@ private:
     bool spoken_ = false, started_ = false;
     std::uint16_t boot_, pressed_ = 0;
     std::uint32_t sequence_ = 0, moved_us_ = 0, due_us_ = 0;
-    std::uint64_t age_us_ = 0, unfetched_ = 0;  // since power-on
+    std::int64_t ritual_us_ = 0;
+    std::uint64_t unfetched_ = 0;
 
     static constexpr std::size_t kQueue = 8;
     std::array<Packet, kQueue> queue_{};

@@ -41,6 +41,7 @@ constexpr std::array kDeeds{
     DeedRow{"deaf", Deed::deaf, Part::arm, kNone, "", "takes no command and goes on sending, until well"},
     DeedRow{"restart", Deed::restart, Part::arm, kNone, "", "power off and on: another boot"},
     DeedRow{"press", Deed::press, Part::arm, kButtons, "", "buttons that are held down now, as bits"},
+    DeedRow{"calibrate", Deed::calibrate, Part::arm, kNone, "", "back to its pose, button, and on"},
     DeedRow{"well", Deed::well, Part::arm, kNone, "", "every fault that lasts is gone"},
     DeedRow{"tracker silent", Deed::tracker_silent, Part::tracker, kNone, "", "no frames"},
     DeedRow{"tracker corrupt", Deed::tracker_corrupt, Part::tracker, kNone, "", "a bit is wrong"},

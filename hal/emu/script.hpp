@@ -39,6 +39,7 @@ enum class Deed : std::uint8_t {
     deaf,
     restart,
     press,
+    calibrate,
     well,
     tracker_silent,
     tracker_corrupt,

@@ -90,6 +90,8 @@ void UsbArm::say_status() {
 
 // What changed at the board, said once each, with the instant of the step that changed it.
 void UsbArm::look(Instant now) noexcept {
+    if (board_.hand_free() != seen_.hand_free)
+        say("hand", (seen_.hand_free = board_.hand_free()) ? "free" : "calibrates", now);
     const phantom::Amplifier& a = board_.amplifier();
     if (a.state() != seen_.amplifier) say("amplifier", name_of(seen_.amplifier = a.state()), now);
     const auto& ma = a.current_ma();
@@ -255,6 +257,9 @@ void UsbArm::fault_of(const Order& o) {
             break;
         case Deed::press:
             board_.press(static_cast<std::uint16_t>(n));
+            break;
+        case Deed::calibrate:
+            board_.calibrate_again();
             break;
         default:  // well
             f = {};

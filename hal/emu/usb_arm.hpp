@@ -35,8 +35,7 @@ public:
 private:
     struct Seen {
         phantom::AmplifierState amplifier = phantom::AmplifierState::off;
-        std::uint16_t status = 0;
-        bool flowing = false;
+        bool flowing = false, hand_free = false;
     };
     void live_clock() noexcept;
     void live_to_host() noexcept;

@@ -155,7 +155,8 @@ IoStatus PhantomUsb::read(DeviceSample& newest, Instant now) noexcept {
                                              : asked(arm_.parameters().calibration, calibration_.state());
     newest = sample_;
     newest.taken_at = std::min(sample_.taken_at, now);
-    if (!connected || now - sample_.taken_at > kLostAfter) return IoStatus::lost;
+    if (!connected || now - sample_.taken_at > std::max(kLostAfter, settings_.hold_max))
+        return IoStatus::lost;
     if (sample_.state == DeviceState::fault) return IoStatus::fault;
     return fresh ? IoStatus::ok : IoStatus::stale;
 }

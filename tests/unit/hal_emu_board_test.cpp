@@ -177,5 +177,23 @@ TEST_F(BoardWithRitual, the_person_holds_the_reset_pose_confirms_and_takes_it_to
     EXPECT_LT(board_.tool_pose().p_m.norm(), 1e-12);
 }
 
+TEST_F(BoardWithRitual, the_person_waits_for_the_pc_and_comes_back_when_asked) {
+    run(5000);
+    EXPECT_FALSE(board_.hand_free()) << "nobody has asked yet";
+    ask();
+    run(3000);
+    ASSERT_TRUE(board_.hand_free());
+    const Counts6 free = run(1).back().counts;
+    board_.calibrate_again();
+    EXPECT_FALSE(board_.hand_free());
+    const auto back = run(1100);
+    EXPECT_NEAR(back.front().counts[1], free[1], 2) << "it is led there and does not leap";
+    EXPECT_NEAR(back.back().counts[1], -340, 1);
+    int pressed = 0;
+    for (const phantom::State& s : run(3000)) pressed += s.inputs & 1;
+    EXPECT_NEAR(pressed, 200, 2);
+    EXPECT_TRUE(board_.hand_free());
+}
+
 }  // namespace
 }  // namespace tact::emu

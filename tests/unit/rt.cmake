@@ -41,6 +41,8 @@ set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)
 # The process: signals, refusals, system calls of the servo thread.
 tact_program(write_small_scene SOURCES support/write_small_scene.cpp USES base assets)
 set_target_properties(write_small_scene PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+tact_program(stand_in_person SOURCES support/stand_in_person.cpp USES base shm topics)
+set_target_properties(stand_in_person PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME rt_process_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/rt_safe/process_test.py
     ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} $<TARGET_FILE:write_small_scene>)
