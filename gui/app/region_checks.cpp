@@ -49,7 +49,8 @@ bool sensible(const HealthTopic& h) noexcept {
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&
            duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
            duration(h.cycle_cost_max_ns) && fraction(h.fresh_mean) && fraction(h.fresh_least) &&
-           fraction(h.rested) && h.state <= static_cast<std::uint8_t>(RunState::fault);
+           fraction(h.rested) && duration(h.delay_p50_ns) && duration(h.delay_p99_ns) &&
+           std::isfinite(h.stiffness_n_m_max) && h.state <= static_cast<std::uint8_t>(RunState::fault);
 }
 
 bool sensible(const LevelsTopic& l) noexcept {

@@ -49,6 +49,27 @@ void free_running(const Theme& theme, const HealthTopic& h) {
     row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
 }
 
+// How long the loop is from the encoders to the motors, and what that allows.
+void delay(const Theme& theme, const HealthTopic& h) {
+    if (h.delay_p99_ns <= 0) return row(theme, "Delay", "unknown", "sensor to motor");
+    row(theme, "Delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
+        format("stable to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+}
+
+// What a device says comes in place of the state's own words: it knows more.
+void words(const Theme& theme, const HealthTopic& h, const Verdict& state) {
+    bool said = false;
+    for (const std::uint8_t code : h.device_notice) {
+        const auto notice = static_cast<DeviceNotice>(code);
+        if (notice == DeviceNotice::none) continue;
+        said = true;
+        ImGui::PushTextWrapPos(0.0F);
+        text_small(theme, grade_colour(notice_grade(notice)), device_notice_text(notice));
+        ImGui::PopTextWrapPos();
+    }
+    if (!said) text_small(theme, grade_colour(state.grade), state.words);
+}
+
 void law_and_goal(const Theme& theme, DashboardState& state) {
     if (!state.have_levels) return;
     std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
@@ -102,7 +123,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
             ImGui::SameLine();
             badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
         }
-        text_small(theme, grade_colour(v.grade), v.words);
+        words(theme, h, v);
         const auto lines = static_cast<LinesShown>(h.lines);
         if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
             const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
@@ -120,6 +141,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         row(theme, "Memory", memory.grade == Grade::good ? "clean" : "unclean", memory);
         row(theme, "Device", device_state_text(h.device_state),
             Verdict{device_grade(h.device_state), grade_text(device_grade(h.device_state))});
+        delay(theme, h);
         law_and_goal(theme, state);
     }
     buttons(theme, state);

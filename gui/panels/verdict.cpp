@@ -104,6 +104,11 @@ const char* device_state_text(std::uint8_t device_state) noexcept {
     return device_state < 5 ? kTexts[device_state] : "unknown";
 }
 
+Grade notice_grade(DeviceNotice notice) noexcept {
+    if (notice == DeviceNotice::none) return Grade::good;
+    return asks(notice) || notice == DeviceNotice::states_refused ? Grade::watch : Grade::bad;
+}
+
 Grade device_grade(std::uint8_t device_state) noexcept {
     static constexpr Grade kGrades[] = {Grade::watch, Grade::good, Grade::good, Grade::bad, Grade::bad};
     return device_state < 5 ? kGrades[device_state] : Grade::unknown;

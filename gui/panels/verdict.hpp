@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "ipc/base/device_notice.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -31,6 +32,8 @@ struct Verdict {
 // Allocations, locks and page faults inside servo cycles: there should be none.
 [[nodiscard]] Verdict memory_verdict(const HealthTopic& health);
 [[nodiscard]] const char* device_state_text(std::uint8_t device_state) noexcept;
+// What a device asks for is worth a look, what keeps it from showing force is bad.
+[[nodiscard]] Grade notice_grade(DeviceNotice notice) noexcept;
 [[nodiscard]] Grade device_grade(std::uint8_t device_state) noexcept;
 
 }  // namespace tact

@@ -33,6 +33,7 @@ enum class EventCode : std::uint16_t {
     body_selected,        // a: id, b: points of its finest level
     bodies_changed,       // a: bodies now, b: options (DockingOption)
     lines_changed,        // a: LinesShown, b: RunReason of what stops or stopped
+    device_notice,        // a: DeviceNotice, b: hand
 };
 
 struct EventTopic {

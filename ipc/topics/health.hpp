@@ -23,7 +23,7 @@ enum ScheduleFlag : std::uint32_t {
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 3, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 4, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -55,10 +55,15 @@ struct alignas(64) HealthTopic {
     // Of the model's work, what the updates did anew: mean and least of the last tenth of a second. Below 1 a
     // freely running loop kept its rate by using older partial sums.
     float fresh_mean, fresh_least;
-    float rested;               // of that time; it left this to others while it was ahead of its goal
-    std::uint8_t lines;         // LinesShown
-    std::uint8_t lines_reason;  // RunReason: what they stop for, or stopped last
-    std::uint8_t reserved[42];  // zero
+    float rested;  // of that time; it left this to others while it was ahead of its goal
+    // From the encoders to the motors, of the last second, the slower hand; 0: no device says.
+    float stiffness_n_m_max;  // that walls and model may have at this delay
+    std::int64_t delay_p50_ns;
+    std::int64_t delay_p99_ns;
+    std::uint8_t lines;             // LinesShown
+    std::uint8_t lines_reason;      // RunReason: what they stop for, or stopped last
+    std::uint8_t device_notice[2];  // DeviceNotice of each hand
+    std::uint8_t reserved[20];      // zero
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 256);
 

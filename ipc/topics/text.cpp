@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ipc/base/device_notice.hpp"
 #include "ipc/topics/bodies.hpp"
 
 namespace tact {
@@ -147,6 +148,8 @@ const char* event_code_text(EventCode code) noexcept {
             return "bodies changed";
         case EventCode::lines_changed:
             return "safety lines";
+        case EventCode::device_notice:
+            return "device";
     }
     return kUnknown;
 }
@@ -299,6 +302,11 @@ std::string event_text(const EventTopic& event) {
         case EventCode::lines_changed: {
             const std::string why = run_reason_text(code_of<RunReason>(event.b));
             return what + ": " + lines_text(code_of<LinesShown>(event.a)) + (why.empty() ? "" : ": " + why);
+        }
+        case EventCode::device_notice: {
+            const auto notice = code_of<DeviceNotice>(event.a);
+            const std::string hand = event.b == 1.0 ? " of the second hand: " : ": ";
+            return what + hand + (notice == DeviceNotice::none ? "all is well" : device_notice_text(notice));
         }
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);

@@ -80,6 +80,8 @@ public:
     // Points, blocks or vertices felt at a level; the governor publishes it.
     [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
+    // The largest stiffness that the hand can meet in it, N/m; 0: nobody knows.
+    [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
     // Slow half, own thread, tens of hertz: prepares what the next steps will need.
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.

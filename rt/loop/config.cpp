@@ -91,6 +91,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"safety.ramp_out_ms", &c.safety.ramp_out_ms, 1, 80, {}},
         {"safety.wall_margin_mm", &c.safety.wall_margin_mm, 0, 1000, {}},
         {"safety.wall_stiffness_n_m", &c.safety.wall_stiffness_n_m, 0, 5000, {}},
+        {"safety.hand_damping_n_s_m", &c.safety.hand_damping_n_s_m, 0.01, 100, {}},
         {"safety.heat_tau_s", &c.safety.heat_tau_s, 0, 3600, {}},
         {"safety.passivity", &c.safety.passivity, 0, 0, {}},
         {"safety.passivity_energy_j", &c.safety.passivity_energy_j, 0, 100, {}},
@@ -281,6 +282,7 @@ ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
     s.chain.ramp_out_s = c.safety.ramp_out_ms * 1e-3;
     s.chain.wall_margin_m = c.safety.wall_margin_mm * 1e-3;
     s.chain.wall_stiffness_n_m = c.safety.wall_stiffness_n_m;
+    s.hand_damping_n_s_m = c.safety.hand_damping_n_s_m;
     s.chain.heat_tau_s = c.safety.heat_tau_s;
     s.chain.passivity = c.safety.passivity;
     s.chain.translation.energy_start_j = c.safety.passivity_energy_j;

@@ -81,6 +81,7 @@ struct RtConfig {
         double ramp_out_ms = 50.0;
         double wall_margin_mm = 5.0;
         double wall_stiffness_n_m = 500.0;
+        double hand_damping_n_s_m = 3.0;
         double heat_tau_s = 60.0;
         bool passivity = false;
         double passivity_energy_j = 0.0;

@@ -31,6 +31,7 @@ struct HandCycle {
     ChainOutput out;
     Wrench shown_world;                // as sent to the device
     std::array<Instant, 8> said_at{};  // per ChainAct: when an event last said so
+    DeviceNotice said = DeviceNotice::none;
 };
 
 // Safety lines, where there are any.

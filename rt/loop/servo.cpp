@@ -57,6 +57,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
     governor_.set_present(kMeshIndex, false);
     const ModelBodies bodies = c_->hand[0].model->bodies();
     if (bodies.active < bodies.count) governed_structure_ = bodies.structure[bodies.active];
+    stiffness_n_m_max_ = stiffness_max();
     arena_.seal();
 }
 
@@ -132,6 +133,8 @@ void Servo::sense(CycleState& c) noexcept {
         h.sample_usable = h.read_status != IoStatus::lost && h.sample.T_dev_tool.finite() &&
                           h.sample.twist_dev.linear_m_s.allFinite() &&
                           h.sample.twist_dev.angular_rad_s.allFinite();
+        if (h.read_status == IoStatus::ok && h.sample.delay > Duration{0})
+            statistics_.delayed(h.sample.delay);
     }
 }
 
@@ -166,10 +169,13 @@ void Servo::model(CycleState& c) noexcept {
 void Servo::shape(CycleState& c) noexcept {
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
-        h.wanted_world.force_n = settings_.force_scale * h.step.wrench_world.force_n -
-                                 settings_.damping_n_s_m * h.tool.twist_world.linear_m_s;
-        h.wanted_world.torque_n_m =
-            h.torque ? Vec3(settings_.force_scale * h.step.wrench_world.torque_n_m) : Vec3::Zero();
+        // Beyond what is stable at today's delay the whole field is felt weaker, so that no pose is unstable.
+        const double stiffness = settings_.force_scale * h.model->stiffness_n_m();
+        const double scale =
+            settings_.force_scale * (stiffness > stiffness_n_m_max_ ? stiffness_n_m_max_ / stiffness : 1.0);
+        h.wanted_world.force_n =
+            scale * h.step.wrench_world.force_n - settings_.damping_n_s_m * h.tool.twist_world.linear_m_s;
+        h.wanted_world.torque_n_m = h.torque ? Vec3(scale * h.step.wrench_world.torque_n_m) : Vec3::Zero();
     }
 }
 
@@ -224,10 +230,12 @@ void Servo::safety(CycleState& c) noexcept {
              .dt = c.dt,
              .force_on = force_may_flow(c.run.state),
              .gate_open = c.run.state != RunState::off && c.run.state != RunState::fault && !dropped,
-             .amplifier = amplifier_on(c.run.state)});
+             .amplifier = amplifier_on(c.run.state),
+             .stiffness_n_m_max = stiffness_n_m_max_});
         h.shown_world = {settings_.T_world_dev.q * h.out.wrench_dev.force_n,
                          settings_.T_world_dev.q * h.out.wrench_dev.torque_n_m};
         say_acts(c, h);
+        say_notice(h, i);
     }
     if (c.run.state == before.state) return;
     say(EventCode::state_changed, static_cast<double>(before.state), static_cast<double>(c.run.state));
@@ -256,6 +264,7 @@ void Servo::publish(CycleState& c) noexcept {
         health_at_ = c.now;
         health_due_ = true;
         if (statistics_.second_over(c.now)) publish_lateness(c);
+        stiffness_n_m_max_ = stiffness_max();
     }
     if (health_due_) publish_health(c);
 }

@@ -32,7 +32,8 @@ struct ServoSettings {
     Duration model_max = std::chrono::microseconds(600);  // of the model's step; the net beneath its level
     bool model_deadline = true;                           // false with a clock that is not the machine's
     double force_scale = 1.0;
-    double damping_n_s_m = 0.0;  // of the coupling, against the tool's velocity
+    double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
+    double hand_damping_n_s_m = 3.0;  // of hand and arm: what stiffness is stable at a delay hangs on it
     Pose T_world_dev;
     WatchdogSettings watchdogs;
     ChainSettings chain;
@@ -113,6 +114,8 @@ private:
     void note_fault(const CycleState& c) noexcept TACT_RT;
     void say(EventCode code, double a, double b) noexcept TACT_RT;
     void say_acts(CycleState& c, HandCycle& h) noexcept TACT_RT;
+    [[nodiscard]] double stiffness_max() const noexcept TACT_RT;
+    void say_notice(HandCycle& h, std::uint32_t hand) noexcept TACT_RT;
     void publish_tools(const CycleState& c) noexcept TACT_RT;
     void publish_health(const CycleState& c) noexcept TACT_RT;
     void publish_lateness(const CycleState& c) noexcept TACT_RT;
@@ -165,6 +168,8 @@ private:
     std::uint64_t levels_sequence_ = 0;
     PictureWatch picture_;
     std::uint32_t levels_vertices_max_ = 0;
+
+    double stiffness_n_m_max_ = 0.0;  // at the delay of the last second
 
     // Beneath the governor, where the loop runs freely.
     RateHold hold_;

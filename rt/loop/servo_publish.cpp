@@ -5,6 +5,7 @@
 #include "rt/loop/lines_words.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
+#include "rt/safety/stages.hpp"
 
 namespace tact {
 
@@ -58,6 +59,18 @@ void Servo::say_acts(CycleState& c, HandCycle& h) noexcept {
     if (due(kChainSlew, 6)) say(EventCode::slew_limited, h.out.step_n, limit.force_slew_n_s * to_s(c.dt));
     if (due(kChainTorqueSlew, 7))
         say(EventCode::torque_slew_limited, h.out.step_n_m, limit.torque_slew_n_m_s * to_s(c.dt));
+}
+
+void Servo::say_notice(HandCycle& h, std::uint32_t hand) noexcept {
+    if (dry_ || h.sample.notice == h.said) return;
+    h.said = h.sample.notice;
+    say(EventCode::device_notice, static_cast<double>(h.said), static_cast<double>(hand));
+    health_due_ = true;
+}
+
+double Servo::stiffness_max() const noexcept {
+    return stages::stiffness_max_n_m(settings_.hand_damping_n_s_m, to_s(settings_.period),
+                                     static_cast<double>(statistics_.figures.delay_p99_ns) * 1e-9);
 }
 
 void Servo::publish_tools(const CycleState& c) noexcept {
@@ -137,6 +150,11 @@ void Servo::publish_health(const CycleState& c) noexcept {
     t.fresh_mean = static_cast<float>(statistics_.work.fresh_mean());
     t.fresh_least = static_cast<float>(statistics_.work.fresh_least());
     t.rested = static_cast<float>(statistics_.work.rested());
+    t.delay_p50_ns = f.delay_p50_ns;
+    t.delay_p99_ns = f.delay_p99_ns;
+    t.stiffness_n_m_max = static_cast<float>(stiffness_n_m_max_);
+    for (std::uint32_t i = 0; i < c.hands; ++i)
+        t.device_notice[i] = static_cast<std::uint8_t>(c.hand[i].sample.notice);
     region_.health.publish(t);
 }
 

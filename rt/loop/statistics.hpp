@@ -94,6 +94,7 @@ private:
 struct WindowFigures {
     std::int64_t lateness_p50_ns = 0, lateness_p99_ns = 0, lateness_max_ns = 0;
     std::int64_t cost_p50_ns = 0, cost_max_ns = 0;
+    std::int64_t delay_p50_ns = 0, delay_p99_ns = 0;  // from the encoders to the motors
 };
 
 class ServoStatistics {
@@ -109,6 +110,7 @@ public:
         window_lateness_.add(d);
     }
     void spent(Duration d) noexcept TACT_RT { window_cost_.add(d); }
+    void delayed(Duration d) noexcept TACT_RT { window_delay_.add(d); }
     // True once a second, with new figures.
     bool second_over(Instant now) noexcept TACT_RT {
         if (now - second_at_ < std::chrono::seconds(1)) {
@@ -119,6 +121,7 @@ public:
         whole_second_ = true;
         window_lateness_.clear();
         window_cost_.clear();
+        window_delay_.clear();
         second_at_ = now;
         return true;
     }
@@ -131,11 +134,15 @@ public:
 private:
     [[nodiscard]] WindowFigures look() const noexcept {
         const auto ns = [](std::uint64_t v) { return static_cast<std::int64_t>(v); };
-        return {ns(window_lateness_.percentile_ns(0.5)), ns(window_lateness_.percentile_ns(0.99)),
-                ns(window_lateness_.max_ns()), ns(window_cost_.percentile_ns(0.5)),
-                ns(window_cost_.max_ns())};
+        return {ns(window_lateness_.percentile_ns(0.5)),
+                ns(window_lateness_.percentile_ns(0.99)),
+                ns(window_lateness_.max_ns()),
+                ns(window_cost_.percentile_ns(0.5)),
+                ns(window_cost_.max_ns()),
+                ns(window_delay_.percentile_ns(0.5)),
+                ns(window_delay_.percentile_ns(0.99))};
     }
-    DurationHistogram window_lateness_, window_cost_;
+    DurationHistogram window_lateness_, window_cost_, window_delay_;
     Instant second_at_{};
     bool whole_second_ = false;
 };

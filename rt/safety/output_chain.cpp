@@ -48,7 +48,7 @@ ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
 
     // Walls of the workspace.
     const Vec3 wall_n = stages::wall_force_n(pose.p_m, settings_.workspace_half_m, settings_.wall_margin_m,
-                                             settings_.wall_stiffness_n_m);
+                                             std::min(settings_.wall_stiffness_n_m, in.stiffness_n_m_max));
     if (!wall_n.isZero(0.0)) out.acts |= kChainWall;
     w.force_n += wall_n;
 

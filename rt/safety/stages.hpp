@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
@@ -27,6 +28,16 @@ namespace tact::stages {
         if (depth > 0.0) force[i] = -std::copysign(stiffness_n_m * depth, p_m[i]);
     }
     return force;
+}
+
+// Largest stiffness that a sampled loop may render: K < b / (T/2 + t_d), with the damping b of hand and arm,
+// the period T and the delay t_d from the encoders to the motors. Without a delay it is Colgate and
+// Schenkel's passivity of a sampled wall, b > K T/2 (1997); with it, Gil, Hulin and others' bound of stability
+// (2009). A delay that nobody knows is a period: no loop has less than that from one sample to the next.
+[[nodiscard]] inline double stiffness_max_n_m(double damping_n_s_m, double period_s,
+                                              double delay_s) noexcept TACT_RT {
+    const double wait_s = 0.5 * period_s + (delay_s > 0.0 ? delay_s : period_s);
+    return wait_s > 0.0 ? damping_n_s_m / wait_s : std::numeric_limits<double>::infinity();
 }
 
 // Shortened to max, direction kept.

@@ -12,6 +12,7 @@
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
+#include "tests/support/board_bus.hpp"
 #include "tests/support/small_scene.hpp"
 
 namespace tact {
@@ -175,6 +176,102 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     if (guarded()) {
         EXPECT_EQ(health.locks, 0U);
     }
+    delete servo.state().hand[0].model;
+}
+
+// The real driver under the servo, its board and bus in lockstep between the cycles: calibrated by a person,
+// armed, every fault of the board, unplugged and plugged in again; armed again by nobody but the person.
+TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
+    const std::vector<std::byte> bytes = small_scene().to_bytes();
+    const SceneFile scene = SceneFile::from_bytes(bytes, "small scene");
+    auto owned_bus = std::make_unique<emu::BoardBus>(emu::usual<emu::BoardSettings>());
+    emu::BoardBus& bus = *owned_bus;
+    PhantomUsbSettings driver = emu::usual<PhantomUsbSettings>();
+    driver.thread = false;
+    PhantomUsb device(driver, std::move(owned_bus));
+    const DeviceInfo info = device.open();
+    const auto region = std::make_unique<RtRegion>();
+    ManualClock clock;
+    clock.wait_until(bus.now());
+    ServoMail mail;
+    std::unique_ptr<ForceModel> model = load_docking_model(scene, {});
+    const HandParts hand{&device, model.release(), info};
+    ServoSettings settings;
+    settings.watchdogs.timing_latches = true;
+    settings.dry_cycles = 1;
+    Servo servo({clock, {&hand, 1}, *region, mail}, settings);
+    rt_guard::abort_on_violation(guarded());
+    servo.warm_up();
+    std::uint64_t sequence = 0;
+    const auto order = [&](CommandKind kind) {
+        mail.orders.push({++sequence, 0.0, static_cast<std::uint32_t>(kind), 0});
+    };
+    const auto cycles = [&](int n) {
+        for (int i = 0; i < n; ++i) {
+            bus.advance(std::chrono::milliseconds(1));
+            device.pump().round(Duration{0});
+            clock.wait_until(bus.now());
+            servo.cycle();
+            device.pump().round(Duration{0});
+        }
+    };
+    const auto amplifier_on = [&] { return bus.board().amplifier().state() == phantom::AmplifierState::on; };
+    const auto health = [&] {
+        HealthTopic h{};
+        EXPECT_TRUE(region->health.read(h));
+        return h;
+    };
+    const auto arm_again = [&] {
+        order(CommandKind::reset_fault);
+        cycles(20);
+        EXPECT_EQ(servo.state().run.state, RunState::ready);
+        order(CommandKind::arm);
+        cycles(1000);
+        EXPECT_EQ(servo.state().run.state, RunState::active);
+        EXPECT_TRUE(amplifier_on());
+    };
+    cycles(150);
+    EXPECT_EQ(health().device_notice[0], static_cast<std::uint8_t>(DeviceNotice::hold_reset_pose));
+    order(CommandKind::arm);
+    cycles(150);
+    EXPECT_EQ(servo.state().run.state, RunState::armed);  // nobody's hand is on it before it is calibrated
+    EXPECT_FALSE(amplifier_on());
+    cycles(3000);
+    EXPECT_EQ(servo.state().run.state, RunState::active);
+    EXPECT_TRUE(amplifier_on());
+    EXPECT_EQ(health().device_notice[0], 0);
+    EXPECT_NEAR(static_cast<double>(health().delay_p50_ns), 1e6, 1e5);
+    // 3 N s/m over half a period and a delay of one.
+    EXPECT_NEAR(health().stiffness_n_m_max, 2000.0, 200.0);
+
+    for (const std::uint16_t cause : {phantom::status::kSafetyOpen, phantom::status::kOverTemperature}) {
+        bus.board().faults().causes = cause;
+        cycles(3);
+        EXPECT_EQ(servo.state().run.state, RunState::fault);
+        EXPECT_FALSE(amplifier_on());
+        bus.board().faults().causes = 0;
+        cycles(300);
+        EXPECT_EQ(servo.state().run.state, RunState::fault);
+        arm_again();
+    }
+    bus.board().faults().corrupt = 2;
+    cycles(20);
+    EXPECT_EQ(servo.state().run.state, RunState::active);
+    bus.board().faults().corrupt = 3;
+    cycles(20);
+    EXPECT_EQ(servo.state().run.state, RunState::fault);
+    arm_again();
+    bus.unplug();
+    cycles(2);
+    EXPECT_EQ(servo.state().run.state, RunState::fault);
+    EXPECT_EQ(health().device_notice[0], static_cast<std::uint8_t>(DeviceNotice::gone));
+    bus.plug();
+    cycles(4000);  // found again, calibrated again
+    EXPECT_EQ(servo.state().run.state, RunState::fault);
+    EXPECT_FALSE(amplifier_on());
+    arm_again();
+    rt_guard::abort_on_violation(false);
+    device.relax();
     delete servo.state().hand[0].model;
 }
 

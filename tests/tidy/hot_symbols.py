@@ -19,7 +19,7 @@ FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm"
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
     r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::bodies\(\) const$"
-    r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up)\(\)( const)?$|::items\(float\) const$"
+    r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up|stiffness_n_m)\(\)( const)?$|::items\(float\) const$"
     r"|::read\((unsigned int, tact::TrackerSample|tact::DeviceSample|tact::LinesSample)&, .*\)( const)?$|::write\(tact::(Device|Lines)Command const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("
     r"|^tact::density_sum_\w+\(")

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "ipc/base/device_notice.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact {
@@ -27,8 +28,9 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
 TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(run_state_text, RunState::fault, false);
     expect_own_words(run_reason_text, RunReason::supervisor, true);
-    expect_own_words(event_code_text, EventCode::lines_changed, true);
+    expect_own_words(event_code_text, EventCode::device_notice, true);
     expect_own_words(lines_text, LinesShown::permitted, true);
+    expect_own_words(device_notice_text, static_cast<DeviceNotice>(kDeviceNotices - 1), true);
     expect_own_words(level_reason_text, LevelReason::picture_high, false);
     expect_own_words(command_kind_text, CommandKind::set_laplacian, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
@@ -58,6 +60,10 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
     EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
     EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
+    EXPECT_EQ(text(EventCode::device_notice, static_cast<double>(DeviceNotice::keep_still), 0),
+              "device: keep the arm still");
+    EXPECT_EQ(text(EventCode::device_notice, 0, 1), "device of the second hand: all is well");
+    EXPECT_EQ(text(EventCode::device_notice, 1e9, 0), "device: unknown");
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }
 

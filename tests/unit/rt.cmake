@@ -33,7 +33,7 @@ tact_test(scenario/governor_scenario_test.cpp USES base topics hal force loop go
 
 # Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/loop/interpose.cpp
-    USES base topics assets hal force loop SYSTEM GTest::gtest GTest::gtest_main)
+    USES base topics assets arm phantom phantom_usb hal emu_board force loop SYSTEM GTest::gtest GTest::gtest_main)
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -168,6 +169,50 @@ TEST(OutputChain, the_wall_pushes_inwards_and_is_saturated_like_any_force) {
     EXPECT_NE(out.acts & kChainWall, 0U);
     const Vec3 alone = stages::wall_force_n({0.097, 0.0, 0.0}, Vec3::Constant(0.1), 0.005, 500.0);
     EXPECT_TRUE(alone.isApprox(Vec3(-1.0, 0.0, 0.0), 1e-9));
+}
+
+TEST(OutputChain, the_wall_is_no_stiffer_than_the_delay_allows) {
+    OutputChain chain;
+    ChainInput in = on(Vec3::Zero());
+    in.T_dev_tool.p_m = {0.097, 0.0, 0.0};  // 2 mm deep
+    in.stiffness_n_m_max = 200.0;
+    EXPECT_NEAR(settled(chain, in).wrench_dev.force_n.x(), -0.4, 1e-9);
+    in.stiffness_n_m_max = 1e6;  // the setting holds
+    EXPECT_NEAR(settled(chain, in).wrench_dev.force_n.x(), -1.0, 1e-9);
+}
+
+TEST(StiffnessLimit, is_the_damping_over_half_a_period_and_the_delay) {
+    EXPECT_NEAR(stages::stiffness_max_n_m(0.05, 1e-3, 1e-3), 0.05 / 1.5e-3, 1e-9);  // 33 N/m
+    EXPECT_NEAR(stages::stiffness_max_n_m(3.0, 1e-3, 5e-3), 3.0 / 5.5e-3, 1e-9);
+    // Unknown is a period.
+    EXPECT_EQ(stages::stiffness_max_n_m(3.0, 1e-3, 0.0), stages::stiffness_max_n_m(3.0, 1e-3, 1e-3));
+    EXPECT_TRUE(std::isinf(stages::stiffness_max_n_m(3.0, 0.0, 0.0)));
+}
+
+// A heavy damped mass on a sampled spring whose force comes some periods late, without any other loss.
+double amplitude_after(double stiffness_n_m, int late_periods) {
+    constexpr double kMass = 0.25, kDamping = 0.05, kPeriod = 1e-3;
+    constexpr int kSubsteps = 20;
+    std::array<double, 8> forces{};
+    double x = 1e-3, v = 0.0, most = 0.0;
+    for (int i = 0; i < 60'000; ++i) {
+        forces[static_cast<std::size_t>(i) % 8] = -stiffness_n_m * x;
+        const double f = i < late_periods ? 0.0 : forces[static_cast<std::size_t>(i - late_periods) % 8];
+        for (int k = 0; k < kSubsteps; ++k) {
+            v += (f - kDamping * v) / kMass * kPeriod / kSubsteps;
+            x += v * kPeriod / kSubsteps;
+        }
+        if (i > 55'000) most = std::max(most, std::abs(x));
+    }
+    return most;
+}
+
+TEST(StiffnessLimit, below_it_a_sampled_and_delayed_spring_comes_to_rest_and_above_it_does_not) {
+    for (const int late : {1, 2, 5}) {
+        const double limit = stages::stiffness_max_n_m(0.05, 1e-3, late * 1e-3);
+        EXPECT_LT(amplitude_after(0.7 * limit, late), 1e-3) << late;
+        EXPECT_GT(amplitude_after(1.4 * limit, late), 1e-3) << late;
+    }
 }
 
 TEST(OutputChain, a_motor_above_its_continuous_force_weakens_to_it_and_never_overheats) {

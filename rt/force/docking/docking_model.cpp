@@ -9,6 +9,7 @@
 #include <typeinfo>
 #include <utility>
 
+#include "ipc/assets/docking_gain.hpp"
 #include "rt/force/docking/reach.hpp"
 
 namespace tact {
@@ -73,6 +74,13 @@ KnobSpec DockingModel::knob() const noexcept {
 
 std::uint32_t DockingModel::items(float fidelity) const noexcept {
     return bodies_.in_hand() ? blend().items(fidelity) : 0;
+}
+
+double DockingModel::stiffness_n_m() const noexcept {
+    const double scene = parts_->meta.energy_j_per_sigma;
+    const double scale = scene > 0.0 ? energy_j_per_sigma_ / scene : 1.0;
+    const bool clash = (bodies_.list().options & kOptionClash) != 0;
+    return GainSettings{}.stiffness_n_m * scale + (clash ? clash_gains_.stiffness_n_m : 0.0);
 }
 
 PathLoad DockingModel::predict(float fidelity) const noexcept {

@@ -51,6 +51,8 @@ public:
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    // By the choice of the scene's gain (ipc/assets/docking_gain.hpp), and of the clash on top.
+    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_.list(); }
