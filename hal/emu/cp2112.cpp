@@ -160,7 +160,11 @@ void EmulatedLines::serve() {
             std::copy(data.begin(), data.end(), out->u.get_report_reply.data);
         } else if (in->type == UHID_SET_REPORT) {
             const uhid_set_report_req& r = in->u.set_report;
+            const Cp2112 before = chip_;
             chip_.set_report(std::span(r.data).first(std::min<std::size_t>(r.size, sizeof r.data)));
+            for (unsigned line = 0; tell_ && line < Cp2112::kLines; ++line) {
+                if (chip_.edges(line) != before.edges(line)) tell_(line, chip_.level(line));
+            }
             out->type = UHID_SET_REPORT_REPLY;
             out->u.set_report_reply.id = r.id;
         } else {

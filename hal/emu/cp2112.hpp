@@ -8,9 +8,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace tact::emu {
@@ -52,6 +54,8 @@ public:
 
     void set(unsigned line, bool level);
     void follow(unsigned input, unsigned output);
+    // Called on the serving thread when the host has changed an output. Before plug().
+    void when_driven(std::function<void(unsigned line, bool level)> tell) { tell_ = std::move(tell); }
     [[nodiscard]] bool level(unsigned line);
     [[nodiscard]] std::uint64_t edges(unsigned line);
 
@@ -60,6 +64,7 @@ private:
 
     std::mutex mutex_;
     Cp2112 chip_;
+    std::function<void(unsigned, bool)> tell_;
     int fd_ = -1, leave_fd_ = -1;
     std::thread thread_;
 };

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hal/emu/can_head.hpp"
+#include "hal/emu/lines_part.hpp"
 #include "hal/emu/report.hpp"
 #include "hal/emu/script.hpp"
 #include "hal/emu/usb_arm.hpp"
@@ -36,12 +37,14 @@ struct Options {
     unsigned rate_hz = 1000, watchdog_ms = 10, slow = 1;
     std::uint64_t seed = 1;
     bool orders = false, json = false, check = false, no_ritual = false, unplugged = false;
+    bool lines = false;
 };
 
 void describe(CLI::App& app, Options& o) {
     app.add_option("--arm", o.arms, "SERIAL[:MODEL]: an arm on USB (dummy_hcd); may be given again");
     app.add_option("--tracker", o.tracker,
                    "INTERFACE[:classic|fd[:RATE_HZ[:SENSORS]]]: a head tracker on CAN");
+    app.add_flag("--lines", o.lines, "safety lines on a CP2112 adapter (uhid, hid-cp2112)");
     app.add_option("--faults", o.faults, "file of what goes wrong and when; the orders are below");
     app.add_flag("--orders", o.orders, "take the same orders from standard input, one a line");
     app.add_option("--seconds", o.seconds, "end after so long; 0: run until a signal or \"leave\"")
@@ -109,6 +112,7 @@ public:
             s.ritual_slow = o.slow;
             arms_.push_back(std::make_unique<UsbArm>(s, report));
         }
+        if (o.lines) lines_ = std::make_unique<LinesPart>(report);
         if (!o.tracker.empty()) {
             const TrackerWish wish = parse_tracker(o.tracker);
             SimHeadSettings s;
@@ -123,6 +127,7 @@ public:
         if (tracker_) tracker_->start();
         start_ = Monotonic::now();
         if (plugged) obey({.at = {}, .deed = Deed::plug, .numbers = {}, .arm = {}});
+        if (lines_) lines_->obey({.at = {}, .deed = Deed::lines_plug, .numbers = {}, .arm = {}});
         report_.say({Monotonic::now(), "emulator", "", "state", "ready"});
     }
 
@@ -195,12 +200,14 @@ private:
         if (order.deed == Deed::status) {
             for (const auto& arm : arms_) arm->say_status();
             if (tracker_) tracker_->say_status();
+            if (lines_) lines_->say_status();
         }
         const Part part = row_of(order.deed).part;
         bool done = part == Part::all;
         for (const auto& arm : arms_)
             if (order.arm.empty() || order.arm == arm->serial()) done |= arm->obey(order);
         if (tracker_) done |= tracker_->obey(order);
+        if (lines_) done |= lines_->obey(order);
         if (!done && !(part == Part::arm && arms_.empty() && order.deed == Deed::plug))
             refused(std::string(row_of(order.deed).words) + ": there is no such part " + order.arm);
     }
@@ -214,12 +221,13 @@ private:
     Input input_;
     std::vector<std::unique_ptr<UsbArm>> arms_;
     std::unique_ptr<CanHead> tracker_;
+    std::unique_ptr<LinesPart> lines_;
 };
 
 void check(const Options& o) {
-    if (o.arms.empty() && o.tracker.empty())
+    if (o.arms.empty() && o.tracker.empty() && !o.lines)
         throw StartupError("tact-emu", "no part is asked for",
-                           "give --arm SERIAL, --tracker INTERFACE or both");
+                           "give --arm SERIAL, --tracker INTERFACE or --lines");
     std::set<std::string> serials;
     for (const std::string& text : o.arms) {
         if (!serials.insert(parse_arm(text).serial).second)
@@ -253,7 +261,8 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"tact-emu: emulated devices behind the kernel's USB and CAN, for tests without hardware"};
+    CLI::App app{
+        "tact-emu: emulated devices behind the kernel's USB, CAN and GPIO, for tests without hardware"};
     Options options;
     describe(app, options);
     try {

@@ -18,6 +18,7 @@ constexpr std::array kCount{NumberRange{"N", 1, 100'000}};
 constexpr std::array kMilliseconds{NumberRange{"MS", 1, 600'000}};
 constexpr std::array kJoint{NumberRange{"ENCODER", 0, 5}};
 constexpr std::array kJump{NumberRange{"ENCODER", 0, 5}, NumberRange{"COUNTS", -10'000'000, 10'000'000}};
+constexpr std::array kContact{NumberRange{"CONTACT", 0, 1}};
 constexpr std::array kButtons{NumberRange{"BITS", 0, 255}};
 constexpr std::span<const NumberRange> kNone{};
 
@@ -53,6 +54,13 @@ constexpr std::array kDeeds{
     DeedRow{"can bus-off", Deed::bus_off, Part::tracker, kNone, "", "error frame, then nothing"},
     DeedRow{"can down", Deed::link_down, Part::tracker, kNone, "", "the interface"},
     DeedRow{"can up", Deed::link_up, Part::tracker, kNone, "", "the interface"},
+    DeedRow{"lines plug", Deed::lines_plug, Part::lines, kNone, "", "their adapter"},
+    DeedRow{"lines unplug", Deed::lines_unplug, Part::lines, kNone, "", "their adapter"},
+    DeedRow{"lines stop", Deed::lines_stop, Part::lines, kNone, "", "the emergency stop is pressed"},
+    DeedRow{"lines contact", Deed::lines_contact, Part::lines, kContact, "",
+            "one of its contacts opens alone"},
+    DeedRow{"lines pedal", Deed::lines_pedal, Part::lines, kNone, "", "the dead-man is released"},
+    DeedRow{"lines well", Deed::lines_well, Part::lines, kNone, "", "all contacts are closed"},
     DeedRow{"status", Deed::status, Part::all, kNone, "", "counters of every part"},
     DeedRow{"leave", Deed::leave, Part::all, kNone, "", "ends the program"},
 };

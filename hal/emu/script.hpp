@@ -50,11 +50,17 @@ enum class Deed : std::uint8_t {
     bus_off,
     link_down,
     link_up,
+    lines_plug,
+    lines_unplug,
+    lines_stop,
+    lines_contact,
+    lines_pedal,
+    lines_well,
     status,
     leave,
 };
 
-enum class Part : std::uint8_t { arm, tracker, all };
+enum class Part : std::uint8_t { arm, tracker, lines, all };
 
 struct NumberRange {
     const char* name;

@@ -1,11 +1,50 @@
 #!/usr/bin/env python3
-"""tact-rt with safety lines on an emulated CP2112: stops, broken wires, unplugged adapter, starved servo. 70_lines.py BIN"""
+"""tact-rt with safety lines on an emulated CP2112: stops, broken wires, unplugged adapter, starved servo. 70_lines.py BIN
+
+The story is told by hil_lines_story; before it, tact-emu's own adapter is met once.
+"""
 import os
 import subprocess
 import sys
 
-story = os.path.join(sys.argv[1], "../tests/hil_lines_story")
-if not os.access(story, os.X_OK):
-    print("hil_lines_story is not built")
-    sys.exit(77)
-sys.exit(subprocess.run([story, "80", "1"], check=False).returncode)
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import parts
+
+CONFIG = """[lines]
+driver = "gpio"
+emergency_stop_a = "0"
+emergency_stop_b = "1"
+enable = "4"
+"""
+
+
+def emulators_adapter(bin_dir):
+    with open("/out/lines.toml", "w", encoding="utf-8") as f:
+        f.write(CONFIG)
+
+    def checked():
+        done = subprocess.run([f"{bin_dir}/tact-rt", "/out/small.tact", "--check", "--config", "/out/lines.toml"],
+                              capture_output=True, text=True, timeout=parts.PATIENCE_S)
+        return done.stdout if done.returncode == 0 else ""
+
+    with parts.Emulator(bin_dir, "--lines") as emulator:
+        print(parts.wait_for(checked, "tact-emu's adapter taken by tact-rt"), end="")
+        emulator.order("lines unplug")
+        emulator.order("lines stop")
+        emulator.until("order", "lines stop")
+        emulator.order("lines plug")
+        parts.wait_for(checked, "tact-emu's adapter plugged in again")
+
+
+def main():
+    story = os.path.join(sys.argv[1], "../tests/hil_lines_story")
+    if not os.access(story, os.X_OK):
+        print("hil_lines_story is not built")
+        return 77
+    emulators_adapter(sys.argv[1])
+    return subprocess.run([story, "80", "1"], check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
