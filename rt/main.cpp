@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,7 @@
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/text.hpp"
 #include "rt/force/docking/docking_model.hpp"
+#include "rt/force/pointer_model.hpp"
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
@@ -233,6 +236,8 @@ void say_how_it_went(const RtRegion& region) {
 int run(const Options& o, const Overrides& overrides) {
     const RtConfig config = configure(o, overrides);
     const DeviceEntry& driver = device_driver(config.device.driver);
+    const bool two_hands = config.device2.driver != "none";
+    const bool emulated = driver.emulated && (!two_hands || device_driver(config.device2.driver).emulated);
     const SceneFile scene = SceneFile::open(o.scene);
 
     // The region first: taking the session's lock needs it, and a second controller must not touch the
@@ -253,32 +258,50 @@ int run(const Options& o, const Overrides& overrides) {
     House::catch_signals(mail);
     const std::unique_ptr<HapticDevice> device = driver.make(device_settings_from(config));
     const DeviceInfo info = device->open();
+    std::unique_ptr<HapticDevice> device2;
+    DeviceInfo info2;
+    std::unique_ptr<ForceModel> pointer;
+    if (two_hands) {
+        device2 = device_driver(config.device2.driver).make(device2_settings_from(config));
+        info2 = device2->open();
+        pointer = std::make_unique<PointerModel>();
+    }
+    const std::string hands_on = info.name + (two_hands ? " and " + info2.name : "");
     std::optional<HeadFeed> head;
     if (std::unique_ptr<Tracker> tracker = make_tracker(tracker_settings_from(config)))
         head.emplace(head_settings_from(config), std::move(tracker), region->head);
     const std::string head_on = head ? head->open().name : "no head tracker";
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
     const std::string lines_on = lines ? lines->open().name : "no safety lines";
-    ServoSettings settings = settings_from(config, driver);
-    const HandParts hand{device.get(), model.get(), info};
+    ServoSettings settings = settings_from(config, emulated);
+    const std::array hands{HandParts{device.get(), model.get(), info},
+                           HandParts{device2.get(), pointer.get(), info2}};
 
     ServoClock clock(duration_us(config.servo.spin_us));
-    Servo servo({.clock = clock, .hands = {&hand, 1}, .region = *region, .mail = mail, .lines = lines.get()},
+    Servo servo({.clock = clock,
+                 .hands = std::span(hands).first(two_hands ? 2 : 1),
+                 .region = *region,
+                 .mail = mail,
+                 .lines = lines.get()},
                 settings);
     // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
     struct LastModel {
         Servo& servo;
-        ~LastModel() { delete servo.state().hand[0].model; }
+        ~LastModel() {
+            for (std::uint32_t i = 0; i < servo.state().hands; ++i) delete servo.state().hand[i].model;
+        }
     } const last_model{servo};
     static_cast<void>(model.release());
+    static_cast<void>(pointer.release());
 
-    const std::vector<std::string> paths{kMeshPath, hand.model->knob().path};
+    const std::vector<std::string> paths{kMeshPath, hands[0].model->knob().path};
     std::vector<LevelWish> wishes;
     for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
     if (o.check) {
         device->relax();
+        if (two_hands) device2->relax();
         std::printf("tact-rt: scene %s, device %s, %s, %s, configuration: all good\n", o.scene.c_str(),
-                    info.name.c_str(), head_on.c_str(), lines_on.c_str());
+                    hands_on.c_str(), head_on.c_str(), lines_on.c_str());
         return 0;
     }
 
@@ -294,10 +317,10 @@ int run(const Options& o, const Overrides& overrides) {
     prepare_process(thread.wish, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
-    if (driver.emulated && config.safety.timing_latches == "real") {
+    if (emulated && config.safety.timing_latches == "real") {
         spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
     }
-    spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, info.name, head_on, lines_on,
+    spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, hands_on, head_on, lines_on,
                  schedule_text(platform.flags), o.session);
     if (head) head->start();
     std::optional<Supervisor> supervisor;
@@ -320,6 +343,7 @@ int run(const Options& o, const Overrides& overrides) {
     house.run();
     thread.join();
     device->relax();
+    if (two_hands) device2->relax();
     release_process(platform);
     say_how_it_went(*region);
     return 0;

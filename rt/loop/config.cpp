@@ -37,6 +37,12 @@ std::vector<std::string> lines_names() {
     return names;
 }
 
+std::vector<std::string> device2_names() {
+    std::vector<std::string> names{"none"};
+    for (const DeviceEntry& d : device_drivers()) names.emplace_back(d.name);
+    return names;
+}
+
 std::vector<Key> keys_of(RtConfig& c) {
     return {
         {"servo.period_us", &c.servo.period_us, 50, 100000, {}},
@@ -55,6 +61,9 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.pump_priority", &c.device.pump_priority, 0, 94, {}},
         {"device.hd_library", &c.device.hd_library, 0, 0, {}},
         {"device.hd_device", &c.device.hd_device, 0, 0, {}},
+        {"device2.driver", &c.device2.driver, 0, 0, device2_names()},
+        {"device2.serial", &c.device2.serial, 0, 0, {}},
+        {"device2.hand_seed", &c.device2.hand_seed, 0, 9e15, {}},
         {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
         {"tracker.interface", &c.tracker.interface, 0, 0, {}},
         {"tracker.format", &c.tracker.format, 0, 0, {"classic", "fd"}},
@@ -217,9 +226,10 @@ void read_config(const std::string& path, RtConfig& config) {
         const std::string section_name(section.str());
         const toml::table* table = node.as_table();
         if (table == nullptr) {
-            throw StartupError(
-                at(path, node.source()) + ": " + section_name, "this key belongs to no section",
-                "put it under [servo], [device], [arm], [tracker], [lines], [shape], [safety] or [governor]");
+            throw StartupError(at(path, node.source()) + ": " + section_name,
+                               "this key belongs to no section",
+                               "put it under [servo], [device], [device2], [arm], [tracker], [lines], "
+                               "[shape], [safety] or [governor]");
         }
         if (section_name == "arm") {
             read_arm_section(*table, path, config.arm);
@@ -252,6 +262,14 @@ void check_config(const RtConfig& config, const std::string& where) {
             "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
             "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
     }
+    const bool arms_told_apart = !config.device.serial.empty() && !config.device2.serial.empty() &&
+                                 config.device.serial != config.device2.serial;
+    if (config.device2.driver == config.device.driver && !device_driver(config.device2.driver).emulated &&
+        !arms_told_apart) {
+        throw StartupError(where + ": device2.serial",
+                           "two devices of one driver are told apart by their serials",
+                           "give device.serial and device2.serial, two different ones");
+    }
     const double norm = Quat(config.tracker.quat_screen_tracker_xyzw.data()).norm();
     if (!(std::abs(norm - 1.0) < 0.01)) {
         throw StartupError(where + ": tracker.quat_screen_tracker_xyzw",
@@ -262,7 +280,7 @@ void check_config(const RtConfig& config, const std::string& where) {
 
 Duration duration_us(double us) { return Duration(std::llround(us * 1e3)); }
 
-ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
+ServoSettings settings_from(const RtConfig& c, bool emulated) {
     ServoSettings s;
     s.period = duration_us(c.servo.period_us);
     s.free_running = c.servo.free_running;
@@ -273,7 +291,7 @@ ServoSettings settings_from(const RtConfig& c, const DeviceEntry& driver) {
     s.watchdogs.late_max = duration_us(c.safety.late_us_max);
     s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);
     s.watchdogs.timing_latches =
-        c.safety.timing_latches == "always" || (c.safety.timing_latches == "real" && !driver.emulated);
+        c.safety.timing_latches == "always" || (c.safety.timing_latches == "real" && !emulated);
     s.chain.force_n_max = c.safety.force_n_max;
     s.chain.torque_n_m_max = c.safety.torque_n_m_max;
     s.chain.force_slew_n_s = c.safety.force_slew_n_s;
@@ -314,6 +332,15 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     // A device says so itself before the loop's own watchdog does, since it knows why.
     d.state_hold = duration_us(c.safety.sample_age_us_max * (3000.0 / 3500.0));
     d.sim.watchdog = duration_us(c.device.watchdog_us);
+    return d;
+}
+
+DeviceSettings device2_settings_from(const RtConfig& c) {
+    DeviceSettings d = device_settings_from(c);
+    d.driver = c.device2.driver;
+    d.serial = c.device2.serial;
+    d.sim.hand.seed = static_cast<std::uint64_t>(c.device2.hand_seed);
+    if (!d.process_log.empty()) d.process_log += ".2";
     return d;
 }
 

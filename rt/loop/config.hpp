@@ -40,6 +40,11 @@ struct RtConfig {
         std::string hd_library;  // of openhaptics: libHD.so; empty: searched
         std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
     } device;
+    struct Device2 {
+        std::string driver = "none";  // of the second hand, a pointer; the bodies are in the first one
+        std::string serial;
+        std::int64_t hand_seed = 2;
+    } device2;
     struct Tracker {
         std::string driver = "none";
         std::string interface = "can0";
@@ -108,8 +113,11 @@ void read_config(const std::string& path, RtConfig& config);
 // Ranges of everything, whatever it came from; `where` heads the message.
 void check_config(const RtConfig& config, const std::string& where);
 
-[[nodiscard]] ServoSettings settings_from(const RtConfig& config, const DeviceEntry& driver);
+// emulated: nobody's hand is on any of the devices.
+[[nodiscard]] ServoSettings settings_from(const RtConfig& config, bool emulated);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
+// Of the second hand: the same figures of the arm, another driver, serial and seed.
+[[nodiscard]] DeviceSettings device2_settings_from(const RtConfig& config);
 [[nodiscard]] LinesSettings lines_settings_from(const RtConfig& config);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);

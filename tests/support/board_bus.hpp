@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "hal/emu/board.hpp"
@@ -38,7 +39,12 @@ public:
         events_.clear();
     }
     std::size_t wait(std::span<phantom::BusEvent> events, Duration patience) noexcept override {
-        if (events_.empty() && patience > Duration{0}) advance(patience);
+        if (real_time_) {
+            if (events_.empty()) std::this_thread::sleep_for(patience);
+            advance(Monotonic::now() - now_);
+        } else if (events_.empty() && patience > Duration{0}) {
+            advance(patience);
+        }
         std::size_t n = 0;
         for (; n < events.size() && !events_.empty(); ++n) {
             events[n] = events_.front();
@@ -70,7 +76,10 @@ public:
         stalled_ = false;
         return clears;
     }
-    Instant now() noexcept override { return now_; }
+    Instant now() noexcept override {
+        if (real_time_) advance(Monotonic::now() - now_);
+        return now_;
+    }
 
     void advance(Duration d) noexcept {
         const Instant end = now_ + d;
@@ -91,6 +100,11 @@ public:
         e.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), 65));
         std::copy_n(bytes.begin(), std::min(bytes.size(), e.bytes.size()), e.bytes.begin());
         events_.push_back(e);
+    }
+    // From here on the machine's clock, for drivers with a thread.
+    void run_in_real_time() noexcept {
+        real_time_ = true;
+        now_ = Monotonic::now();
     }
     // Out of the socket: the board loses its power too.
     void unplug() noexcept {
@@ -119,7 +133,7 @@ private:
     EmulatedBoard board_;
     std::string serial_;
     std::deque<phantom::BusEvent> events_;
-    bool open_ = false, stalled_ = false;
+    bool open_ = false, stalled_ = false, real_time_ = false;
     Instant now_ = instant_from_ns(4'294'000'000'000);  // the board's clock wraps a second later
 };
 

@@ -59,6 +59,12 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.device.hand_seed, defaults.device.hand_seed);
     EXPECT_EQ(config.device.watchdog_us, defaults.device.watchdog_us);
     EXPECT_EQ(config.device.process_log, defaults.device.process_log);
+    EXPECT_EQ(config.device.serial, defaults.device.serial);
+    EXPECT_EQ(config.device.pump_priority, defaults.device.pump_priority);
+    EXPECT_EQ(config.device2.driver, defaults.device2.driver);
+    EXPECT_EQ(config.device2.serial, defaults.device2.serial);
+    EXPECT_EQ(config.device2.hand_seed, defaults.device2.hand_seed);
+    EXPECT_EQ(config.safety.hand_damping_n_s_m, defaults.safety.hand_damping_n_s_m);
     EXPECT_EQ(config.tracker.driver, defaults.tracker.driver);
     EXPECT_EQ(config.tracker.interface, defaults.tracker.interface);
     EXPECT_EQ(config.tracker.format, defaults.tracker.format);
@@ -180,6 +186,28 @@ TEST(Config, lists_have_their_length_numbers_and_range_and_a_rotation_its_unit_l
     EXPECT_EQ(refused(c), "");
 }
 
+TEST(Config, two_arms_of_one_driver_need_two_serials) {
+    RtConfig config;
+    config.device.driver = config.device2.driver = "phantom-usb";
+    const auto refused = [&] {
+        try {
+            check_config(config, "here");
+        } catch (const StartupError& e) {
+            return std::string(e.what()).find("device2.serial") != std::string::npos;
+        }
+        return false;
+    };
+    EXPECT_TRUE(refused());
+    config.device.serial = config.device2.serial = "A";
+    EXPECT_TRUE(refused());
+    config.device2.serial = "B";
+    EXPECT_FALSE(refused());
+    const DeviceSettings second = device2_settings_from(config);
+    EXPECT_EQ(second.driver, "phantom-usb");
+    EXPECT_EQ(second.serial, "B");
+    EXPECT_EQ(device_settings_from(config).serial, "A");
+}
+
 TEST(Config, a_key_outside_a_section_is_refused) {
     EXPECT_TRUE(says(error_of("period_us = 1000\n"), {".toml:1", "no section"}));
 }
@@ -195,7 +223,7 @@ TEST(Config, values_of_the_file_reach_the_servo_in_si_units) {
     const TempFile file("[servo]\nperiod_us = 250\n[safety]\nwall_margin_mm = 2\nramp_in_ms = 20\n");
     RtConfig config;
     read_config(file.path(), config);
-    const ServoSettings s = settings_from(config, device_driver("sim"));
+    const ServoSettings s = settings_from(config, true);
     EXPECT_EQ(s.period, std::chrono::microseconds(250));
     EXPECT_DOUBLE_EQ(s.chain.wall_margin_m, 0.002);
     EXPECT_DOUBLE_EQ(s.chain.ramp_in_s, 0.02);

@@ -1,0 +1,167 @@
+// What an arm's board, or anything that says it is one, does to the driver over a whole connection: any bytes,
+// any size, states of any content with a right checksum, failures of the bus, in any order. Whatever comes, no
+// current flows beyond the limits, none without enable, and no pose is anything but finite.
+#include <deque>
+
+#include "hal/phantom/phantom_usb.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace tact::fuzz {
+namespace {
+
+using namespace tact::phantom;
+
+Info info() {
+    Info i;
+    i.boot = 7;
+    i.serial = {'F'};
+    i.current_ma_max = {2000, 2000, 2000, 0, 0, 0};
+    return i;
+}
+
+class FuzzBus final : public UsbBus {
+public:
+    BusFinding open(const std::string& /*serial*/) override { return {BusFault::none, "F", {}}; }
+    void close() noexcept override { events.clear(); }
+    std::size_t wait(std::span<BusEvent> out, Duration patience) noexcept override {
+        if (events.empty()) time += patience;
+        std::size_t n = 0;
+        for (; n < out.size() && !events.empty(); ++n) {
+            out[n] = events.front();
+            events.pop_front();
+        }
+        return n;
+    }
+    bool send(std::span<const std::byte> packet) noexcept override {
+        Command c;
+        Query q;
+        if (decode(packet, q) == PacketFault::none) {
+            push(BusEventKind::packet, encode(info()));
+            push(BusEventKind::packet, encode(next()));
+        } else {
+            require(decode(packet, c) == PacketFault::none);
+            for (std::size_t i = 0; i < 6; ++i) {
+                const int most = c.enable ? info().current_ma_max[i] : 0;
+                require(c.current_ma[i] >= -most && c.current_ma[i] <= most);
+            }
+            seen = c.sequence;
+        }
+        push(BusEventKind::sent);
+        return true;
+    }
+    bool clear_stall() noexcept override { return true; }
+    Instant now() noexcept override { return time; }
+
+    State next() {
+        State s;
+        s.sequence = ++sequence;
+        s.time_us = static_cast<std::uint32_t>(to_ns(time) / 1000) + sequence;
+        s.boot = 7;
+        s.status = status::kCalibrated;
+        s.command_seen = seen;
+        return s;
+    }
+    void push(BusEventKind kind, std::span<const std::byte> bytes = {}) {
+        BusEvent e;
+        e.kind = kind;
+        e.at = time;
+        e.size = static_cast<std::uint8_t>(bytes.size() > 64 ? 65 : bytes.size());
+        std::copy_n(bytes.begin(), std::min<std::size_t>(bytes.size(), 64), e.bytes.begin());
+        if (events.size() < 64) events.push_back(e);
+    }
+
+    std::deque<BusEvent> events;
+    Instant time = instant_from_ns(1'000'000'000);
+    std::uint32_t sequence = 0, seen = 0;
+};
+
+// A good state with everything from the input that a checksum does not forbid.
+State shaped(FuzzBus& bus, std::span<const std::byte> bytes) {
+    State s = bus.next();
+    const auto at = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned>(bytes[i]) : 0U; };
+    for (std::size_t i = 0; i < 6; ++i) {
+        const unsigned shift = at(0) % 25;
+        s.counts[i] = static_cast<std::int32_t>((at(1 + i) << shift) - 128U);
+        s.current_ma[i] = static_cast<std::int16_t>(static_cast<int>(at(7 + i)) * 64 - 8192);
+    }
+    s.status = static_cast<std::uint16_t>(at(13) & status::kAll);
+    s.inputs = static_cast<std::uint16_t>(at(14) & input::kButtons);
+    if (at(15) > 200) s.boot = 8;
+    s.command_seen += at(16) % 4;
+    s.commands_refused = static_cast<std::uint8_t>(at(17));
+    return s;
+}
+
+}  // namespace
+
+bool run(std::span<const std::byte> input) {
+    PhantomUsbSettings settings;
+    settings.thread = false;
+    settings.arm.calibration = CalibrationStyle::automatic;
+    auto owned = std::make_unique<FuzzBus>();
+    FuzzBus& bus = *owned;
+    PhantomUsb device(settings, std::move(owned));
+    static_cast<void>(device.open());
+    DeviceSample sample;
+    std::uint64_t heartbeat = 0;
+    std::uint64_t taken = 0;
+    // Of a record: what it is, how many bytes follow, what time passes.
+    while (input.size() >= 3 && heartbeat < 2000) {
+        const auto what = static_cast<unsigned>(input[0]);
+        const auto length = std::min<std::size_t>(static_cast<std::size_t>(input[1]), input.size() - 3);
+        bus.time += std::chrono::microseconds(100 * static_cast<int>(input[2]));
+        const auto bytes = input.subspan(3, length);
+        input = input.subspan(3 + length);
+        switch (what % 8) {
+            case 0:
+                bus.push(BusEventKind::packet, bytes);
+                break;
+            case 1:
+                bus.push(static_cast<BusEventKind>(what / 8 % 6), bytes);
+                break;
+            case 2:
+            case 3:
+                bus.push(BusEventKind::packet, encode(shaped(bus, bytes)));
+                break;
+            default:  // a quiet stretch of good states, so that the calibration gets done
+                for (unsigned i = 0; i < 8; ++i) bus.push(BusEventKind::packet, encode(bus.next()));
+        }
+        device.pump().round(Duration{0});
+        const Instant now = bus.time;
+        const IoStatus status = device.read(sample, now);
+        require(sample.T_dev_tool.finite() && sample.twist_dev.linear_m_s.allFinite() &&
+                sample.twist_dev.angular_rad_s.allFinite());
+        require(sample.taken_at <= now && sample.delay >= Duration{0});
+        if (status == IoStatus::ok) ++taken;
+        const bool enable = (what & 64U) != 0;
+        static_cast<void>(
+            device.write({.wrench_dev = {Vec3::Constant(static_cast<double>(length)), Vec3::Zero()},
+                          .enable = enable,
+                          .heartbeat = ++heartbeat},
+                         now));
+        if ((what & 128U) != 0) device.relax();
+        device.pump().round(Duration{0});
+    }
+    return taken > 0;
+}
+
+std::vector<Input> seeds() {
+    const auto record = [](Input& to, unsigned what, unsigned time, std::span<const std::byte> bytes) {
+        to.push_back(static_cast<std::byte>(what));
+        to.push_back(static_cast<std::byte>(bytes.size()));
+        to.push_back(static_cast<std::byte>(time));
+        to.insert(to.end(), bytes.begin(), bytes.end());
+    };
+    std::vector<Input> all(3);
+    for (unsigned i = 0; i < 80; ++i) record(all[0], i < 70 ? 4 : 4 + 64, 10, {});  // calibrated, then on
+    all[1] = all[0];
+    const std::array<std::byte, 18> shape{std::byte{3}, std::byte{130}, std::byte{120}, std::byte{128}};
+    for (unsigned i = 0; i < 20; ++i) record(all[1], 2 + 64, 10, shape);
+    for (unsigned i = 0; i < 6; ++i) {
+        record(all[2], 1 + 8 * i, 10, shape);
+        record(all[2], 4, 10, {});
+    }
+    return all;
+}
+
+}  // namespace tact::fuzz
