@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ipc/base/error.hpp"
 
@@ -13,7 +14,9 @@ namespace {
 
 using phantom::AmplifierState;
 
-constexpr double kSingular = 1e-3;          // metres, and radians for the wrist
+constexpr double kSingular = 1e-3;  // metres, and radians for the wrist
+constexpr std::uint16_t kWatchdogMsTold =
+    100;                                    // an emulated processor needs more patience than any PC believes
 constexpr std::uint32_t kStepUs = 1'000;    // longest step of the physics
 constexpr std::uint32_t kPauseUs = 50'000;  // of a longer pause only so much is moved
 // The ritual, in seconds after the first word; before it the arm waits in its calibration pose. One that comes
@@ -66,7 +69,7 @@ EmulatedBoard::EmulatedBoard(const BoardSettings& settings)
       zero_(settings.power_on),
       boot_(settings.boot) {
     info_.rate_hz = settings.rate_hz;
-    info_.watchdog_ms = settings.watchdog_ms;
+    info_.watchdog_ms = std::min(settings.watchdog_ms, kWatchdogMsTold);
     info_.serial = text(settings.serial);
     info_.model = text(settings.model);
     info_.current_ma_max = max_ma_;
@@ -149,7 +152,8 @@ void EmulatedBoard::receive(std::span<const std::byte> bytes, std::uint32_t now_
     if (decode(bytes, query) == phantom::PacketFault::none) {
         info_.boot = boot_;
         spoken_ = common_version(query, info_) == phantom::kVersion;
-        put(encode(info_));
+        const auto bytes_of_info = encode(info_);
+        answer_ = {bytes_of_info, bytes_of_info.size()};
         return;
     }
     if (spoken_ && !faults_.deaf) static_cast<void>(amplifier_.receive(bytes, now_us));
@@ -235,6 +239,11 @@ void EmulatedBoard::put(std::span<const std::byte> bytes) noexcept {
 }
 
 bool EmulatedBoard::next_packet(std::array<std::byte, 64>& packet, std::size_t& size) noexcept {
+    if (answer_.size > 0) {  // it never waits behind states that nobody fetches
+        packet = answer_.bytes;
+        size = std::exchange(answer_.size, 0);
+        return true;
+    }
     if (count_ == 0) return false;
     packet = queue_[first_].bytes;
     size = queue_[first_].size;
@@ -250,7 +259,7 @@ void EmulatedBoard::restart(std::uint32_t now_us) noexcept {
     spoken_ = false;
     sequence_ = 0;
     count_ = 0;
-    held_back_.size = 0;
+    answer_.size = held_back_.size = 0;
     ritual_us_ = 0;
     shown_ = {};
     moved_us_ = due_us_ = now_us;

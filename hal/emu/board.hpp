@@ -103,10 +103,10 @@ private:
     std::int64_t ritual_us_ = 0;
     std::uint64_t unfetched_ = 0;
 
-    static constexpr std::size_t kQueue = 8;
+    static constexpr std::size_t kQueue = 3;  // old states are worth nothing
     std::array<Packet, kQueue> queue_{};
     std::size_t first_ = 0, count_ = 0;
-    Packet held_back_;
+    Packet held_back_, answer_;
 };
 
 }  // namespace tact::emu
