@@ -8,19 +8,21 @@ namespace {
 
 // By kind, in its order.
 constexpr std::array<FaultMeaning, kFaultKinds> kMeanings{{
-    {FaultKind::none, false, "no error", ""},
-    {FaultKind::motors_warm, false, "its motors are too warm", "let it cool for some minutes, then re-arm"},
-    {FaultKind::limit, false, "more force or speed than the device permits",
+    {FaultKind::none, false, DeviceNotice::none, "no error", ""},
+    {FaultKind::motors_warm, false, DeviceNotice::over_temperature, "its motors are too warm",
+     "let it cool for some minutes, then re-arm"},
+    {FaultKind::limit, false, DeviceNotice::over_current, "more force or speed than the device permits",
      "lower safety.force_n_max or safety.force_slew_n_s, then re-arm"},
-    {FaultKind::device, false, "the device reports a fault of its own",
+    {FaultKind::device, false, DeviceNotice::amplifier_off, "the device reports a fault of its own",
      "switch it off and on, calibrate it, and start again"},
-    {FaultKind::link, true, "the connection to the device broke",
+    {FaultKind::link, true, DeviceNotice::gone, "the connection to the device broke",
      "check cable and power, then start again; the maker's diagnostic program shows whether it answers"},
-    {FaultKind::timer, true, "the library's scheduler broke off", "start again"},
-    {FaultKind::frame, false, "a frame did not reach the device", "re-arm; again: check cable and power"},
-    {FaultKind::refused, false, "the library refuses what it was asked",
+    {FaultKind::timer, true, DeviceNotice::silent, "the library's scheduler broke off", "start again"},
+    {FaultKind::frame, false, DeviceNotice::commands_not_taken, "a frame did not reach the device",
+     "re-arm; again: check cable and power"},
+    {FaultKind::refused, false, DeviceNotice::commands_not_taken, "the library refuses what it was asked",
      "name the libHD.so that belongs to the device (device.hd_library) and see to its licence"},
-    {FaultKind::calibration, false, "it lost where its encoders count from",
+    {FaultKind::calibration, false, DeviceNotice::count_lost, "it lost where its encoders count from",
      "bring it to its calibration pose and start again"},
 }};
 

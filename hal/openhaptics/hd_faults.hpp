@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "hal/openhaptics/hd_api.hpp"
+#include "ipc/base/device_notice.hpp"
 #include "ipc/base/rt.hpp"
 
 namespace tact::hd {
@@ -24,9 +25,10 @@ inline constexpr std::size_t kFaultKinds = 9;
 
 struct FaultMeaning {
     FaultKind kind;
-    bool ends;          // nothing comes any more: lost until opened again
-    const char* says;   // for people
-    const char* mends;  // what a person does about it
+    bool ends;            // nothing comes any more: lost until opened again
+    DeviceNotice notice;  // the nearest that every device can say
+    const char* says;     // for people
+    const char* mends;    // what a person does about it
 };
 
 [[nodiscard]] const FaultMeaning& meaning(unsigned code) noexcept TACT_RT;

@@ -187,6 +187,10 @@ void Pump::show() noexcept {
 void Pump::publish() noexcept {
     sample_.state = static_cast<std::uint8_t>(state_);
     sample_.ended = ended_ ? 1 : 0;
+    const DeviceNotice notice = state_ == DeviceState::fault              ? meaning(counts_.last_kind).notice
+                                : state_ == DeviceState::watchdog_tripped ? DeviceNotice::watchdog_tripped
+                                                                          : DeviceNotice::none;
+    sample_.notice = static_cast<std::uint8_t>(notice);
     if (sample_.sequence > 0) mail_->sample.publish(sample_);
     mail_->counts.publish(counts_);
 }
@@ -212,6 +216,7 @@ IoStatus Pump::read(DeviceSample& newest, Instant now) noexcept {
     newest.buttons = w.buttons;
     newest.hand_present = w.hand_present != 0;
     newest.state = static_cast<DeviceState>(w.state);
+    newest.notice = static_cast<DeviceNotice>(w.notice);
     const bool fresh = w.sequence != sequence_;
     sequence_ = w.sequence;
     if (w.ended != 0 || now - newest.taken_at > kLostAfter) return status_ = IoStatus::lost;

@@ -69,7 +69,7 @@ private:
         std::uint64_t sequence;
         double pos_m[3], quat_xyzw[4], linear_m_s[3], angular_rad_s[3];
         std::uint32_t buttons;
-        std::uint8_t hand_present, state, ended, reserved;
+        std::uint8_t hand_present, state, ended, notice;
     };
     struct CommandWords {
         double force_n[3], torque_n_m[3];

@@ -214,6 +214,8 @@ TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_n
         EXPECT_EQ(cycle(Vec3(1.0, 0.0, 0.0), true), e.ends ? IoStatus::lost : IoStatus::fault);
         EXPECT_EQ(shown(), Vec3::Zero());
         EXPECT_EQ(sample.state, DeviceState::fault);
+        EXPECT_EQ(sample.notice, hd::meaning(e.code).notice);
+        EXPECT_NE(sample.notice, DeviceNotice::none);
         const hd::Counts c = device->counts();
         EXPECT_EQ(c.faults[static_cast<std::size_t>(e.kind)], 1U);
         EXPECT_EQ(c.last_code, e.code);
@@ -232,6 +234,7 @@ TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_n
             power();
         } else {
             EXPECT_EQ(sample.state, DeviceState::powered);
+            EXPECT_EQ(sample.notice, DeviceNotice::none);
             EXPECT_EQ(shown().x(), 1.0);
         }
         EXPECT_FALSE(std::string(hd::meaning(e.code).says).empty());
