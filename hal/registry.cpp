@@ -4,6 +4,8 @@
 
 #include "hal/openhaptics/open_haptics.hpp"
 #include "hal/phantom/phantom_usb.hpp"
+#include "hal/polhem/hidraw_port.hpp"
+#include "hal/polhem/polhem_bus.hpp"
 #include "hal/sim/process_device.hpp"
 #include "ipc/base/error.hpp"
 
@@ -29,6 +31,13 @@ std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {
     return std::make_unique<OpenHaptics>(settings);
 }
 
+std::unique_ptr<HapticDevice> make_polhem(const DeviceSettings& s) {
+    return std::make_unique<PhantomUsb>(
+        PhantomUsbSettings{
+            .serial = s.serial, .arm = s.arm, .hold_max = s.state_hold, .pump_priority = s.pump_priority},
+        std::make_unique<polhem::PolhemBus>(std::make_unique<polhem::HidrawPort>()));
+}
+
 constexpr std::array kDevices{
     DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
     DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
@@ -37,6 +46,8 @@ constexpr std::array kDevices{
                 &make_phantom_usb},
     DeviceEntry{"openhaptics", "Touch, Omni, Desktop or Premium through their maker's library libHD.so",
                 false, &make_open_haptics},
+    DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; untried on hardware", false,
+                &make_polhem},
 };
 
 }  // namespace

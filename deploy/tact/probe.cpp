@@ -45,6 +45,15 @@ std::string refusal(const probe::Node& n) {
                              (n.group.empty() ? "unknown" : n.group) + ", mode " + mode + ")";
 }
 
+// What the driver opens: hidraw for the one that reads reports, else the device's own node.
+probe::Node node_of(const UsbDevice& d) {
+    if (d.known == nullptr || d.known->driver != std::string("polhem")) return d.node;
+    const auto raw = std::find_if(d.nodes.begin(), d.nodes.end(), [](const probe::Node& n) {
+        return n.path.find("hidraw") != std::string::npos;
+    });
+    return raw == d.nodes.end() ? probe::Node{} : *raw;
+}
+
 Finding usb(const Buses& b) {
     if (!b.usb.visible)
         return {"usb", FindingLevel::warn,
@@ -71,11 +80,11 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
         if (arm && driver.empty()) {
             f.says += ": seen, but there is no driver for it here";
         } else if (arm) {
-            const std::string no = refusal(d.node);
+            const std::string no = refusal(node_of(d));
             if (!no.empty()) {
                 f.level = wanted ? FindingLevel::fail : FindingLevel::warn;
                 f.mend = kRightsMend;
-            } else if (d.speed_mbit != "480" && !d.speed_mbit.empty()) {
+            } else if (driver == "phantom-usb" && d.speed_mbit != "480" && !d.speed_mbit.empty()) {
                 f.level = FindingLevel::warn;
                 f.mend = "plug it into a port of USB 2 high speed, without a slow hub between";
             }

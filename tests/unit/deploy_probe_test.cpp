@@ -202,6 +202,12 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     ASSERT_EQ(usb.there[0].nodes.size(), 1U);
     EXPECT_EQ(usb.there[0].nodes[0].path, (tree.root() / "dev/hidraw2").string());
     EXPECT_TRUE(usb.there[0].nodes[0].usable);
+    DeviceWish wish;
+    wish.driver = "polhem";
+    EXPECT_FALSE(ask(tree, wish).fails());
+    EXPECT_TRUE(says(ask(tree, wish).one("arm").says, {"driver polhem, may be opened"}));
+    fs::remove(tree.root() / "dev/hidraw2");
+    EXPECT_TRUE(says(ask(tree, wish).one("arm").says, {"hidraw2 is not there"}));
     ASSERT_EQ(usb.there[1].nodes.size(), 1U);
     EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
     EXPECT_FALSE(usb.there[1].nodes[0].usable);

@@ -22,3 +22,4 @@ tact_test(unit/hal_openhaptics_test.cpp USES base openhaptics hal_api LABELS tsa
 add_dependencies(hal_openhaptics_test fake_hd fake_hd_old)
 target_compile_definitions(hal_openhaptics_test PRIVATE TACT_FAKE_HD="$<TARGET_FILE:fake_hd>"
     TACT_FAKE_HD_OLD="$<TARGET_FILE:fake_hd_old>")
+tact_test(unit/hal_polhem_test.cpp USES base arm phantom phantom_usb polhem probe hal_api emu_board SYSTEM rapidcheck)
