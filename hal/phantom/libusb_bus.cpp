@@ -18,8 +18,11 @@ namespace tact::phantom {
 namespace {
 
 constexpr int kClass = 0xFF, kSubclass = 0x54, kProtocol = 0x01;
-constexpr std::size_t kIn = 4;         // transfers that wait for a state
-constexpr std::size_t kInBytes = 512;  // more than any packet: what is too long is seen to be
+constexpr std::size_t kIn = 4;  // transfers that wait for a state
+// One whole packet. A transfer ends with a packet that is shorter than the endpoint's largest, or when its memory
+// is full: with more than this, states of full size would be glued together, eight of them in 512 bytes.
+constexpr std::size_t kInBytes = 64;
+constexpr std::array<unsigned char, kInBytes + 1> kTooLong{};  // stands for a packet that did not fit
 constexpr std::size_t kEvents = 64;
 constexpr unsigned kErrorsMax = 20;  // in a row: it is as good as gone
 constexpr Duration kCloseMax = std::chrono::milliseconds(500);
@@ -250,6 +253,10 @@ void LIBUSB_CALL LibusbBus::received(libusb_transfer* transfer) noexcept {
             bus.errors_ = 0;
             bus.push(BusEventKind::packet,
                      std::span(in.bytes).first(static_cast<std::size_t>(transfer->actual_length)));
+            break;
+        case LIBUSB_TRANSFER_OVERFLOW:
+            if (++bus.errors_ > kErrorsMax) return bus.push(BusEventKind::gone);
+            bus.push(BusEventKind::packet, kTooLong);
             break;
         case LIBUSB_TRANSFER_CANCELLED:
             return;
