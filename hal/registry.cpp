@@ -1,5 +1,6 @@
 #include "hal/registry.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "hal/openhaptics/open_haptics.hpp"
@@ -20,8 +21,12 @@ std::unique_ptr<HapticDevice> make_sim_process(const DeviceSettings& s) {
 }
 
 std::unique_ptr<HapticDevice> make_phantom_usb(const DeviceSettings& s) {
-    return std::make_unique<PhantomUsb>(PhantomUsbSettings{
-        .serial = s.serial, .arm = s.arm, .hold_max = s.state_hold, .pump_priority = s.pump_priority});
+    return std::make_unique<PhantomUsb>(
+        PhantomUsbSettings{.serial = s.serial,
+                           .arm = s.arm,
+                           .hold_max = s.state_hold,
+                           .watchdog_max = std::max(s.sim.watchdog, phantom::UsbPump::kWatchdogMax),
+                           .pump_priority = s.pump_priority});
 }
 
 std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {

@@ -14,9 +14,7 @@ namespace {
 
 using phantom::AmplifierState;
 
-constexpr double kSingular = 1e-3;  // metres, and radians for the wrist
-constexpr std::uint16_t kWatchdogMsTold =
-    100;                                    // an emulated processor needs more patience than any PC believes
+constexpr double kSingular = 1e-3;          // metres, and radians for the wrist
 constexpr std::uint32_t kStepUs = 1'000;    // longest step of the physics
 constexpr std::uint32_t kPauseUs = 50'000;  // of a longer pause only so much is moved
 // The ritual, in seconds after the first word; before it the arm waits in its calibration pose. One that comes
@@ -69,7 +67,7 @@ EmulatedBoard::EmulatedBoard(const BoardSettings& settings)
       zero_(settings.power_on),
       boot_(settings.boot) {
     info_.rate_hz = settings.rate_hz;
-    info_.watchdog_ms = std::min(settings.watchdog_ms, kWatchdogMsTold);
+    info_.watchdog_ms = settings.watchdog_ms;
     info_.serial = text(settings.serial);
     info_.model = text(settings.model);
     info_.current_ma_max = max_ma_;

@@ -14,7 +14,7 @@ using phantom::PumpOrder;
 namespace {
 
 constexpr Duration kLostAfter = std::chrono::milliseconds(100);
-constexpr Duration kBehindMax = std::chrono::milliseconds(10);
+constexpr Duration kBehindMax = std::chrono::milliseconds(10);  // or as long as a state may be old
 
 // The counts themselves are worth nothing after these.
 bool loses_count(DeviceNotice n) noexcept {
@@ -108,7 +108,8 @@ void PhantomUsb::take(Instant now) noexcept {
 
 DeviceNotice PhantomUsb::silence(Instant now) const noexcept {
     if (now - sample_.taken_at >= settings_.hold_max) return DeviceNotice::silent;
-    if (news_.behind_since_ns != 0 && now - instant_from_ns(news_.behind_since_ns) >= kBehindMax)
+    if (news_.behind_since_ns != 0 &&
+        now - instant_from_ns(news_.behind_since_ns) >= std::max(kBehindMax, settings_.hold_max))
         return DeviceNotice::commands_not_taken;
     return DeviceNotice::none;
 }

@@ -29,9 +29,10 @@ namespace tact {
 struct PhantomUsbSettings {
     std::string serial;  // empty: the only board there is
     ArmFigures arm = arm_figures("premium-1.5");
-    Duration hold_max = std::chrono::milliseconds(3);  // the newest state is good for so long
-    int pump_priority = 0;                             // FIFO; 0: ordinary scheduling
-    bool thread = true;                                // false: the caller runs pump().round(), for tests
+    Duration hold_max = std::chrono::milliseconds(3);        // the newest state is good for so long
+    Duration watchdog_max = phantom::UsbPump::kWatchdogMax;  // of the board; a longer one is refused
+    int pump_priority = 0;                                   // FIFO; 0: ordinary scheduling
+    bool thread = true;  // false: the caller runs pump().round(), for tests
 };
 
 class PhantomUsb final : public HapticDevice {

@@ -16,8 +16,9 @@ using phantom::LinkRefusal;
 
 namespace {
 
-constexpr Duration kFindMax = std::chrono::seconds(3);   // of a board that is just being plugged
-constexpr Duration kFirstMax = std::chrono::seconds(2);  // until its first state
+constexpr Duration kFindMax = std::chrono::seconds(3);  // of a board that is just being plugged
+constexpr Duration kFirstMax =
+    std::chrono::seconds(2);  // until its first state, or for ten states that are just not too old
 constexpr Duration kFlushMax = std::chrono::milliseconds(50);
 
 std::string text(const std::array<char, 16>& chars) {
@@ -70,7 +71,7 @@ PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phant
       velocity_(arm_),
       watch_(arm_.parameters()),
       bus_(std::move(bus)),
-      pump_(std::make_unique<phantom::UsbPump>(*bus_, settings.serial)) {}
+      pump_(std::make_unique<phantom::UsbPump>(*bus_, settings.serial, settings.watchdog_max)) {}
 
 PhantomUsb::~PhantomUsb() {
     relax();
@@ -104,7 +105,7 @@ std::string PhantomUsb::versions() const {
 }
 
 void PhantomUsb::wait_for_first_state() {
-    const Instant end = bus_->now() + kFirstMax;
+    const Instant end = bus_->now() + std::max<Duration>(kFirstMax, 10 * settings_.hold_max);
     while (bus_->now() < end) {
         pump_->round(std::chrono::milliseconds(5));
         if (!pump_->read(news_)) continue;
@@ -116,16 +117,19 @@ void PhantomUsb::wait_for_first_state() {
                                        std::to_string(phantom::kVersion),
                                    "bring firmware and program to a common version");
             }
+            const std::string mend = "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send";
+            if (news_.refusal == LinkRefusal::serial)
+                throw StartupError(what, "it gives another serial than its USB descriptor", mend);
             throw StartupError(what,
-                               news_.refusal == LinkRefusal::serial
-                                   ? "it gives another serial than its USB descriptor"
-                                   : "its rate or watchdog is impossible",
-                               "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send");
+                               "it may not have a rate of " + std::to_string(news_.info.rate_hz) +
+                                   " Hz with a watchdog of " + std::to_string(news_.info.watchdog_ms) + " ms",
+                               mend + "; device.watchdog_us allows a watchdog of more than 100 ms");
         }
         if (news_.link == Link::open && news_.states > 0) return;
     }
     throw StartupError("the arm's USB board",
-                       news_.link == Link::open ? "it sends no states" : "it does not answer",
+                       (news_.link == Link::open ? "it sends no states (" : "it does not answer (") +
+                           summary(news_.counts) + ")",
                        "switch it off and on; hal/phantom/PROTOCOL.md says what it has to send");
 }
 

@@ -14,8 +14,9 @@ std::string text(const std::array<char, 16>& chars) {
 }
 
 // What no board can mean: rates that no bus carries, a watchdog that is none.
-bool possible(const Info& i) noexcept {
-    return i.rate_hz >= 100 && i.rate_hz <= 8000 && i.watchdog_ms >= 1 && i.watchdog_ms <= 100;
+bool possible(const Info& i, Duration watchdog_max) noexcept {
+    return i.rate_hz >= 100 && i.rate_hz <= 8000 && i.watchdog_ms >= 1 &&
+           std::chrono::milliseconds(i.watchdog_ms) <= watchdog_max;
 }
 
 }  // namespace
@@ -24,6 +25,22 @@ std::uint64_t PumpCounts::bad() const noexcept {
     std::uint64_t n = repeated + stale + clock + restarted + lost;
     for (const std::uint64_t r : refused) n += r;
     return n;
+}
+
+std::string summary(const PumpCounts& c) {
+    constexpr std::array<const char*, kPacketFaults> kNames{"",     "size",     "magic",    "version",
+                                                            "kind", "checksum", "reserved", "text"};
+    std::string refused;
+    for (std::size_t i = 1; i < kPacketFaults; ++i) {
+        if (c.refused[i] > 0)
+            refused +=
+                (refused.empty() ? "" : ", ") + std::to_string(c.refused[i]) + " for their " + kNames[i];
+    }
+    return "asked " + std::to_string(c.asked) + " times, answered " + std::to_string(c.answered) +
+           "; states taken " + std::to_string(c.taken) + ", before an answer " + std::to_string(c.early) +
+           "; packets refused: " + (refused.empty() ? "none" : refused) + "; transfers failed " +
+           std::to_string(c.transfers_failed) + ", stalls " + std::to_string(c.stalls) +
+           ", connected again " + std::to_string(c.reconnects);
 }
 
 BusFinding UsbPump::open() {
@@ -100,6 +117,7 @@ void UsbPump::send_due(Instant now) noexcept {
         sending_ = true;
         query_due_ = false;
         asked_at_ = now;
+        ++news_.counts.asked;
         return;
     }
     if (news_.link != Link::open) return;
@@ -128,13 +146,14 @@ void UsbPump::send_due(Instant now) noexcept {
 }
 
 void UsbPump::take_info(const Info& info, Instant at) noexcept {
+    ++news_.counts.answered;
     if (news_.link != Link::asking) return;  // an answer to a question asked twice
     heard_at_ = at;
     unanswered_ = 0;
     const bool same_serial = serial_.empty() || text(info.serial) == serial_;
     news_.refusal = common_version(Query{}, info) != kVersion ? LinkRefusal::version
                     : !same_serial                            ? LinkRefusal::serial
-                    : !possible(info)                         ? LinkRefusal::figures
+                    : !possible(info, watchdog_max_)          ? LinkRefusal::figures
                                                               : LinkRefusal::none;
     const bool anew = !known_ || info.boot != news_.info.boot;
     news_.info = info;
@@ -181,7 +200,10 @@ void UsbPump::look_at_seen(Instant at) noexcept {
 }
 
 void UsbPump::take_state(const State& state, Instant at) noexcept {
-    if (!known_) return;  // from before this program: who it is comes first
+    if (!known_) {  // from before this program: who it is comes first
+        ++news_.counts.early;
+        return;
+    }
     const Order order = gate_.check(state.boot, state.sequence, state.time_us);
     const SequenceGate::Counts& c = gate_.counts();
     news_.counts.repeated = before_.repeated + c.repeated;

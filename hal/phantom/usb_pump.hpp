@@ -31,11 +31,16 @@ enum class LinkRefusal : std::uint8_t { none, version, serial, figures };
 struct PumpCounts {
     std::array<std::uint64_t, kPacketFaults> refused{};  // states and answers, by PacketFault
     std::uint64_t taken = 0, repeated = 0, stale = 0, clock = 0, restarted = 0, lost = 0;
-    std::uint64_t transfers_failed = 0, stalls = 0, reconnects = 0, sent = 0;
-    std::uint64_t refused_by_board = 0;  // commands
-    std::uint64_t bad_seconds = 0;       // with more than 5 % refused or lost
+    std::uint64_t transfers_failed = 0, stalls = 0, reconnects = 0;
+    std::uint64_t sent = 0, asked = 0, answered = 0;  // commands; queries and infos
+    std::uint64_t early = 0;                          // states before the first answer of a connection
+    std::uint64_t refused_by_board = 0;               // commands
+    std::uint64_t bad_seconds = 0;                    // with more than 5 % refused or lost
     [[nodiscard]] std::uint64_t bad() const noexcept;
 };
+
+// For people: what came over the bus and what of it was refused. Not for the servo's thread.
+[[nodiscard]] std::string summary(const PumpCounts& counts);
 
 // From the pump to the servo.
 struct PumpNews {
@@ -70,11 +75,14 @@ public:
     static constexpr Duration kAskEvery = std::chrono::milliseconds(100);
     static constexpr Duration kSilence = std::chrono::milliseconds(50);  // after it the board is asked again
     static constexpr Duration kPoll = std::chrono::microseconds(50);     // for a command that is due
+    static constexpr Duration kWatchdogMax = std::chrono::milliseconds(100);
     static constexpr std::uint32_t kBehindMax = 5;
     static constexpr std::size_t kBatch = 16;
     static constexpr std::size_t kBatchesMax = 4;
 
-    UsbPump(UsbBus& bus, std::string serial) : bus_(bus), serial_(std::move(serial)) {}
+    // A board that lets the force stand for longer than watchdog_max without a servo is refused.
+    UsbPump(UsbBus& bus, std::string serial, Duration watchdog_max = kWatchdogMax)
+        : bus_(bus), serial_(std::move(serial)), watchdog_max_(watchdog_max) {}
 
     // Start-up: one try to open the bus. From then on round() keeps it open.
     [[nodiscard]] BusFinding open();
@@ -119,6 +127,7 @@ private:
 
     UsbBus& bus_;
     std::string serial_;
+    Duration watchdog_max_;
     std::unique_ptr<Mail> mail_ = std::make_unique<Mail>();
     std::atomic<std::uint32_t> relaxed_{0};
 

@@ -55,7 +55,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.driver", &c.device.driver, 0, 0, {}},
         {"device.hand", &c.device.hand, 0, 0, {"passive", "wander"}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
-        {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e6, {}},
+        {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e7, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},
         {"device.serial", &c.device.serial, 0, 0, {}},
         {"device.pump_priority", &c.device.pump_priority, 0, 94, {}},

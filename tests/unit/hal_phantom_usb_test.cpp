@@ -406,6 +406,29 @@ TEST(PhantomOpen, a_board_that_does_not_answer_is_refused) {
     EXPECT_THROW(arm.device().open(), StartupError);
 }
 
+TEST(PhantomOpen, an_answer_that_never_comes_is_told_with_what_came_instead) {
+    LockstepPhantom arm;
+    arm.board().faults().frozen = true;
+    const std::array<std::byte, 65> glued{};
+    for (int i = 0; i < 7; ++i) arm.bus().push(phantom::BusEventKind::packet, glued);
+    try {
+        arm.device().open();
+        ADD_FAILURE() << "opened";
+    } catch (const StartupError& e) {
+        EXPECT_NE(std::string(e.what()).find("answered 0"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("7 for their size"), std::string::npos) << e.what();
+    }
+}
+
+TEST(PhantomOpen, a_watchdog_longer_than_is_allowed_is_refused) {
+    BoardSettings patient;
+    patient.watchdog_ms = 3000;
+    EXPECT_THROW(LockstepPhantom(patient, {}).device().open(), StartupError);
+    PhantomUsbSettings allowed;
+    allowed.watchdog_max = std::chrono::seconds(3);
+    EXPECT_NO_THROW(LockstepPhantom(patient, allowed).device().open());
+}
+
 TEST(PhantomOpen, a_board_with_another_serial_than_its_descriptor_is_refused) {
     LockstepPhantom arm;
     arm.bus().usb_serial = "OTHER";

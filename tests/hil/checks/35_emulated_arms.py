@@ -35,7 +35,7 @@ def main():
         infos = [b.query() for b in (left, right)]
         print(*infos, sep="\n")
         assert [i["serial"] for i in infos] == ["LEFT", "RIGHT"] and infos[0]["boot"] != infos[1]["boot"]
-        assert all(i["versions"] == (1, 1) and i["rate_hz"] == 200 and i["watchdog_ms"] == 100 for i in infos)
+        assert all(i["versions"] == (1, 1) and i["rate_hz"] == 200 and i["watchdog_ms"] == 3000 for i in infos)
         good_states(right, 20)
         still = good_states(left, 20)[-1]
 
