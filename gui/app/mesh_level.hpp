@@ -9,11 +9,12 @@
 
 namespace tact {
 
-// With fewer than these in all the surfaces of a map are not recognized any more, and a picture is hardly sooner
-// ready: so many cost less than a millisecond, in software too. vertices_min: of the base meshes.
+// With fewer than these in all, a thousand or a twelfth, the surfaces of a map are not recognized any more, and a
+// picture is hardly sooner ready: so many cost less than a millisecond, in software too. vertices_min: of the
+// base meshes.
 [[nodiscard]] inline std::uint32_t fewest_shown(std::uint32_t vertices_min,
                                                 std::uint32_t vertices_max) noexcept {
-    return std::min(std::max(vertices_min, std::uint32_t{1000}), vertices_max);
+    return std::max(vertices_min, std::min(std::uint32_t{1000}, vertices_max / 12));
 }
 
 // The governor says what it means by items of items_max. Where it does not know the mesh (yet), or means

@@ -133,8 +133,8 @@ TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
 }
 
 TEST(MeshLevel, ASurfaceIsNeverCoarserThanCanBeRecognized) {
-    EXPECT_EQ(fewest_shown(66, 6600), 1000U);
-    EXPECT_EQ(fewest_shown(66, 500), 500U);      // no more than there are
+    EXPECT_EQ(fewest_shown(66, 60'000), 1000U);
+    EXPECT_EQ(fewest_shown(66, 6000), 500U);
     EXPECT_EQ(fewest_shown(3000, 9000), 3000U);  // a base mesh cannot have fewer
     EXPECT_EQ(fewest_shown(0, 0), 0U);
 }
