@@ -3,6 +3,8 @@
 #include <sched.h>
 #include <signal.h>
 
+#include <algorithm>
+
 #include "hal/phantom/libusb_bus.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "ipc/base/error.hpp"
@@ -71,7 +73,8 @@ PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phant
       velocity_(arm_),
       watch_(arm_.parameters()),
       bus_(std::move(bus)),
-      pump_(std::make_unique<phantom::UsbPump>(*bus_, settings.serial, settings.watchdog_max)) {}
+      pump_(std::make_unique<phantom::UsbPump>(*bus_, settings.serial, settings.watchdog_max,
+                                               std::max(phantom::UsbPump::kSilence, settings.hold_max))) {}
 
 PhantomUsb::~PhantomUsb() {
     relax();

@@ -287,7 +287,7 @@ void UsbPump::publish() noexcept { mail_->news.publish(news_); }
 void UsbPump::round(Duration patience) noexcept {
     const Instant now = bus_.now();
     if (news_.link == Link::closed) reopen(now);
-    if (news_.link == Link::open && now - heard_at_ > kSilence) {
+    if (news_.link == Link::open && now - heard_at_ > silence_) {
         news_.link = Link::asking;
         query_due_ = true;
         unanswered_ = 0;

@@ -73,16 +73,18 @@ class UsbPump {
 public:
     static constexpr Duration kReopenEvery = std::chrono::milliseconds(200);
     static constexpr Duration kAskEvery = std::chrono::milliseconds(100);
-    static constexpr Duration kSilence = std::chrono::milliseconds(50);  // after it the board is asked again
+    static constexpr Duration kSilence = std::chrono::milliseconds(50);  // or longer: see below
     static constexpr Duration kPoll = std::chrono::microseconds(50);     // for a command that is due
     static constexpr Duration kWatchdogMax = std::chrono::milliseconds(100);
     static constexpr std::uint32_t kBehindMax = 5;
     static constexpr std::size_t kBatch = 16;
     static constexpr std::size_t kBatchesMax = 4;
 
-    // A board that lets the force stand for longer than watchdog_max without a servo is refused.
-    UsbPump(UsbBus& bus, std::string serial, Duration watchdog_max = kWatchdogMax)
-        : bus_(bus), serial_(std::move(serial)), watchdog_max_(watchdog_max) {}
+    // A board that lets the force stand for longer than watchdog_max without a servo is refused. One that sent no
+    // state for `silence` is asked again: not sooner than its states are too old, since questions displace commands.
+    UsbPump(UsbBus& bus, std::string serial, Duration watchdog_max = kWatchdogMax,
+            Duration silence = kSilence)
+        : bus_(bus), serial_(std::move(serial)), watchdog_max_(watchdog_max), silence_(silence) {}
 
     // Start-up: one try to open the bus. From then on round() keeps it open.
     [[nodiscard]] BusFinding open();
@@ -127,7 +129,7 @@ private:
 
     UsbBus& bus_;
     std::string serial_;
-    Duration watchdog_max_;
+    Duration watchdog_max_, silence_;
     std::unique_ptr<Mail> mail_ = std::make_unique<Mail>();
     std::atomic<std::uint32_t> relaxed_{0};
 
