@@ -20,12 +20,18 @@ EMULATED = "[servo]\nperiod_us = 5000.0\n"
 STATE, COMMAND, QUERY, INFO = 1, 2, 3, 4                      # kinds of hal/phantom/PROTOCOL.md
 
 
+def soon(condition, patience_s, look_s=0.05):
+    """The first true value of condition(), or the last one of so many seconds."""
+    end = time.monotonic() + patience_s
+    while not (value := condition()) and time.monotonic() < end:
+        time.sleep(look_s)
+    return value
+
+
 def wait_for(condition, what):
     """The first true value of condition()."""
-    end = time.monotonic() + PATIENCE_S
-    while not (value := condition()):
-        assert time.monotonic() < end, f"{what}: not within {PATIENCE_S} s"
-        time.sleep(0.05)
+    value = soon(condition, PATIENCE_S)
+    assert value, f"{what}: not within {PATIENCE_S} s"
     return value
 
 
@@ -34,7 +40,7 @@ class Child:
 
     def __init__(self, *command, lines_of="stdout", quiet=False, leave_out=()):
         self.quiet, self.leave_out = quiet, leave_out  # not printed; lines with these words are not kept either
-        self.lines, self.seen, self.gone_by = queue.Queue(), [], []
+        self.lines, self.seen, self.gone_by = queue.Queue(), [], []  # to come; of the emulator; all
         pipes = {"stdout": None, "stderr": None, lines_of: subprocess.PIPE}
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, text=True, bufsize=1, **pipes)
         self.reader = threading.Thread(target=self._read, args=(getattr(self.process, lines_of),), daemon=True)
@@ -70,6 +76,10 @@ class Child:
             self.process.kill()
             raise
 
+    def send(self, text):
+        self.process.stdin.write(text + "\n")
+        self.process.stdin.flush()
+
     def next_line(self, what):
         try:
             line = self.lines.get(timeout=PATIENCE_S)
@@ -87,8 +97,7 @@ class Emulator(Child):
         self.until("state", "ready")
 
     def order(self, text):
-        self.process.stdin.write(text + "\n")
-        self.process.stdin.flush()
+        self.send(text)
 
     def until(self, what, detail=None, name=None):
         """The next line that says so; the ones before it are kept in self.seen."""
@@ -97,6 +106,16 @@ class Emulator(Child):
             self.seen.append(line)
             if line["what"] == what and detail in (None, line["detail"]) and name in (None, line["name"]):
                 return line
+
+    def newest(self, what, name):
+        """(how many lines came before it, itself) of the newest line about that; (-1, nothing) if there is none."""
+        lines = self.said()
+        for i in range(len(lines) - 1, -1, -1):
+            if f'"{what}"' in lines[i]:
+                line = json.loads(lines[i])
+                if line["what"] == what and line["name"] == name:
+                    return i, line
+        return -1, {"detail": "", "states": 0, "commands": 0, "t_ns": 0}
 
     def status(self, name):
         self.order("status")
@@ -199,6 +218,15 @@ def text_of(path):
         return f.read()
 
 
+class Person(Child):
+    """Somebody at the screen: send("arm"), send("reset"), send("disarm")."""
+
+    def __init__(self, bin_dir):
+        super().__init__(f"{bin_dir}/../tests/stand_in_person")
+        while "attached" not in self.next_line("somebody at the screen"):
+            pass
+
+
 class Watcher(Child):
     """tact status --watch --json: what the controller says of itself, once a second."""
 
@@ -245,6 +273,11 @@ class Controller(Child):
         while words not in (line := self.next_line(f"tact-rt: {words}")):
             pass
         return line
+
+    def state(self):
+        """The newest state that its log tells of; that it got ready is not said."""
+        changes = [line.rsplit(" to ", 1)[1].strip() for line in self.said() if "state changed:" in line]
+        return changes[-1] if changes else "ready"
 
     def servo(self):
         """/proc of the servo thread."""
