@@ -97,7 +97,7 @@ Finding rtprio(const Machine& m) {
         limit ? "SCHED_FIFO is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max)
               : std::string("SCHED_FIFO is refused (") + std::strerror(m.fifo_error) +
                     ") although the limits allow it: a container or a group without real-time share",
-        limit ? kLimitsMend : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=90");
+        limit ? kLimitsMend : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=95");
 }
 
 Finding memlock(const Machine& m) {

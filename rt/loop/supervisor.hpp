@@ -1,11 +1,9 @@
 // Watches the servo's heartbeat from outside its thread, and drops the enable line when it stands still.
 //
-// Latched  from the drop until a person re-arms; the servo, once it runs again, finds the drop in the pulse
-// and
-//          latches the fault
+// Latched  from the drop until a person re-arms; the servo, once it runs again, finds the drop in the
+//          pulse and latches the fault
 // Thread   "supervisor", FIFO 95 where that is permitted, off the servo's core where there is another; it
-// sleeps
-//          between looks of a millisecond. look() is a function of what it is given, for tests.
+//          sleeps between looks of a millisecond. look() is a function of what it is given, for tests.
 // Not here the device's own enable: HapticDevice belongs to the servo thread. Its own watchdog sees the same
 //          silence.
 #pragma once

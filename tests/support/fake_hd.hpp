@@ -1,8 +1,7 @@
 // A stand-in for the vendor's libHD.so: the same functions, an arm of 0.25 kg in oil, errors on demand.
 //
-// Time     lockstep: each tick() is one cycle of the scheduler, a millisecond for the arm; with `threaded`
-// set
-//          before hdStartScheduler a thread of its own makes the cycles
+// Time     lockstep: each tick() is one cycle of the scheduler, a millisecond for the arm; with
+//          `threaded` set before hdStartScheduler a thread of its own makes the cycles
 // Strict   frames that do not match, forces outside of one and calls without a device raise the library's own
 //          errors; 302, 304, 400 and 401 end the scheduler, as in the real one
 // Thread   everything that a test touches while cycles run is atomic
