@@ -142,9 +142,9 @@ TEST_P(LinesContract, whatever_stops_lowers_the_enable_line_and_only_a_person_ra
         ASSERT_TRUE(permit());
         const std::uint64_t trips = newest_.trips;
         rig_->inject(f.fault);
-        ASSERT_TRUE(reaches(LinesState::stopped));
+        // Not by the state: where a stop mends itself, a late reader finds the lines waiting already.
+        ASSERT_TRUE(until([&] { return newest_.trips > trips; }));
         EXPECT_TRUE(until([&] { return newest_.cause == f.cause; }));
-        EXPECT_GT(newest_.trips, trips);
         // Re-armed while it is still wrong: used up.
         ++command_.rearm;
         dwell();
