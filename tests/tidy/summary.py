@@ -4,11 +4,14 @@
 usage: summary.py RESULTS. In RESULTS: checks.tsv (status, what), and a folder per preset with ctest.junit and one
 GoogleTest XML file per test program. A GoogleTest program counts with its cases, every other test as one. A
 program that CTest saw fail counts as failed even if its cases look well (it crashed, leaked, or ran too long).
+The last lines that each failed program printed come first: they are far above in the log by now.
 """
 import collections
 import os
 import sys
 import xml.etree.ElementTree as ElementTree
+
+LAST_LINES = 60
 
 
 def cases_of(path):
@@ -45,6 +48,14 @@ def preset_results(folder):
             yield "failed", f"{name}: the program failed, though its cases passed"
 
 
+def print_failed(preset, folder):
+    for test in ElementTree.parse(os.path.join(folder, "ctest.junit")).getroot().iter("testcase"):
+        if test.get("status") != "fail":
+            continue
+        print(f'\n-- {preset}: {test.get("name")} failed after {test.get("time")} s. Its last lines:')
+        print("\n".join((test.findtext("system-out") or "it printed nothing").rstrip().splitlines()[-LAST_LINES:]))
+
+
 def main():
     results = sys.argv[1]
     all_of = []
@@ -55,6 +66,7 @@ def main():
     for preset in sorted(os.listdir(results)):
         if os.path.isfile(os.path.join(results, preset, "ctest.junit")):
             all_of += [(status, f"{preset}: {what}") for status, what in preset_results(os.path.join(results, preset))]
+            print_failed(preset, os.path.join(results, preset))
     for wanted in ("skipped", "failed"):
         for status, what in all_of:
             if status == wanted:
