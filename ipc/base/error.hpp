@@ -1,6 +1,8 @@
 // The one exception of start-up, preparation and the launcher. Never thrown on the servo path.
 //
-// Text    what was attempted and on what, why it failed, and what mends it; in that order.
+// Text    what was attempted and on what, why it failed, and what mends it; in that order. Words of a
+//         hostile file may be part of it: control characters but the end of a line become '?', so that none
+//         ends the text early or speaks to a terminal.
 // Caught  once, in main(), which prints what() and exits with 1.
 #pragma once
 
@@ -12,7 +14,16 @@ namespace tact {
 class StartupError : public std::runtime_error {
 public:
     StartupError(const std::string& attempt, const std::string& why, const std::string& mend)
-        : std::runtime_error(attempt + ": " + why + "\n  mend: " + mend) {}
+        : std::runtime_error(shown(attempt + ": " + why + "\n  mend: " + mend)) {}
+
+private:
+    static std::string shown(std::string text) {
+        for (char& c : text) {
+            const auto code = static_cast<unsigned char>(c);
+            if ((code < 0x20 && c != '\n') || code == 0x7F) c = '?';
+        }
+        return text;
+    }
 };
 
 }  // namespace tact

@@ -1,0 +1,23 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+TEST(StartupError, SaysWhatWhyAndTheMend) {
+    EXPECT_STREQ(StartupError("read a.ply", "it has no faces", "export a surface").what(),
+                 "read a.ply: it has no faces\n  mend: export a surface");
+}
+
+TEST(StartupError, WordsOfAFileNeitherEndTheTextNorSpeakToATerminal) {
+    const std::string name("x\0y\x1b[31m\r\x7f", 10);
+    const StartupError error("read a.ply", "element \"" + name + "\"\nin line 3: µ", "mend the file");
+    EXPECT_STREQ(error.what(), "read a.ply: element \"x?y?[31m??\"\nin line 3: µ\n  mend: mend the file");
+}
+
+}  // namespace
+}  // namespace tact
