@@ -1,10 +1,13 @@
 // A USB bus made of memory with one emulated board on it, and the driver in lockstep with it.
 //
-// Time    the bus's own; wait() moves it on when nothing has come, so that open() runs without sleeping
+// Time    the bus's own; wait() moves it on when nothing has come, so that open() runs without sleeping. For a
+//         driver with a thread of its own the test holds it: no outcome depends on how fast the machine is.
 // Faults  of the board through board().faults(), of the bus through the members here
 #pragma once
 
+#include <atomic>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -39,11 +42,12 @@ public:
         events_.clear();
     }
     std::size_t wait(std::span<phantom::BusEvent> events, Duration patience) noexcept override {
-        if (real_time_) {
-            if (events_.empty()) std::this_thread::sleep_for(patience);
-            advance(Monotonic::now() - now_);
-        } else if (events_.empty() && patience > Duration{0}) {
-            advance(patience);
+        if (events_.empty() && patience > Duration{0}) {
+            const Duration room = instant_from_ns(held_at_ns_.load(std::memory_order_acquire)) - now_;
+            if (room > Duration{0})
+                advance(std::min(patience, room));
+            else
+                std::this_thread::sleep_for(std::chrono::microseconds(20));  // until the test goes on
         }
         std::size_t n = 0;
         for (; n < events.size() && !events_.empty(); ++n) {
@@ -76,10 +80,7 @@ public:
         stalled_ = false;
         return clears;
     }
-    Instant now() noexcept override {
-        if (real_time_) advance(Monotonic::now() - now_);
-        return now_;
-    }
+    Instant now() noexcept override { return now_; }
 
     void advance(Duration d) noexcept {
         const Instant end = now_ + d;
@@ -92,6 +93,7 @@ public:
                 if (open_ && !stalled_) push(phantom::BusEventKind::packet, std::span(packet).first(size));
             }
         }
+        reached_ns_.store(to_ns(now_), std::memory_order_release);
     }
     void push(phantom::BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept {
         phantom::BusEvent e;
@@ -101,10 +103,10 @@ public:
         std::copy_n(bytes.begin(), std::min(bytes.size(), e.bytes.size()), e.bytes.begin());
         events_.push_back(e);
     }
-    // From here on the machine's clock, for drivers with a thread.
-    void run_in_real_time() noexcept {
-        real_time_ = true;
-        now_ = Monotonic::now();
+    // Any thread: time stands still once it is there, and how far it has come.
+    void hold_time_at(Instant t) noexcept { held_at_ns_.store(to_ns(t), std::memory_order_release); }
+    [[nodiscard]] Instant reached() const noexcept {
+        return instant_from_ns(reached_ns_.load(std::memory_order_acquire));
     }
     // Out of the socket: the board loses its power too.
     void unplug() noexcept {
@@ -133,8 +135,9 @@ private:
     EmulatedBoard board_;
     std::string serial_;
     std::deque<phantom::BusEvent> events_;
-    bool open_ = false, stalled_ = false, real_time_ = false;
+    bool open_ = false, stalled_ = false;
     Instant now_ = instant_from_ns(4'294'000'000'000);  // the board's clock wraps a second later
+    std::atomic<std::int64_t> held_at_ns_{std::numeric_limits<std::int64_t>::max()}, reached_ns_{to_ns(now_)};
 };
 
 // The driver, its pump and the bus, one after the other on one thread. Its `now` is the caller's.

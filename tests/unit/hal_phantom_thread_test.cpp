@@ -1,0 +1,103 @@
+// The driver with its own thread on the bus: mailboxes, start and end. What it decides is in
+// hal_phantom_usb_test.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/support/board_bus.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::milliseconds;
+
+// An arm that calibrates itself, so that nobody has to wait for the person's part.
+emu::BoardSettings board() {
+    emu::BoardSettings s = emu::usual<emu::BoardSettings>();
+    s.arm.calibration = CalibrationStyle::automatic;
+    s.ritual = false;
+    return s;
+}
+
+class PhantomThread : public testing::Test {
+protected:
+    PhantomThread() {
+        auto owned = std::make_unique<emu::BoardBus>(board());
+        bus_ = owned.get();
+        PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
+        settings.arm = board().arm;
+        settings.pump_priority = 0;  // it must not take the processor from the test
+        settings.hold_max = milliseconds(5);
+        device_ = std::make_unique<PhantomUsb>(settings, std::move(owned));
+    }
+    void open() {
+        EXPECT_EQ(device_->open().serial, "EMU-1");
+        time_ = bus_->reached();
+        bus_->hold_time_at(time_);
+    }
+    // A millisecond of the board's time and a cycle of the servo at its end, while the pump goes on. False: the
+    // pump does not move.
+    bool cycle(bool enable) {
+        time_ += milliseconds(1);
+        bus_->hold_time_at(time_);
+        const Instant end = Monotonic::now() + std::chrono::seconds(100);  // against a hang alone
+        while (bus_->reached() < time_) {
+            if (Monotonic::now() > end) return false;
+            std::this_thread::yield();
+        }
+        time_ = bus_->reached();
+        static_cast<void>(device_->read(sample_, time_));
+        static_cast<void>(
+            device_->write({.wrench_dev = {}, .enable = enable, .heartbeat = ++heartbeat_}, time_));
+        return true;
+    }
+    template <class Done>
+    bool until(bool enable, Done done) {
+        for (int i = 0; i < 5000; ++i) {
+            if (!cycle(enable)) return false;
+            if (done()) return true;
+        }
+        return false;
+    }
+
+    emu::BoardBus* bus_ = nullptr;
+    std::unique_ptr<PhantomUsb> device_;
+    DeviceSample sample_;
+
+private:
+    Instant time_{};
+    std::uint64_t heartbeat_ = 0;
+};
+
+TEST_F(PhantomThread, owns_the_bus_while_the_servo_and_others_use_the_device) {
+    open();
+    EXPECT_EQ(device_->open().serial, "EMU-1");  // twice is once
+    ASSERT_TRUE(until(false, [&] { return device_->calibration() == CalibrationState::done; }));
+    ASSERT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
+    const std::uint64_t before = sample_.sequence;
+    EXPECT_TRUE(until(true, [&] { return sample_.sequence > before + 20 && sample_.delay > Duration{0}; }));
+    EXPECT_EQ(sample_.state, DeviceState::powered) << device_notice_text(sample_.notice);
+    std::thread other([&] { device_->relax(); });
+    EXPECT_TRUE(until(true, [&] { return sample_.state == DeviceState::ready; }));
+    other.join();
+    for (int i = 0; i < 50; ++i) ASSERT_TRUE(cycle(true));
+    EXPECT_EQ(sample_.state, DeviceState::ready);  // an enable that never fell brings nothing back
+    ASSERT_TRUE(until(false, [&] { return sample_.sequence > before + 100; }));
+    EXPECT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
+}
+
+TEST_F(PhantomThread, ends_with_the_amplifier_on_and_time_standing_still) {
+    open();
+    ASSERT_TRUE(until(false, [&] { return device_->calibration() == CalibrationState::done; }));
+    ASSERT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
+    device_.reset();
+}
+
+TEST_F(PhantomThread, ends_at_once_after_it_began_and_after_relax) {
+    EXPECT_EQ(device_->open().serial, "EMU-1");
+    device_->relax();
+    device_->relax();
+}
+
+}  // namespace
+}  // namespace tact
