@@ -95,6 +95,7 @@ IoStatus SimDevice::read(DeviceSample& newest, Instant now) noexcept {
     }
     advance(now);
     if (fault_ == SimFault::amplifier) drop(DeviceState::fault);
+    if (fault_ == SimFault::watchdog && state_ == DeviceState::powered) drop(DeviceState::watchdog_tripped);
     const bool frozen = fault_ == SimFault::frozen && newest_.sequence > 0;
     if (!frozen) sample(now);
     newest_.state = state_;

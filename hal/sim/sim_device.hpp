@@ -23,6 +23,7 @@ enum class SimFault : std::uint8_t {
     unplugged,  // read and write say lost
     frozen,     // the newest sample stays the newest
     amplifier,  // over-temperature: amplifier off, state fault
+    watchdog,   // its watchdog trips although it was fed
     wild_pose,  // a pose that is not a number
     hand_off,   // nobody holds it
 };

@@ -292,6 +292,7 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);
     s.watchdogs.timing_latches =
         c.safety.timing_latches == "always" || (c.safety.timing_latches == "real" && !emulated);
+    s.watchdogs.device_watchdog_latches = s.watchdogs.timing_latches || !emulated;
     s.chain.force_n_max = c.safety.force_n_max;
     s.chain.torque_n_m_max = c.safety.torque_n_m_max;
     s.chain.force_slew_n_s = c.safety.force_slew_n_s;

@@ -196,7 +196,7 @@ void Servo::safety(CycleState& c) noexcept {
         look.device_fault =
             look.device_fault || h.read_status == IoStatus::fault || !h.sample_usable ||
             h.sample.state == DeviceState::fault ||
-            (h.sample.state == DeviceState::watchdog_tripped && settings_.watchdogs.timing_latches);
+            (h.sample.state == DeviceState::watchdog_tripped && settings_.watchdogs.device_watchdog_latches);
         look.force_finite = look.force_finite && h.wanted_world.finite();
         c.events.hand_present = c.events.hand_present && h.sample.hand_present;
     }
@@ -219,8 +219,8 @@ void Servo::safety(CycleState& c) noexcept {
 
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
-        // Where timing latches no fault, neither does the device's own watchdog: a cycle without enable gives
-        // it its edge, and the ramp starts anew.
+        // Where an emulated device's watchdog latches no fault, a cycle without enable gives it its edge, and
+        // the ramp starts anew.
         const bool dropped = h.sample.state == DeviceState::watchdog_tripped;
         if (dropped && amplifier_on(c.run.state)) say(EventCode::device_watchdog, to_us(c.dt) * 1e-3, 0.0);
         const Quat back = settings_.T_world_dev.q.conjugate();

@@ -20,6 +20,8 @@ struct WatchdogSettings {
     std::uint32_t overruns_warned = 3;  // in a row
     std::uint32_t overruns_max = 5;     // in a row
     bool timing_latches = true;         // false: lateness and overruns are counted and warned of, no more
+    // Of a device whose own watchdog tripped: false only where nobody's hand is on it.
+    bool device_watchdog_latches = true;
 };
 
 struct WatchdogInput {

@@ -197,7 +197,7 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     std::unique_ptr<ForceModel> model = load_docking_model(scene, {});
     const HandParts hand{&device, model.release(), info};
     ServoSettings settings;
-    settings.watchdogs.timing_latches = true;
+    settings.watchdogs.timing_latches = false;  // a fault of the device latches all the same
     settings.dry_cycles = 1;
     Servo servo({clock, {&hand, 1}, *region, mail}, settings);
     rt_guard::abort_on_violation(guarded());
@@ -254,6 +254,16 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
         EXPECT_EQ(servo.state().run.state, RunState::fault);
         arm_again();
     }
+    bus.board().faults().deaf = true;  // until its watchdog trips
+    cycles(20);
+    EXPECT_EQ(servo.state().run.state, RunState::fault);
+    EXPECT_EQ(servo.state().run.reason, RunReason::device_fault);
+    EXPECT_EQ(health().device_notice[0], static_cast<std::uint8_t>(DeviceNotice::watchdog_tripped));
+    bus.board().faults().deaf = false;
+    cycles(300);
+    EXPECT_EQ(servo.state().run.state, RunState::fault);
+    EXPECT_FALSE(amplifier_on());
+    arm_again();
     bus.board().faults().corrupt = 2;
     cycles(20);
     EXPECT_EQ(servo.state().run.state, RunState::active);

@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 ServoSettings strict() {
     ServoSettings s;
     s.watchdogs.timing_latches = true;
+    s.watchdogs.device_watchdog_latches = true;
     return s;
 }
 
@@ -142,6 +143,8 @@ const Fault kFaults[] = {
          static_cast<void>(l.device_.open());
      },
      RunReason::device_lost, 1},
+    {"the_devices_own_watchdog_by_itself", [](Lockstep& l) { l.device_.inject(SimFault::watchdog); },
+     [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::device_fault, 1},
     {"sample_frozen", [](Lockstep& l) { l.device_.inject(SimFault::frozen); },
      [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::sample_stale, 4},
     {"cycle_six_milliseconds_late", [](Lockstep& l) { l.clock_.advance(milliseconds(7)); }, [](Lockstep&) {},
@@ -174,10 +177,11 @@ TEST(ServoScenario, a_frozen_sample_is_held_for_three_cycles_before_it_is_a_faul
 }
 
 TEST(ServoScenario,
-     a_pause_beyond_the_devices_own_watchdog_is_a_fault_or_where_timing_latches_none_a_new_ramp) {
+     a_pause_beyond_the_devices_own_watchdog_is_a_fault_or_where_an_emulated_one_latches_none_a_new_ramp) {
     for (const bool latches : {true, false}) {
         ServoSettings settings;
-        settings.watchdogs.timing_latches = latches;
+        settings.watchdogs.timing_latches = false;
+        settings.watchdogs.device_watchdog_latches = latches;
         Lockstep loop(settings);
         loop.model_.stiffness_n_m = 4.0;
         loop.active();

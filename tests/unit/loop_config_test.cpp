@@ -231,5 +231,16 @@ TEST(Config, values_of_the_file_reach_the_servo_in_si_units) {
     EXPECT_FALSE(s.watchdogs.timing_latches);  // emulated
 }
 
+TEST(Config, only_where_nobodys_hand_is_on_the_device_may_its_own_watchdog_latch_nothing) {
+    RtConfig config;
+    for (const char* const word : {"real", "always", "never"}) {
+        config.safety.timing_latches = word;
+        EXPECT_TRUE(settings_from(config, false).watchdogs.device_watchdog_latches) << word;
+        EXPECT_EQ(settings_from(config, true).watchdogs.device_watchdog_latches,
+                  config.safety.timing_latches == "always")
+            << word;
+    }
+}
+
 }  // namespace
 }  // namespace tact
