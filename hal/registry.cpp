@@ -26,20 +26,25 @@ std::unique_ptr<HapticDevice> make_phantom_usb(const DeviceSettings& s) {
                            .arm = s.arm,
                            .hold_max = s.state_hold,
                            .watchdog_max = std::max(s.sim.watchdog, phantom::UsbPump::kWatchdogMax),
-                           .pump_priority = s.pump_priority});
+                           .pump_priority = s.pump_priority,
+                           .say = s.say});
 }
 
 std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {
     OpenHapticsSettings settings;
     settings.library = s.hd_library;
     settings.device = s.hd_device;
+    settings.say = s.say;
     return std::make_unique<OpenHaptics>(settings);
 }
 
 std::unique_ptr<HapticDevice> make_polhem(const DeviceSettings& s) {
     return std::make_unique<PhantomUsb>(
-        PhantomUsbSettings{
-            .serial = s.serial, .arm = s.arm, .hold_max = s.state_hold, .pump_priority = s.pump_priority},
+        PhantomUsbSettings{.serial = s.serial,
+                           .arm = s.arm,
+                           .hold_max = s.state_hold,
+                           .pump_priority = s.pump_priority,
+                           .say = s.say},
         std::make_unique<polhem::PolhemBus>(std::make_unique<polhem::HidrawPort>()));
 }
 

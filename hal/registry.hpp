@@ -18,6 +18,8 @@ struct DeviceSettings {
     std::string serial;                                  // of a real device; empty: the only one there is
     Duration state_hold = std::chrono::milliseconds(3);  // a real device's newest state is good for so long
     int pump_priority = 0;    // FIFO, of the thread that owns a real device's bus; 0: ordinary scheduling
+    void (*say)(const char* text) =
+        nullptr;              // while open() waits or goes on with less; null: on standard error
     std::string process_log;  // of "sim-process": file for its changes of state; empty: none
     std::string hd_library;   // of "openhaptics": path of libHD.so; empty: searched
     std::string hd_device;    // and the arm's name in the maker's set-up program; empty: the default one

@@ -256,13 +256,17 @@ int run(const Options& o, const Overrides& overrides) {
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;
     House::catch_signals(mail);
-    const std::unique_ptr<HapticDevice> device = driver.make(device_settings_from(config));
+    DeviceSettings of_device = device_settings_from(config);
+    of_device.say = [](const char* text) { spdlog::warn("{}", text); };
+    const std::unique_ptr<HapticDevice> device = driver.make(of_device);
     const DeviceInfo info = device->open();
     std::unique_ptr<HapticDevice> device2;
     DeviceInfo info2;
     std::unique_ptr<ForceModel> pointer;
     if (two_hands) {
-        device2 = device_driver(config.device2.driver).make(device2_settings_from(config));
+        DeviceSettings of_second = device2_settings_from(config);
+        of_second.say = of_device.say;
+        device2 = device_driver(config.device2.driver).make(of_second);
         info2 = device2->open();
         pointer = std::make_unique<PointerModel>();
     }

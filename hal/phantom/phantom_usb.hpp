@@ -1,6 +1,7 @@
 // A Phantom arm on an amplifier board of PROTOCOL.md, over USB.
 //
-// open()    finds the board, agrees on a version, waits for its first state; then a pump thread owns the bus
+// open()    waits for the board for up to kFindMax, agrees on a version, waits for its first state; then a pump
+//           thread owns the bus
 // read()    newest state: pose, speed, buttons; what PROTOCOL.md's table says is latched here, with its cause
 //           as a notice. Before the arm is calibrated it stands at the origin, nobody's hand is on it, and
 //           the notice says what the person has to do.
@@ -33,10 +34,14 @@ struct PhantomUsbSettings {
     Duration watchdog_max = phantom::UsbPump::kWatchdogMax;  // of the board; a longer one is refused
     int pump_priority = 0;                                   // FIFO; 0: ordinary scheduling
     bool thread = true;  // false: the caller runs pump().round(), for tests
+    void (*say)(const char* text) =
+        nullptr;  // while open() waits or goes on with less; null: on standard error
 };
 
 class PhantomUsb final : public HapticDevice {
 public:
+    static constexpr Duration kFindMax = std::chrono::seconds(5);  // it is just being plugged or switched on
+
     // The board on the bus of this machine, through libusb.
     explicit PhantomUsb(const PhantomUsbSettings& settings);
     PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phantom::UsbBus> bus);
@@ -55,6 +60,7 @@ public:
 private:
     void find_board();
     void wait_for_first_state();
+    void say(const std::string& text) const;
     void start_thread();
     void live() noexcept;
     [[nodiscard]] DeviceInfo describe() const;

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "hal/phantom/libusb_bus.hpp"
 #include "hal/phantom/phantom_usb.hpp"
@@ -18,7 +19,6 @@ using phantom::LinkRefusal;
 
 namespace {
 
-constexpr Duration kFindMax = std::chrono::seconds(3);  // of a board that is just being plugged
 constexpr Duration kFirstMax =
     std::chrono::seconds(2);  // until its first state, or for ten states that are just not too old
 constexpr Duration kFlushMax = std::chrono::milliseconds(50);
@@ -32,9 +32,29 @@ std::string text(const std::array<char, 16>& chars) {
     return s;
 }
 
+std::string name_of(const std::string& serial) {
+    return serial.empty() ? "the arm's USB board" : "the arm's USB board " + serial;
+}
+
+// What may still become a board that can be opened: it is being plugged, udev has not set its rights yet, the
+// program before this one is ending.
+bool passes(BusFault fault) noexcept {
+    return fault == BusFault::missing || fault == BusFault::denied || fault == BusFault::not_ready ||
+           fault == BusFault::busy;
+}
+
+std::string awaited(const BusFinding& found, const std::string& serial) {
+    const std::string most =
+        std::to_string(std::chrono::duration_cast<std::chrono::seconds>(PhantomUsb::kFindMax).count());
+    const char* const why = found.fault == BusFault::missing  ? "it is not on the bus"
+                            : found.fault == BusFault::denied ? "this user may not open it"
+                            : found.fault == BusFault::busy   ? "another program has it"
+                                                              : "it is not set up yet";
+    return "waiting up to " + most + " s for " + name_of(serial) + ": " + why;
+}
+
 [[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
-    const std::string what =
-        serial.empty() ? std::string("opening the arm's USB board") : "opening the arm's USB board " + serial;
+    const std::string what = "opening " + name_of(serial);
     const std::string there = found.detail.empty() ? "" : "; there are: " + found.detail;
     switch (found.fault) {
         case BusFault::missing:
@@ -92,13 +112,20 @@ DeviceInfo PhantomUsb::open() {
     return describe();
 }
 
+void PhantomUsb::say(const std::string& text) const {
+    if (settings_.say != nullptr) return settings_.say(text.c_str());
+    std::fprintf(stderr, "%s\n", text.c_str());
+}
+
 void PhantomUsb::find_board() {
     const Instant end = bus_->now() + kFindMax;
+    BusFault said = BusFault::none;
     while (true) {
         const BusFinding found = pump_->open();
         if (found.fault == BusFault::none) return;
-        const bool soon = found.fault == BusFault::not_ready || found.fault == BusFault::busy;
-        if (!soon || bus_->now() >= end) refuse(found, settings_.serial);
+        if (!passes(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
+        if (found.fault != said) say(awaited(found, settings_.serial));
+        said = found.fault;
         static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
     }
 }

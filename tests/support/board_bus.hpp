@@ -31,7 +31,7 @@ public:
     phantom::BusFinding open(const std::string& serial) override {
         ++opens;
         last_serial = serial;
-        if (finding != phantom::BusFault::none) return {finding, {}, detail};
+        if (finding != phantom::BusFault::none && opens <= finds) return {finding, {}, detail};
         if (!plugged || (!serial.empty() && serial != serial_))
             return {phantom::BusFault::missing, {}, detail};
         open_ = true;
@@ -122,6 +122,7 @@ public:
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
     phantom::BusFault finding = phantom::BusFault::none;
+    unsigned finds = std::numeric_limits<unsigned>::max();  // of so many calls of open(), the first ones
     std::string detail, usb_serial, last_serial;
     bool plugged = true, out_hangs = false, clears = true;
     unsigned stalls = 0, send_fails = 0, stalls_cleared = 0, opens = 0;

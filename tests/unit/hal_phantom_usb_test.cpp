@@ -393,6 +393,46 @@ TEST(PhantomOpen, errors_say_what_to_do) {
     }
 }
 
+std::vector<std::string>& heard() {
+    static std::vector<std::string> all;
+    return all;
+}
+
+TEST(PhantomOpen, a_board_that_is_just_being_plugged_is_waited_for_and_that_is_said_once) {
+    PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
+    settings.serial = "EMU-1";
+    settings.say = [](const char* text) { heard().emplace_back(text); };
+    for (const BusFault fault : {BusFault::missing, BusFault::denied, BusFault::busy, BusFault::not_ready}) {
+        LockstepPhantom arm(emu::usual<BoardSettings>(), settings);
+        arm.bus().finding = fault;
+        arm.bus().finds = 20;
+        heard().clear();
+        EXPECT_EQ(arm.device().open().serial, "EMU-1");
+        EXPECT_EQ(arm.bus().opens, 21U);
+        ASSERT_EQ(heard().size(), 1U);
+        EXPECT_NE(heard()[0].find("waiting up to 5 s for the arm's USB board EMU-1: "), std::string::npos)
+            << heard()[0];
+    }
+}
+
+TEST(PhantomOpen, a_board_that_never_comes_is_refused_after_a_bounded_time) {
+    LockstepPhantom arm;
+    arm.bus().finding = BusFault::missing;
+    const Instant begin = arm.bus().now();
+    EXPECT_THROW(arm.device().open(), StartupError);
+    EXPECT_GE(arm.bus().now() - begin, PhantomUsb::kFindMax);
+    EXPECT_LT(arm.bus().now() - begin, PhantomUsb::kFindMax + std::chrono::seconds(1));
+}
+
+TEST(PhantomOpen, what_waiting_cannot_mend_is_refused_at_once) {
+    for (const BusFault fault : {BusFault::several, BusFault::twins, BusFault::slow, BusFault::failed}) {
+        LockstepPhantom arm;
+        arm.bus().finding = fault;
+        EXPECT_THROW(arm.device().open(), StartupError);
+        EXPECT_EQ(arm.bus().opens, 1U);
+    }
+}
+
 TEST(PhantomOpen, a_board_that_is_not_configured_yet_is_tried_again) {
     LockstepPhantom arm;
     arm.bus().finding = BusFault::not_ready;
