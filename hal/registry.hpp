@@ -8,6 +8,7 @@
 #include "hal/api/haptic_device.hpp"
 #include "hal/arm/arm_table.hpp"
 #include "hal/sim/sim_device.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact {
 
@@ -17,7 +18,7 @@ struct DeviceSettings {
     ArmFigures arm;                                      // of real arms
     std::string serial;                                  // of a real device; empty: the only one there is
     Duration state_hold = std::chrono::milliseconds(3);  // a real device's newest state is good for so long
-    int pump_priority = 0;    // FIFO, of the thread that owns a real device's bus; 0: ordinary scheduling
+    int pump_priority = kPumpPriority;  // FIFO, of the thread that owns a real device's bus; 0: ordinary
     void (*say)(const char* text) =
         nullptr;              // while open() waits or goes on with less; null: on standard error
     std::string process_log;  // of "sim-process": file for its changes of state; empty: none

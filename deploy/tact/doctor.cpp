@@ -13,12 +13,12 @@
 #include <sstream>
 
 #include "deploy/tact/files.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact::launch {
 namespace {
 
 constexpr int kCapIpcLock = 14, kCapSysNice = 23;
-constexpr int kServoPriority = 80;
 constexpr std::uint64_t kMemlockWanted = 1ULL << 30;  // a scene of a large map, its spline and the program
 constexpr std::uint64_t kNoLimit = ~0ULL;
 constexpr const char* kLimitsMend =
@@ -34,7 +34,7 @@ int error_of_fifo() {
     const int policy = sched_getscheduler(0);
     sched_param before{}, wanted{};
     sched_getparam(0, &before);
-    wanted.sched_priority = kServoPriority;
+    wanted.sched_priority = kSupervisorPriority;
     if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) != 0) return errno;
     sched_setscheduler(0, policy, &before);
     return 0;
@@ -89,15 +89,16 @@ Finding isolation(const Machine& m) {
 }
 
 Finding rtprio(const Machine& m) {
-    if (m.fifo_error == 0)
-        return ok("rtprio", "SCHED_FIFO " + std::to_string(kServoPriority) + " is granted");
-    const bool limit = m.rtprio_max < kServoPriority && !has_capability(m.capabilities, kCapSysNice);
-    return warn(
-        "rtprio",
-        limit ? "SCHED_FIFO is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max)
-              : std::string("SCHED_FIFO is refused (") + std::strerror(m.fifo_error) +
-                    ") although the limits allow it: a container or a group without real-time share",
-        limit ? kLimitsMend : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=95");
+    const std::string asked = "SCHED_FIFO " + std::to_string(kSupervisorPriority);
+    if (m.fifo_error == 0) return ok("rtprio", asked + " is granted");
+    const bool limit = m.rtprio_max < kSupervisorPriority && !has_capability(m.capabilities, kCapSysNice);
+    return warn("rtprio",
+                limit ? asked + " is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max)
+                      : asked + " is refused (" + std::strerror(m.fifo_error) +
+                            ") although the limits allow it: a container or a group without real-time share",
+                limit ? kLimitsMend
+                      : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=" +
+                            std::to_string(kSupervisorPriority));
 }
 
 Finding memlock(const Machine& m) {

@@ -24,6 +24,7 @@
 #include "hal/arm/velocity.hpp"
 #include "hal/phantom/arm_watch.hpp"
 #include "hal/phantom/usb_pump.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact {
 
@@ -32,7 +33,7 @@ struct PhantomUsbSettings {
     ArmFigures arm = arm_figures("premium-1.5");
     Duration hold_max = std::chrono::milliseconds(3);        // the newest state is good for so long
     Duration watchdog_max = phantom::UsbPump::kWatchdogMax;  // of the board; a longer one is refused
-    int pump_priority = 0;                                   // FIFO; 0: ordinary scheduling
+    int pump_priority = kPumpPriority;                       // FIFO; 0: ordinary scheduling
     bool thread = true;  // false: the caller runs pump().round(), for tests
     void (*say)(const char* text) =
         nullptr;  // while open() waits or goes on with less; null: on standard error

@@ -1,6 +1,5 @@
 // What happens on the main thread: finding the board, the first words with it, the pump's thread.
 #include <pthread.h>
-#include <sched.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -184,15 +183,13 @@ void PhantomUsb::start_thread() {
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this] { live(); });
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    const std::string refused =
+        raise_to_fifo(thread_.native_handle(), "the arm's USB", settings_.pump_priority);
+    if (!refused.empty()) say(refused);
 }
 
 void PhantomUsb::live() noexcept {
     pthread_setname_np(pthread_self(), "usb");
-    if (settings_.pump_priority > 0) {
-        sched_param param{};
-        param.sched_priority = settings_.pump_priority;
-        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
-    }
     while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
     const Instant end = bus_->now() + kFlushMax;
     while (!pump_->quiet() && bus_->now() < end) pump_->round(std::chrono::milliseconds(1));

@@ -13,6 +13,7 @@
 #include "hal/lines_registry.hpp"
 #include "hal/registry.hpp"
 #include "hal/tracker_registry.hpp"
+#include "ipc/base/fifo.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/servo.hpp"
 
@@ -24,8 +25,8 @@ struct RtConfig {
         bool free_running = false;
         double spin_us =
             100.0;  // of the sleep before a cycle, spent spinning; hides the wake-up of the kernel
-        std::int64_t core = -1;      // -1: the last isolated core, or with FIFO the last core; -2: not pinned
-        std::int64_t priority = 80;  // FIFO; 0: ordinary scheduling
+        std::int64_t core = -1;  // -1: the last isolated core, or with FIFO the last core; -2: not pinned
+        std::int64_t priority = kServoPriority;  // FIFO; 0: ordinary scheduling
         double model_us_max = 600.0;
         bool lock_memory = true;
     } servo;
@@ -34,11 +35,11 @@ struct RtConfig {
         std::string hand = "passive";  // of the emulated device
         std::int64_t hand_seed = 1;
         double watchdog_us = 10000.0;
-        std::string process_log;  // of sim-process: file for its changes of state
-        std::string serial;       // of a real device; empty: the only one
-        std::int64_t pump_priority = 0;
-        std::string hd_library;  // of openhaptics: libHD.so; empty: searched
-        std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
+        std::string process_log;                     // of sim-process: file for its changes of state
+        std::string serial;                          // of a real device; empty: the only one
+        std::int64_t pump_priority = kPumpPriority;  // FIFO, of the thread on its bus; 0: ordinary
+        std::string hd_library;                      // of openhaptics: libHD.so; empty: searched
+        std::string hd_device;  // of openhaptics: name of the arm; empty: the default one
     } device;
     struct Device2 {
         std::string driver = "none";  // of the second hand, a pointer; the bodies are in the first one

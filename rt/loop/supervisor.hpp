@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact {
 
@@ -42,7 +43,7 @@ private:
 
 class Supervisor {
 public:
-    static constexpr int kPriority = 95;
+    static constexpr int kPriority = kSupervisorPriority;
     static constexpr Duration kEvery = std::chrono::milliseconds(1);
 
     // `drop` is called on the supervisor's thread; it must not wait.

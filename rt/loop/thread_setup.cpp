@@ -13,7 +13,9 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
+#include "ipc/base/fifo.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -91,25 +93,16 @@ void hold_dma_latency(Platform& platform) {
 
 void take_fifo(const ScheduleWish& wish, Platform& platform) {
     if (wish.priority <= 0) return;
-    sched_param param{};
-    param.sched_priority = wish.priority;
-    const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
-    if (error == 0) {
-        platform.flags |= kScheduleFifo;
-        if (wish.limit_processor_time) {
-            // Against a runaway loop above everything else: SIGXCPU, which stops the run in order, after 1 s.
-            const rlimit limit{1'000'000, 2'000'000};
-            setrlimit(RLIMIT_RTTIME, &limit);
-        }
+    if (std::string refused = raise_to_fifo(pthread_self(), "the servo", wish.priority); !refused.empty()) {
+        platform.findings.push_back(std::move(refused));
         return;
     }
-    rlimit limit{};
-    getrlimit(RLIMIT_RTPRIO, &limit);
-    platform.findings.push_back(
-        "cannot use SCHED_FIFO at priority " + std::to_string(wish.priority) + " (" + std::strerror(error) +
-        "): RLIMIT_RTPRIO is " + limit_text(limit.rlim_cur, 1.0, "") +
-        ". Going on with ordinary scheduling.\n  mend: add \"@realtime - rtprio 95\" to "
-        "/etc/security/limits.d/tact.conf and log in again");
+    platform.flags |= kScheduleFifo;
+    if (wish.limit_processor_time) {
+        // Against a runaway loop above everything else: SIGXCPU, which stops the run in order, after 1 s.
+        const rlimit limit{1'000'000, 2'000'000};
+        setrlimit(RLIMIT_RTTIME, &limit);
+    }
 }
 
 void pin(const ScheduleWish& wish, Platform& platform) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact {
 
@@ -20,8 +21,8 @@ struct Platform {
 };
 
 struct ScheduleWish {
-    int priority = 80;  // FIFO; 0: ordinary
-    int core = -1;      // -1: chosen here; -2: not pinned
+    int priority = kServoPriority;  // FIFO; 0: ordinary
+    int core = -1;                  // -1: chosen here; -2: not pinned
     bool lock_memory = true;
     bool limit_processor_time = true;  // RLIMIT_RTTIME; off for a loop that never sleeps
 };

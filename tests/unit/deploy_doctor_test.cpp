@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "ipc/base/fifo.hpp"
 
 namespace tact::launch {
 namespace {
@@ -22,7 +26,7 @@ Machine tuned() {
     m.clocksource = "tsc\n";
     m.cpuinfo = "processor\t: 0\nvendor_id\t: GenuineIntel\nflags\t\t: fpu vme de tsc msr\n\n";
     m.capabilities = "Name:\ttact\nCapEff:\t0000000000000000\nCapBnd:\t000001ffffffffff\n";
-    m.rtprio_max = 90;
+    m.rtprio_max = 95;
     m.memlock_bytes_max = ~0ULL;
     m.cores = 4;
     return m;
@@ -72,6 +76,26 @@ TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
     EXPECT_NE(one(m, "rtprio").mend.find("limits.d"), std::string::npos);
     m.rtprio_max = 99;
     EXPECT_NE(one(m, "rtprio").says.find("container"), std::string::npos);
+}
+
+TEST(Doctor, a_limit_below_the_supervisors_priority_is_named) {
+    Machine m = tuned();
+    m.fifo_error = EPERM;
+    m.rtprio_max = 94;
+    EXPECT_NE(one(m, "rtprio").says.find("SCHED_FIFO 95 is refused: RLIMIT_RTPRIO is 94"), std::string::npos)
+        << one(m, "rtprio").says;
+}
+
+TEST(Doctor, the_file_of_limits_grants_the_highest_priority_there_is) {
+    std::ifstream in("deploy/limits.conf");
+    int granted = 0;
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        std::string who, kind, what;
+        int value = 0;
+        if (words >> who >> kind >> what >> value && who == "@realtime" && what == "rtprio") granted = value;
+    }
+    EXPECT_EQ(granted, kSupervisorPriority);
 }
 
 TEST(Doctor, an_isolated_core_that_still_ticks_is_not_good_enough) {

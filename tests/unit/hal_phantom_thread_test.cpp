@@ -93,6 +93,29 @@ TEST_F(PhantomThread, ends_with_the_amplifier_on_and_time_standing_still) {
     device_.reset();
 }
 
+std::vector<std::string>& heard() {
+    static std::vector<std::string> all;
+    return all;
+}
+
+TEST(PhantomPriority, that_is_refused_is_said_once_with_its_mend_and_the_driver_goes_on) {
+    PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
+    settings.arm = board().arm;
+    settings.say = [](const char* text) { heard().emplace_back(text); };
+    for (const int priority : {0, 1000}) {  // the latter is refused even to root
+        heard().clear();
+        settings.pump_priority = priority;
+        PhantomUsb device(settings, std::make_unique<emu::BoardBus>(board()));
+        EXPECT_EQ(device.open().serial, "EMU-1");
+        ASSERT_EQ(heard().size(), priority == 0 ? 0U : 1U);
+        if (priority == 0) continue;
+        EXPECT_NE(heard()[0].find("cannot use SCHED_FIFO at priority 1000 for the arm's USB"),
+                  std::string::npos)
+            << heard()[0];
+        EXPECT_NE(heard()[0].find("mend: add \"@realtime - rtprio 95\""), std::string::npos) << heard()[0];
+    }
+}
+
 TEST_F(PhantomThread, ends_at_once_after_it_began_and_after_relax) {
     EXPECT_EQ(device_->open().serial, "EMU-1");
     device_->relax();

@@ -1,0 +1,37 @@
+// Real-time priorities of tact-rt's threads, and how a thread gets its own where that is permitted.
+//
+// Refused  no error: the thread goes on with ordinary scheduling, and there is a text to show, with what was
+//          tried, why it failed and the mend
+// Thread   any, at start-up
+#pragma once
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+#include <cstring>
+#include <string>
+
+namespace tact {
+
+inline constexpr int kServoPriority = 80;
+inline constexpr int kPumpPriority = 85;  // of a device's bus: above the servo, which waits for its states
+inline constexpr int kSupervisorPriority = 95;  // the highest, which deploy/limits.conf grants
+
+// whose: "the servo". Empty: granted, or nothing was wished (0).
+[[nodiscard]] inline std::string raise_to_fifo(pthread_t thread, const std::string& whose, int priority) {
+    if (priority <= 0) return {};
+    sched_param param{};
+    param.sched_priority = priority;
+    const int error = pthread_setschedparam(thread, SCHED_FIFO, &param);
+    if (error == 0) return {};
+    rlimit limit{};
+    getrlimit(RLIMIT_RTPRIO, &limit);
+    return "cannot use SCHED_FIFO at priority " + std::to_string(priority) + " for " + whose + " (" +
+           std::strerror(error) + "): RLIMIT_RTPRIO is " +
+           (limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur)) +
+           ". Going on with ordinary scheduling.\n  mend: add \"@realtime - rtprio " +
+           std::to_string(kSupervisorPriority) + "\" to /etc/security/limits.d/tact.conf and log in again";
+}
+
+}  // namespace tact
