@@ -10,6 +10,7 @@
 #include "ipc/topics/regions.hpp"
 #include "rt/force/force_model.hpp"
 #include "rt/loop/mail.hpp"
+#include "rt/safety/gain_glide.hpp"
 #include "rt/safety/output_chain.hpp"
 #include "rt/safety/state_machine.hpp"
 #include "rt/safety/watchdogs.hpp"
@@ -26,7 +27,8 @@ struct HandCycle {
     bool sample_usable = false;
     ToolState tool;
     StepResult step;
-    Wrench wanted_world;  // after shaping
+    GainGlide field, walls, damper;  // of what is felt of them at today's delay
+    Wrench wanted_world;             // after shaping
     OutputChain chain;
     ChainOutput out;
     Wrench shown_world;                // as sent to the device

@@ -57,7 +57,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
     governor_.set_present(kMeshIndex, false);
     const ModelBodies bodies = c_->hand[0].model->bodies();
     if (bodies.active < bodies.count) governed_structure_ = bodies.structure[bodies.active];
-    stiffness_n_m_max_ = stiffness_max();
+    bound_by_delay();
     arena_.seal();
 }
 
@@ -166,19 +166,6 @@ void Servo::model(CycleState& c) noexcept {
     c.model_cost = clock_.now() - begin;
 }
 
-void Servo::shape(CycleState& c) noexcept {
-    for (std::uint32_t i = 0; i < c.hands; ++i) {
-        HandCycle& h = c.hand[i];
-        // Beyond what is stable at today's delay the whole field is felt weaker, so that no pose is unstable.
-        const double stiffness = settings_.force_scale * h.model->stiffness_n_m();
-        const double scale =
-            settings_.force_scale * (stiffness > stiffness_n_m_max_ ? stiffness_n_m_max_ / stiffness : 1.0);
-        h.wanted_world.force_n =
-            scale * h.step.wrench_world.force_n - settings_.damping_n_s_m * h.tool.twist_world.linear_m_s;
-        h.wanted_world.torque_n_m = h.torque ? Vec3(scale * h.step.wrench_world.torque_n_m) : Vec3::Zero();
-    }
-}
-
 void Servo::safety(CycleState& c) noexcept {
     WatchdogInput look{.now = c.now,
                        .sample_taken_at = c.now,
@@ -231,7 +218,7 @@ void Servo::safety(CycleState& c) noexcept {
              .force_on = force_may_flow(c.run.state),
              .gate_open = c.run.state != RunState::off && c.run.state != RunState::fault && !dropped,
              .amplifier = amplifier_on(c.run.state),
-             .stiffness_n_m_max = stiffness_n_m_max_});
+             .wall_gain = h.walls.gain()});
         h.shown_world = {settings_.T_world_dev.q * h.out.wrench_dev.force_n,
                          settings_.T_world_dev.q * h.out.wrench_dev.torque_n_m};
         say_acts(c, h);
@@ -264,7 +251,7 @@ void Servo::publish(CycleState& c) noexcept {
         health_at_ = c.now;
         health_due_ = true;
         if (statistics_.second_over(c.now)) publish_lateness(c);
-        stiffness_n_m_max_ = stiffness_max();
+        bound_by_delay();
     }
     if (health_due_) publish_health(c);
 }

@@ -97,7 +97,7 @@ private:
     void close(CycleState& c) noexcept TACT_RT;
 
     // Parts of stages: mail in and out (servo_mail.cpp), safety lines (servo_lines.cpp), topics out
-    // (servo_publish.cpp).
+    // (servo_publish.cpp), bounds by the delay (servo_shape.cpp).
     void take_model(CycleState& c) noexcept TACT_RT;
     void ask_for_model(CycleState& c) noexcept TACT_RT;
     void take_mail(CycleState& c) noexcept TACT_RT;
@@ -114,7 +114,8 @@ private:
     void note_fault(const CycleState& c) noexcept TACT_RT;
     void say(EventCode code, double a, double b) noexcept TACT_RT;
     void say_acts(CycleState& c, HandCycle& h) noexcept TACT_RT;
-    [[nodiscard]] double stiffness_max() const noexcept TACT_RT;
+    void bound_by_delay() noexcept TACT_RT;
+    void glide(HandCycle& h, double dt_s) noexcept TACT_RT;
     void say_notice(HandCycle& h, std::uint32_t hand) noexcept TACT_RT;
     void publish_tools(const CycleState& c) noexcept TACT_RT;
     void publish_health(const CycleState& c) noexcept TACT_RT;
@@ -169,7 +170,8 @@ private:
     PictureWatch picture_;
     std::uint32_t levels_vertices_max_ = 0;
 
-    double stiffness_n_m_max_ = 0.0;  // at the delay of the last second
+    // At the delay of the last second.
+    double stiffness_n_m_max_ = 0.0, damping_n_s_m_max_ = 0.0;
 
     // Beneath the governor, where the loop runs freely.
     RateHold hold_;

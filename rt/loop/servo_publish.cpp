@@ -5,7 +5,6 @@
 #include "rt/loop/lines_words.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
-#include "rt/safety/stages.hpp"
 
 namespace tact {
 
@@ -66,11 +65,6 @@ void Servo::say_notice(HandCycle& h, std::uint32_t hand) noexcept {
     h.said = h.sample.notice;
     say(EventCode::device_notice, static_cast<double>(h.said), static_cast<double>(hand));
     health_due_ = true;
-}
-
-double Servo::stiffness_max() const noexcept {
-    return stages::stiffness_max_n_m(settings_.hand_damping_n_s_m, to_s(settings_.period),
-                                     static_cast<double>(statistics_.figures.delay_p99_ns) * 1e-9);
 }
 
 void Servo::publish_tools(const CycleState& c) noexcept {

@@ -6,12 +6,6 @@
 
 namespace tact {
 
-namespace {
-// A pause of the machine must not become a leap of the slew limiter or the ramp: one cycle moves them by no
-// more than two milliseconds' worth.
-constexpr Duration kDtMax = std::chrono::milliseconds(2);
-}  // namespace
-
 OutputChain::OutputChain(const ChainSettings& settings) noexcept
     : settings_(settings),
       translation_(settings.translation),
@@ -21,7 +15,7 @@ OutputChain::OutputChain(const ChainSettings& settings) noexcept
 ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
     ChainOutput out;
     const double elapsed_s = std::max(to_s(in.dt), 0.0);
-    const double dt_s = std::min(elapsed_s, to_s(kDtMax));
+    const double dt_s = std::min(elapsed_s, to_s(stages::kStepMax));
 
     // Finite. Also the pose: later stages calculate with it.
     Wrench w = stages::finite_or_zero(in.wanted_dev);
@@ -48,7 +42,7 @@ ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
 
     // Walls of the workspace.
     const Vec3 wall_n = stages::wall_force_n(pose.p_m, settings_.workspace_half_m, settings_.wall_margin_m,
-                                             std::min(settings_.wall_stiffness_n_m, in.stiffness_n_m_max));
+                                             settings_.wall_stiffness_n_m * in.wall_gain);
     if (!wall_n.isZero(0.0)) out.acts |= kChainWall;
     w.force_n += wall_n;
 

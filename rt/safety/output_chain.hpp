@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
@@ -54,7 +53,7 @@ struct ChainInput {
     bool force_on = false;   // ramp towards full force, else towards none
     bool gate_open = false;  // false: no force and no amplifier, at once
     bool amplifier = false;  // wanted on; it also stays on while the ramp runs out
-    double stiffness_n_m_max = std::numeric_limits<double>::infinity();  // of the walls, at today's delay
+    double wall_gain = 1.0;  // of the walls' stiffness, at today's delay
 };
 
 struct ChainOutput {

@@ -13,6 +13,10 @@
 
 namespace tact::stages {
 
+// A pause of the machine must not become a leap of what moves with time (slew, ramp, gains): one cycle moves them
+// by no more than two milliseconds' worth.
+inline constexpr Duration kStepMax = std::chrono::milliseconds(2);
+
 // Zero in place of a wrench with any component that is not finite.
 [[nodiscard]] inline Wrench finite_or_zero(const Wrench& w) noexcept TACT_RT {
     return w.finite() ? w : Wrench{};
@@ -30,14 +34,30 @@ namespace tact::stages {
     return force;
 }
 
+// How old, on average, the sample is that a force answers: half a period and the delay from the encoders to the
+// motors. A delay that nobody knows is a period: no loop has less than that from one sample to the next.
+[[nodiscard]] inline double wait_s(double period_s, double delay_s) noexcept TACT_RT {
+    return 0.5 * period_s + (delay_s > 0.0 ? delay_s : period_s);
+}
+
 // Largest stiffness that a sampled loop may render: K < b / (T/2 + t_d), with the damping b of hand and arm,
 // the period T and the delay t_d from the encoders to the motors. Without a delay it is Colgate and
 // Schenkel's passivity of a sampled wall, b > K T/2 (1997); with it, Gil, Hulin and others' bound of stability
-// (2009). A delay that nobody knows is a period: no loop has less than that from one sample to the next.
+// (2009).
 [[nodiscard]] inline double stiffness_max_n_m(double damping_n_s_m, double period_s,
                                               double delay_s) noexcept TACT_RT {
-    const double wait_s = 0.5 * period_s + (delay_s > 0.0 ? delay_s : period_s);
-    return wait_s > 0.0 ? damping_n_s_m / wait_s : std::numeric_limits<double>::infinity();
+    const double wait = wait_s(period_s, delay_s);
+    return wait > 0.0 ? damping_n_s_m / wait : std::numeric_limits<double>::infinity();
+}
+
+// Largest damping that such a loop may render to a mass m: B < m / (T/2 + t_d), of the pi/2 m / (T/2 + t_d) at
+// which a damper that comes so late swings by itself. It does not follow the stiffness: up to here what is
+// rendered adds to the damping of hand and arm (Gil, Hulin: K < (b + B) / (T/2 + t_d)), so that to take it
+// away with the field would take it where it is needed most. The bound on stiffness does not count on it.
+[[nodiscard]] inline double damping_max_n_s_m(double mass_kg, double period_s,
+                                              double delay_s) noexcept TACT_RT {
+    const double wait = wait_s(period_s, delay_s);
+    return wait > 0.0 ? mass_kg / wait : std::numeric_limits<double>::infinity();
 }
 
 // Shortened to max, direction kept.

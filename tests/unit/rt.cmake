@@ -3,6 +3,7 @@ find_package(rapidcheck REQUIRED)
 
 tact_test(unit/safety_state_machine_test.cpp USES base safety)
 tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
+tact_test(unit/safety_gain_glide_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_watchdogs_test.cpp USES base safety)
 tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
 tact_test(unit/govern_rate_hold_test.cpp USES base govern)
@@ -27,6 +28,7 @@ tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
+tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force loop safety)
 tact_test(scenario/lines_scenario_test.cpp USES base topics hal force loop)
 tact_test(scenario/bodies_scenario_test.cpp USES base topics assets hal force loop)
 tact_test(scenario/governor_scenario_test.cpp USES base topics hal force loop govern)

@@ -171,13 +171,13 @@ TEST(OutputChain, the_wall_pushes_inwards_and_is_saturated_like_any_force) {
     EXPECT_TRUE(alone.isApprox(Vec3(-1.0, 0.0, 0.0), 1e-9));
 }
 
-TEST(OutputChain, the_wall_is_no_stiffer_than_the_delay_allows) {
+TEST(OutputChain, the_wall_is_as_stiff_as_its_gain_says) {
     OutputChain chain;
     ChainInput in = on(Vec3::Zero());
     in.T_dev_tool.p_m = {0.097, 0.0, 0.0};  // 2 mm deep
-    in.stiffness_n_m_max = 200.0;
+    in.wall_gain = 0.4;
     EXPECT_NEAR(settled(chain, in).wrench_dev.force_n.x(), -0.4, 1e-9);
-    in.stiffness_n_m_max = 1e6;  // the setting holds
+    in.wall_gain = 1.0;
     EXPECT_NEAR(settled(chain, in).wrench_dev.force_n.x(), -1.0, 1e-9);
 }
 
