@@ -11,17 +11,11 @@ namespace tact {
 
 namespace {
 
-Joint6 six(const std::array<Figure, 6>& figures, double unit) {
-    Joint6 v = Joint6::Zero();
-    for (std::size_t i = 0; i < 6; ++i) {
-        if (figures[i].known()) v[static_cast<Eigen::Index>(i)] = figures[i].value * unit;
-    }
-    return v;
-}
-
-Vec3 three(const std::array<Figure, 3>& figures, double unit) {
-    Vec3 v = Vec3::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
+// In SI units; 0 where a figure is not known.
+template <std::size_t N>
+Eigen::Matrix<double, static_cast<int>(N), 1> in_si(const std::array<Figure, N>& figures, double unit) {
+    Eigen::Matrix<double, static_cast<int>(N), 1> v = Eigen::Matrix<double, static_cast<int>(N), 1>::Zero();
+    for (std::size_t i = 0; i < N; ++i) {
         if (figures[i].known()) v[static_cast<Eigen::Index>(i)] = figures[i].value * unit;
     }
     return v;
@@ -114,28 +108,28 @@ ArmParameters arm_parameters(const ArmFigures& f) {
     p.calibration = f.calibration;
     p.thigh_m = f.thigh_mm.value * kMillimetreM;
     p.shin_m = f.shin_mm.value * kMillimetreM;
-    p.origin_m = three(f.origin_mm, kMillimetreM);
-    p.workspace_half_m = three(f.workspace_mm, 0.5 * kMillimetreM);
-    const Joint6 ratio = six(f.drive_ratio, 1.0), counts = six(f.counts_per_turn, 1.0);
+    p.origin_m = in_si(f.origin_mm, kMillimetreM);
+    p.workspace_half_m = in_si(f.workspace_mm, 0.5 * kMillimetreM);
+    const Joint6 ratio = in_si(f.drive_ratio, 1.0), counts = in_si(f.counts_per_turn, 1.0);
     const Eigen::Index sensed = f.wrist == Wrist::none ? 3 : 6, driven = f.wrist == Wrist::driven ? 6 : 3;
     for (Eigen::Index i = 0; i < sensed; ++i) {
         // A count of zero is no encoder at all; the check below refuses what is then infinite.
         p.rad_per_count[i] = 2.0 * std::numbers::pi / (counts[i] * ratio[i]);
     }
-    p.low_rad = six(f.low_deg, kDegreeRad);
-    p.high_rad = six(f.high_deg, kDegreeRad);
+    p.low_rad = in_si(f.low_deg, kDegreeRad);
+    p.high_rad = in_si(f.high_deg, kDegreeRad);
     p.elbow_low_rad = f.elbow_deg[0].value * kDegreeRad;
     p.elbow_high_rad = f.elbow_deg[1].value * kDegreeRad;
-    p.calibration_rad = six(f.calibration_deg, kDegreeRad);
+    p.calibration_rad = in_si(f.calibration_deg, kDegreeRad);
     p.force_n_max = f.force_n_max.value;
     p.force_n_continuous = f.force_n_continuous.value;
     p.stiffness_n_m_max = f.stiffness_n_mm_max.value / kMillimetreM;
     if (f.wrist == Wrist::driven) {
-        p.torque_n_m_max = three(f.torque_mn_m_max, 1e-3);
-        p.torque_n_m_continuous = three(f.torque_mn_m_continuous, 1e-3);
+        p.torque_n_m_max = in_si(f.torque_mn_m_max, 1e-3);
+        p.torque_n_m_continuous = in_si(f.torque_mn_m_continuous, 1e-3);
     }
-    const Joint6 constant = six(f.torque_constant_mn_m_a, 1e-3);
-    const Joint6 max = six(f.current_a_max, 1.0), continuous = six(f.current_a_continuous, 1.0);
+    const Joint6 constant = in_si(f.torque_constant_mn_m_a, 1e-3);
+    const Joint6 max = in_si(f.current_a_max, 1.0), continuous = in_si(f.current_a_continuous, 1.0);
     for (Eigen::Index i = 0; i < driven; ++i) {
         p.joint_n_m_per_a[i] = constant[i] * ratio[i];
         p.current_a_max[i] = max[i];

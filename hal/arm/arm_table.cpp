@@ -21,8 +21,6 @@ namespace tact {
 
 namespace {
 
-constexpr std::array kModels{"omni", "desktop", "premium-1.0", "premium-1.5", "premium-1.5-6dof"};
-
 constexpr Figure verified(double v) { return {v, FigureSource::verified}; }
 constexpr Figure derived(double v) { return {v, FigureSource::derived}; }
 constexpr Figure remembered(double v) { return {v, FigureSource::remembered}; }
@@ -35,6 +33,9 @@ void fill(std::array<Figure, N>& to, FigureSource source, std::initializer_list<
 
 // Sources of whole rows.
 constexpr FigureSource V = FigureSource::verified, D = FigureSource::derived, M = FigureSource::remembered;
+
+// Calibrated where every joint is at 0.
+void calibrated_at_zero(ArmFigures& f) { fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}); }
 
 ArmFigures omni() {
     ArmFigures f;
@@ -64,15 +65,25 @@ ArmFigures desktop() {
     f.wrist = Wrist::sensed;
     f.calibration = CalibrationStyle::automatic;
     fill(f.workspace_mm, M, {160.0, 120.0, 120.0});
-    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+    calibrated_at_zero(f);
     f.force_n_max = remembered(7.9);
     f.force_n_continuous = remembered(1.75);
     f.stiffness_n_mm_max = remembered(1.5);
     return f;
 }
 
-ArmFigures premium_10() {
+// What both sizes have in common.
+ArmFigures premium() {
     ArmFigures f;
+    calibrated_at_zero(f);
+    f.force_n_max = remembered(8.5);
+    f.force_n_continuous = remembered(1.4);
+    f.stiffness_n_mm_max = remembered(3.5);
+    return f;
+}
+
+ArmFigures premium_10() {
+    ArmFigures f = premium();
     f.name = "Phantom Premium 1.0";
     f.thigh_mm = f.shin_mm = remembered(139.7);
     fill(f.origin_mm, D, {0.0, 140.0, 10.0});
@@ -80,15 +91,11 @@ ArmFigures premium_10() {
     fill(f.low_deg, D, {-66.0, -10.0, -30.0});
     fill(f.high_deg, D, {66.0, 120.0, 101.0});
     fill(f.elbow_deg, D, {-64.0, 61.0});
-    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-    f.force_n_max = remembered(8.5);
-    f.force_n_continuous = remembered(1.4);
-    f.stiffness_n_mm_max = remembered(3.5);
     return f;
 }
 
 ArmFigures premium_15() {
-    ArmFigures f;
+    ArmFigures f = premium();
     f.name = "Phantom Premium 1.5";
     f.thigh_mm = verified(209.55);
     f.shin_mm = verified(169.545);
@@ -99,10 +106,6 @@ ArmFigures premium_15() {
     fill(f.low_deg, D, {-74.0, -19.0, -53.0});
     fill(f.high_deg, D, {74.0, 117.0, 106.0});
     fill(f.elbow_deg, D, {-74.0, 72.0});
-    fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-    f.force_n_max = remembered(8.5);
-    f.force_n_continuous = remembered(1.4);
-    f.stiffness_n_mm_max = remembered(3.5);
     // Motor RE25.
     fill(f.torque_constant_mn_m_a, V, {23.4, 23.4, 23.4});
     fill(f.current_a_max, V, {5.5, 5.5, 5.5});  // stall
@@ -136,20 +139,31 @@ ArmFigures premium_15_6dof() {
     return f;
 }
 
+struct Model {
+    const char* name;
+    ArmFigures (*make)();
+};
+constexpr std::array kModels{Model{"omni", &omni}, Model{"desktop", &desktop},
+                             Model{"premium-1.0", &premium_10}, Model{"premium-1.5", &premium_15},
+                             Model{"premium-1.5-6dof", &premium_15_6dof}};
+
 }  // namespace
 
-std::span<const char* const> arm_models() { return kModels; }
+std::vector<std::string> arm_models() {
+    std::vector<std::string> names;
+    for (const Model& m : kModels) names.emplace_back(m.name);
+    return names;
+}
 
 ArmFigures arm_figures(const std::string& model) {
-    constexpr std::array make{&omni, &desktop, &premium_10, &premium_15, &premium_15_6dof};
     std::string known;
-    for (std::size_t i = 0; i < kModels.size(); ++i) {
-        if (model == kModels[i]) {
-            ArmFigures f = make[i]();
+    for (const Model& m : kModels) {
+        if (model == m.name) {
+            ArmFigures f = m.make();
             f.model = model;
             return f;
         }
-        known += (known.empty() ? "" : ", ") + std::string(kModels[i]);
+        known += (known.empty() ? "" : ", ") + std::string(m.name);
     }
     throw StartupError("arm \"" + model + "\"", "there is no arm of this name in the table",
                        "set arm.model to one of: " + known);

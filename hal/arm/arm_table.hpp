@@ -51,7 +51,7 @@ struct ArmFigures {
 };
 
 // The models there are, and their figures. Throws StartupError with the names there are.
-[[nodiscard]] std::span<const char* const> arm_models();
+[[nodiscard]] std::vector<std::string> arm_models();
 [[nodiscard]] ArmFigures arm_figures(const std::string& model);
 
 // One key of [arm]. A key of joints takes three numbers (the arm's joints) or six.

@@ -73,18 +73,16 @@ CalibrationState Calibration::step(const CalibrationInput& input, Instant now) n
     return state_;
 }
 
-const char* Calibration::ask() const noexcept {
-    if (state_ == CalibrationState::done) return "";
+DeviceNotice Calibration::asks() const noexcept {
+    if (state_ == CalibrationState::done) return DeviceNotice::none;
+    const bool waits = state_ == CalibrationState::waiting;
     switch (style_) {
         case CalibrationStyle::reset_pose:
-            return state_ == CalibrationState::waiting ? "hold the arm in its reset pose (thigh level, shin "
-                                                         "straight down, gimbal straight) and confirm"
-                                                       : "keep the arm still";
+            return waits ? DeviceNotice::hold_reset_pose : DeviceNotice::keep_still;
         case CalibrationStyle::inkwell:
-            return state_ == CalibrationState::waiting ? "put the stylus into the inkwell"
-                                                       : "leave the stylus in the inkwell";
+            return waits ? DeviceNotice::stylus_into_inkwell : DeviceNotice::stylus_stays_in_inkwell;
         default:
-            return "move the arm slowly through its workspace until it has calibrated itself";
+            return DeviceNotice::move_about;
     }
 }
 

@@ -13,6 +13,7 @@
 
 #include "hal/arm/arm_kinematics.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/device_notice.hpp"
 
 namespace tact {
 
@@ -37,8 +38,8 @@ public:
     [[nodiscard]] bool force_allowed() const noexcept { return state_ == CalibrationState::done; }
     // Counts in the pose of ArmParameters::calibration_rad; meaningful when done.
     [[nodiscard]] const Counts6& zero() const noexcept { return zero_; }
-    // What a person has to do now, in words for the screen; empty when done.
-    [[nodiscard]] const char* ask() const noexcept;
+    // What a person has to do now; none when done.
+    [[nodiscard]] DeviceNotice asks() const noexcept TACT_RT;
 
     static constexpr Duration kHold = std::chrono::milliseconds(500);  // still for so long
     static constexpr Duration kSilence =

@@ -10,9 +10,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "hal/probe/known_devices.hpp"
+
 namespace tact::emu {
 
-inline constexpr std::uint8_t kInterfaceClass = 0xFF, kInterfaceSubclass = 0x54, kInterfaceProtocol = 0x01;
+inline constexpr std::uint8_t kInterfaceClass = probe::kPhantomInterface >> 16U,
+                              kInterfaceSubclass = probe::kPhantomInterface >> 8U & 0xFFU,
+                              kInterfaceProtocol = probe::kPhantomInterface & 0xFFU;
 inline constexpr std::uint8_t kEndpointIn = 0x81, kEndpointOut = 0x02;
 inline constexpr std::uint16_t kPacketBytesMax = 64;
 

@@ -9,15 +9,13 @@
 #include <algorithm>
 #include <cstring>
 #include <utility>
-#include <vector>
 
-#include "ipc/base/error.hpp"
+#include "hal/phantom/libusb_find.hpp"
 
 namespace tact::phantom {
 
 namespace {
 
-constexpr int kClass = 0xFF, kSubclass = 0x54, kProtocol = 0x01;
 constexpr std::size_t kIn = 4;  // transfers that wait for a state
 // One whole packet. A transfer ends with a packet that is shorter than the endpoint's largest, or when its memory
 // is full: with more than this, states of full size would be glued together, eight of them in 512 bytes.
@@ -30,52 +28,6 @@ constexpr Duration kCloseMax = std::chrono::milliseconds(500);
 timespec to_timespec(Duration d) noexcept {
     const std::int64_t ns = std::max<std::int64_t>(d.count(), 0);
     return {ns / 1'000'000'000, ns % 1'000'000'000};
-}
-
-// Where the board's interface and endpoints are.
-struct Board {
-    libusb_device* device = nullptr;
-    int interface = 0;
-    unsigned char in = 0, out = 0;
-    std::string serial;
-};
-
-bool find_interface(libusb_device* device, Board& board) {
-    libusb_config_descriptor* config = nullptr;
-    if (libusb_get_config_descriptor(device, 0, &config) != 0) return false;
-    bool found = false;
-    for (int i = 0; i < config->bNumInterfaces && !found; ++i) {
-        if (config->interface[i].num_altsetting < 1) continue;
-        const libusb_interface_descriptor& d = config->interface[i].altsetting[0];
-        if (d.bInterfaceClass != kClass || d.bInterfaceSubClass != kSubclass ||
-            d.bInterfaceProtocol != kProtocol)
-            continue;
-        board = {device, d.bInterfaceNumber, 0, 0, {}};
-        for (int e = 0; e < d.bNumEndpoints; ++e) {
-            if ((d.endpoint[e].bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_INTERRUPT) continue;
-            const unsigned char address = d.endpoint[e].bEndpointAddress;
-            ((address & LIBUSB_ENDPOINT_IN) != 0 ? board.in : board.out) = address;
-        }
-        found = board.in != 0 && board.out != 0;
-    }
-    libusb_free_config_descriptor(config);
-    return found;
-}
-
-std::string place(libusb_device* device) {
-    char text[48];
-    std::snprintf(text, sizeof text, "/dev/bus/usb/%03d/%03d", libusb_get_bus_number(device),
-                  libusb_get_device_address(device));
-    return text;
-}
-
-std::string serial_of(libusb_device* device, libusb_device_handle* handle) {
-    libusb_device_descriptor d{};
-    unsigned char text[64] = {};
-    if (libusb_get_device_descriptor(device, &d) != 0 || d.iSerialNumber == 0) return {};
-    const int n = libusb_get_string_descriptor_ascii(handle, d.iSerialNumber, text, sizeof text - 1);
-    return n > 0 ? std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(n))
-                 : std::string();
 }
 
 class LibusbBus final : public UsbBus {
@@ -99,8 +51,7 @@ private:
         bool busy = false;
         std::array<unsigned char, kInBytes> bytes{};
     };
-    [[nodiscard]] BusFinding look(const std::string& serial, Board& board, libusb_device_handle*& handle);
-    [[nodiscard]] BusFinding claim(const Board& board);
+    [[nodiscard]] BusFinding claim();
     void queue(In& in) noexcept;
     void push(BusEventKind kind, std::span<const unsigned char> bytes = {}) noexcept;
     void handle_now() noexcept;
@@ -110,7 +61,7 @@ private:
 
     libusb_context* context_ = nullptr;
     libusb_device_handle* handle_ = nullptr;
-    Board board_;
+    UsbBoard board_;
     bool claimed_ = false, closing_ = false, stall_said_ = false, gone_ = false;
     unsigned errors_ = 0;  // in a row
     std::array<In, kIn> in_;
@@ -123,53 +74,12 @@ private:
     nfds_t polled_count_ = 0;
 };
 
-// Opens every candidate, since only an open device tells its serial.
-BusFinding LibusbBus::look(const std::string& serial, Board& board, libusb_device_handle*& handle) {
-    libusb_device** list = nullptr;
-    const ssize_t n = libusb_get_device_list(context_, &list);
-    if (n < 0) return {BusFault::failed, {}, libusb_error_name(static_cast<int>(n))};
-    BusFinding found;
-    std::string denied;
-    bool slow = false;
-    std::vector<std::pair<Board, libusb_device_handle*>> matching;
-    for (ssize_t i = 0; i < n; ++i) {
-        Board b;
-        libusb_device_handle* h = nullptr;
-        if (!find_interface(list[i], b)) continue;
-        const int error = libusb_open(list[i], &h);
-        if (error == LIBUSB_ERROR_ACCESS) denied = place(list[i]);
-        if (error != 0) continue;
-        b.serial = serial_of(list[i], h);
-        found.detail += (found.detail.empty() ? "" : ", ") + (b.serial.empty() ? "(no serial)" : b.serial);
-        if (!serial.empty() && b.serial != serial) {
-            libusb_close(h);
-            continue;
-        }
-        slow = slow || libusb_get_device_speed(list[i]) < LIBUSB_SPEED_HIGH;
-        matching.emplace_back(b, h);
-    }
-    libusb_free_device_list(list, 1);  // what is open keeps its device
-    found.fault = matching.size() == 1 ? (slow ? BusFault::slow : BusFault::none)
-                  : !matching.empty()  ? (serial.empty() ? BusFault::several : BusFault::twins)
-                  : !denied.empty()    ? BusFault::denied
-                                       : BusFault::missing;
-    if (found.fault == BusFault::denied) found.detail = denied;
-    if (found.fault != BusFault::none) {
-        for (const auto& [b, h] : matching) libusb_close(h);
-        return found;
-    }
-    board = matching[0].first;
-    handle = matching[0].second;
-    found.serial = board.serial;
-    return found;
-}
-
-BusFinding LibusbBus::claim(const Board& board) {
+BusFinding LibusbBus::claim() {
     static_cast<void>(libusb_set_auto_detach_kernel_driver(handle_, 1));
-    const int error = libusb_claim_interface(handle_, board.interface);
+    const int error = libusb_claim_interface(handle_, board_.interface);
     if (error == 0) {
         claimed_ = true;
-        return {BusFault::none, board.serial, {}};
+        return {BusFault::none, board_.serial, {}};
     }
     // Arrived before its configuration was set.
     const bool soon = error == LIBUSB_ERROR_NOT_FOUND || error == LIBUSB_ERROR_NO_DEVICE;
@@ -187,8 +97,8 @@ BusFinding LibusbBus::open(const std::string& serial) {
         context_ = nullptr;
         return {BusFault::failed, {}, std::string("starting libusb: ") + libusb_error_name(error)};
     }
-    BusFinding found = look(serial, board_, handle_);
-    if (found.fault == BusFault::none) found = claim(board_);
+    BusFinding found = find_board(context_, serial, board_, handle_);
+    if (found.fault == BusFault::none) found = claim();
     if (found.fault != BusFault::none) {
         close();
         return found;

@@ -1,6 +1,7 @@
 #include "hal/phantom/packets.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <type_traits>
 
 namespace tact::phantom {
@@ -45,16 +46,6 @@ void write(std::span<std::byte> bytes, std::size_t at, T value) noexcept {
         bytes[at + i] = static_cast<std::byte>((v >> (8 * i)) & 0xFFU);
 }
 
-template <class T, std::size_t N>
-void write_all(std::span<std::byte> bytes, std::size_t at, const std::array<T, N>& values) noexcept {
-    for (std::size_t i = 0; i < N; ++i) write(bytes, at + i * sizeof(T), values[i]);
-}
-
-template <class T, std::size_t N>
-void read_all(std::span<const std::byte> bytes, std::size_t at, std::array<T, N>& values) noexcept {
-    for (std::size_t i = 0; i < N; ++i) values[i] = read<T>(bytes, at + i * sizeof(T));
-}
-
 void head(std::span<std::byte> bytes, std::uint8_t version, Kind kind) noexcept {
     write(bytes, 0, kMagic);
     write(bytes, 2, version);
@@ -76,10 +67,6 @@ PacketFault check(std::span<const std::byte> bytes, std::size_t size, std::uint8
     return PacketFault::none;
 }
 
-bool zero(std::span<const std::byte> bytes) noexcept {
-    return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
-}
-
 // Printable up to the first zero, zeros from there on.
 bool text(const std::array<char, 16>& chars) noexcept {
     bool ended = false;
@@ -90,164 +77,175 @@ bool text(const std::array<char, 16>& chars) noexcept {
     return true;
 }
 
+// One way each: the fields of a packet at their places, and the reserved bytes between them.
+class Writer {
+public:
+    explicit Writer(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}
+
+    template <class T>
+    void operator()(std::size_t at, const T& value) noexcept {
+        write(bytes_, at, value);
+    }
+    template <class T, std::size_t N>
+    void operator()(std::size_t at, const std::array<T, N>& values) noexcept {
+        for (std::size_t i = 0; i < N; ++i) write(bytes_, at + i * sizeof(T), values[i]);
+    }
+    void operator()(std::size_t at, bool value) noexcept {
+        write(bytes_, at, static_cast<std::uint16_t>(value ? 1 : 0));
+    }
+    void reserved(std::size_t /*at*/, std::size_t /*size*/) noexcept {}  // zero from the start
+
+private:
+    std::span<std::byte> bytes_;
+};
+
+class Reader {
+public:
+    explicit Reader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
+
+    template <class T>
+    void operator()(std::size_t at, T& value) noexcept {
+        value = read<T>(bytes_, at);
+    }
+    template <class T, std::size_t N>
+    void operator()(std::size_t at, std::array<T, N>& values) noexcept {
+        for (std::size_t i = 0; i < N; ++i) values[i] = read<T>(bytes_, at + i * sizeof(T));
+    }
+    void operator()(std::size_t at, bool& value) noexcept {
+        const auto flags = read<std::uint16_t>(bytes_, at);
+        clean_ = clean_ && flags <= 1;
+        value = flags == 1;
+    }
+    void reserved(std::size_t at, std::size_t size) noexcept {
+        for (const std::byte b : bytes_.subspan(at, size)) clean_ = clean_ && b == std::byte{0};
+    }
+    [[nodiscard]] bool clean() const noexcept { return clean_; }  // what is reserved is zero
+
+private:
+    std::span<const std::byte> bytes_;
+    bool clean_ = true;
+};
+
+// PROTOCOL.md's tables. `Of` is the packet, const on the way out.
+template <class Way, class Of>
+requires std::same_as<std::remove_const_t<Of>, State>
+void fields(Way& way, Of& s) noexcept {
+    way(4, s.sequence);
+    way(8, s.time_us);
+    way(12, s.command_seen);
+    way(16, s.counts);
+    way(40, s.current_ma);
+    way(52, s.status);
+    way(54, s.inputs);
+    way(56, s.boot);
+    way(58, s.commands_refused);
+    way.reserved(59, 1);
+}
+
+template <class Way, class Of>
+requires std::same_as<std::remove_const_t<Of>, Command>
+void fields(Way& way, Of& c) noexcept {
+    way(4, c.sequence);
+    way(8, c.heartbeat);
+    way(12, c.current_ma);
+    way(24, c.enable);
+    way(26, c.boot);
+}
+
+template <class Way, class Of>
+requires std::same_as<std::remove_const_t<Of>, Query>
+void fields(Way& way, Of& q) noexcept {
+    way(4, q.version_low);
+    way(5, q.version_high);
+    way.reserved(6, 6);
+}
+
+template <class Way, class Of>
+requires std::same_as<std::remove_const_t<Of>, Info>
+void fields(Way& way, Of& i) noexcept {
+    way(4, i.version_low);
+    way(5, i.version_high);
+    way(6, i.boot);
+    way(8, i.rate_hz);
+    way(10, i.watchdog_ms);
+    way(12, i.serial);
+    way(28, i.model);
+    way(44, i.current_ma_max);
+    way.reserved(56, 4);
+}
+
+// What the values themselves must keep to.
+PacketFault complaint(const State& s) noexcept {
+    const bool reserved = (s.status & ~status::kAll) != 0 || (s.inputs & ~input::kAll) != 0;
+    return reserved ? PacketFault::reserved : PacketFault::none;
+}
+PacketFault complaint(const Command& /*c*/) noexcept { return PacketFault::none; }
+PacketFault complaint(const Query& q) noexcept {
+    return q.version_low == 0 || q.version_low > q.version_high ? PacketFault::version : PacketFault::none;
+}
+PacketFault complaint(const Info& i) noexcept {
+    if (i.version_low == 0 || i.version_low > i.version_high) return PacketFault::version;
+    return text(i.serial) && text(i.model) ? PacketFault::none : PacketFault::text;
+}
+
+template <std::size_t N, class Packet>
+std::array<std::byte, N> encoded(std::uint8_t version, Kind kind, const Packet& packet) noexcept {
+    std::array<std::byte, N> out{};
+    head(out, version, kind);
+    Writer way(out);
+    fields(way, packet);
+    seal(out);
+    return out;
+}
+
+template <std::size_t N, class Packet>
+PacketFault decoded(std::span<const std::byte> bytes, std::uint8_t version, Kind kind, Packet& out) noexcept {
+    if (const PacketFault f = check(bytes, N, version, kind); f != PacketFault::none) return f;
+    Packet packet;
+    Reader way(bytes);
+    fields(way, packet);
+    if (!way.clean()) return PacketFault::reserved;
+    if (const PacketFault f = complaint(packet); f != PacketFault::none) return f;
+    out = packet;
+    return PacketFault::none;
+}
+
 }  // namespace
 
+std::string_view text_of(const std::array<char, 16>& chars) noexcept {
+    return {chars.data(),
+            static_cast<std::size_t>(std::find(chars.begin(), chars.end(), '\0') - chars.begin())};
+}
+
 std::array<std::byte, kStateBytes> encode(const State& s) noexcept {
-    std::array<std::byte, kStateBytes> out{};
-    head(out, kVersion, Kind::state);
-    write(std::span(out), 4, s.sequence);
-    write(std::span(out), 8, s.time_us);
-    write(std::span(out), 12, s.command_seen);
-    write_all(out, 16, s.counts);
-    write_all(out, 40, s.current_ma);
-    write(std::span(out), 52, s.status);
-    write(std::span(out), 54, s.inputs);
-    write(std::span(out), 56, s.boot);
-    write(std::span(out), 58, s.commands_refused);
-    seal(out);
-    return out;
+    return encoded<kStateBytes>(kVersion, Kind::state, s);
 }
-
 std::array<std::byte, kCommandBytes> encode(const Command& c) noexcept {
-    std::array<std::byte, kCommandBytes> out{};
-    head(out, kVersion, Kind::command);
-    write(std::span(out), 4, c.sequence);
-    write(std::span(out), 8, c.heartbeat);
-    write_all(out, 12, c.current_ma);
-    write(std::span(out), 24, static_cast<std::uint16_t>(c.enable ? 1 : 0));
-    write(std::span(out), 26, c.boot);
-    seal(out);
-    return out;
+    return encoded<kCommandBytes>(kVersion, Kind::command, c);
 }
-
 std::array<std::byte, kQueryBytes> encode(const Query& q) noexcept {
-    std::array<std::byte, kQueryBytes> out{};
-    head(out, kFrozen, Kind::query);
-    write(std::span(out), 4, q.version_low);
-    write(std::span(out), 5, q.version_high);
-    seal(out);
-    return out;
+    return encoded<kQueryBytes>(kFrozen, Kind::query, q);
 }
-
 std::array<std::byte, kInfoBytes> encode(const Info& i) noexcept {
-    std::array<std::byte, kInfoBytes> out{};
-    head(out, kFrozen, Kind::info);
-    write(std::span(out), 4, i.version_low);
-    write(std::span(out), 5, i.version_high);
-    write(std::span(out), 6, i.boot);
-    write(std::span(out), 8, i.rate_hz);
-    write(std::span(out), 10, i.watchdog_ms);
-    write_all(out, 12, i.serial);
-    write_all(out, 28, i.model);
-    write_all(out, 44, i.current_ma_max);
-    seal(out);
-    return out;
+    return encoded<kInfoBytes>(kFrozen, Kind::info, i);
 }
 
 PacketFault decode(std::span<const std::byte> bytes, State& out) noexcept {
-    if (const PacketFault f = check(bytes, kStateBytes, kVersion, Kind::state); f != PacketFault::none)
-        return f;
-    State s;
-    s.sequence = read<std::uint32_t>(bytes, 4);
-    s.time_us = read<std::uint32_t>(bytes, 8);
-    s.command_seen = read<std::uint32_t>(bytes, 12);
-    read_all(bytes, 16, s.counts);
-    read_all(bytes, 40, s.current_ma);
-    s.status = read<std::uint16_t>(bytes, 52);
-    s.inputs = read<std::uint16_t>(bytes, 54);
-    s.boot = read<std::uint16_t>(bytes, 56);
-    s.commands_refused = read<std::uint8_t>(bytes, 58);
-    const bool reserved = (s.status & ~status::kAll) != 0 || (s.inputs & ~input::kAll) != 0;
-    if (reserved || !zero(bytes.subspan(59, 1))) return PacketFault::reserved;
-    out = s;
-    return PacketFault::none;
+    return decoded<kStateBytes>(bytes, kVersion, Kind::state, out);
 }
-
 PacketFault decode(std::span<const std::byte> bytes, Command& out) noexcept {
-    if (const PacketFault f = check(bytes, kCommandBytes, kVersion, Kind::command); f != PacketFault::none)
-        return f;
-    Command c;
-    c.sequence = read<std::uint32_t>(bytes, 4);
-    c.heartbeat = read<std::uint32_t>(bytes, 8);
-    read_all(bytes, 12, c.current_ma);
-    const auto flags = read<std::uint16_t>(bytes, 24);
-    c.boot = read<std::uint16_t>(bytes, 26);
-    if (flags > 1) return PacketFault::reserved;
-    c.enable = flags == 1;
-    out = c;
-    return PacketFault::none;
+    return decoded<kCommandBytes>(bytes, kVersion, Kind::command, out);
 }
-
 PacketFault decode(std::span<const std::byte> bytes, Query& out) noexcept {
-    if (const PacketFault f = check(bytes, kQueryBytes, kFrozen, Kind::query); f != PacketFault::none)
-        return f;
-    const Query q{read<std::uint8_t>(bytes, 4), read<std::uint8_t>(bytes, 5)};
-    if (!zero(bytes.subspan(6, 6))) return PacketFault::reserved;
-    if (q.version_low == 0 || q.version_low > q.version_high) return PacketFault::version;
-    out = q;
-    return PacketFault::none;
+    return decoded<kQueryBytes>(bytes, kFrozen, Kind::query, out);
 }
-
 PacketFault decode(std::span<const std::byte> bytes, Info& out) noexcept {
-    if (const PacketFault f = check(bytes, kInfoBytes, kFrozen, Kind::info); f != PacketFault::none) return f;
-    Info i;
-    i.version_low = read<std::uint8_t>(bytes, 4);
-    i.version_high = read<std::uint8_t>(bytes, 5);
-    i.boot = read<std::uint16_t>(bytes, 6);
-    i.rate_hz = read<std::uint16_t>(bytes, 8);
-    i.watchdog_ms = read<std::uint16_t>(bytes, 10);
-    read_all(bytes, 12, i.serial);
-    read_all(bytes, 28, i.model);
-    read_all(bytes, 44, i.current_ma_max);
-    if (!zero(bytes.subspan(56, 4))) return PacketFault::reserved;
-    if (i.version_low == 0 || i.version_low > i.version_high) return PacketFault::version;
-    if (!text(i.serial) || !text(i.model)) return PacketFault::text;
-    out = i;
-    return PacketFault::none;
+    return decoded<kInfoBytes>(bytes, kFrozen, Kind::info, out);
 }
 
 std::uint8_t common_version(const Query& pc, const Info& device) noexcept {
     const std::uint8_t high = std::min(pc.version_high, device.version_high);
     return high >= pc.version_low && high >= device.version_low ? high : std::uint8_t{0};
-}
-
-Order SequenceGate::refused(std::uint16_t boot, std::uint32_t sequence) noexcept {
-    if (!started_) return Order::taken;
-    if (boot != boot_) {
-        ++counts_.restarted;
-        return Order::restarted;
-    }
-    const auto ahead = static_cast<std::int32_t>(sequence - newest_);
-    if (ahead > 0) return Order::taken;
-    ++(ahead == 0 ? counts_.repeated : counts_.stale);
-    return ahead == 0 ? Order::repeated : Order::stale;
-}
-
-void SequenceGate::take(std::uint16_t boot, std::uint32_t sequence) noexcept {
-    if (started_) counts_.lost += sequence - newest_ - 1U;
-    started_ = true;
-    boot_ = boot;
-    newest_ = sequence;
-    ++counts_.taken;
-}
-
-Order SequenceGate::check(std::uint16_t boot, std::uint32_t sequence) noexcept {
-    const Order order = refused(boot, sequence);
-    if (order == Order::taken) take(boot, sequence);
-    return order;
-}
-
-Order SequenceGate::check(std::uint16_t boot, std::uint32_t sequence, std::uint32_t time_us) noexcept {
-    const Order order = refused(boot, sequence);
-    if (order != Order::taken) return order;
-    if (timed_ && static_cast<std::int32_t>(time_us - newest_us_) <= 0) {
-        ++counts_.clock;
-        return Order::clock;
-    }
-    take(boot, sequence);
-    timed_ = true;
-    newest_us_ = time_us;
-    return order;
 }
 
 }  // namespace tact::phantom

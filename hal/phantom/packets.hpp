@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "ipc/base/rt.hpp"
 
@@ -81,6 +82,9 @@ struct Info {
     std::array<std::uint16_t, 6> current_ma_max{};
     bool operator==(const Info&) const = default;
 };
+
+// Serial and model, up to their first zero; the view ends with `chars`.
+[[nodiscard]] std::string_view text_of(const std::array<char, 16>& chars) noexcept TACT_RT;
 
 [[nodiscard]] std::array<std::byte, kStateBytes> encode(const State& state) noexcept TACT_RT;
 [[nodiscard]] std::array<std::byte, kCommandBytes> encode(const Command& command) noexcept TACT_RT;

@@ -23,19 +23,6 @@ bool loses_count(DeviceNotice n) noexcept {
            n == DeviceNotice::restarted;
 }
 
-DeviceNotice asked(CalibrationStyle style, CalibrationState state) noexcept {
-    if (state == CalibrationState::done) return DeviceNotice::none;
-    const bool waits = state == CalibrationState::waiting;
-    switch (style) {
-        case CalibrationStyle::reset_pose:
-            return waits ? DeviceNotice::hold_reset_pose : DeviceNotice::keep_still;
-        case CalibrationStyle::inkwell:
-            return waits ? DeviceNotice::stylus_into_inkwell : DeviceNotice::stylus_stays_in_inkwell;
-        default:
-            return DeviceNotice::move_about;
-    }
-}
-
 }  // namespace
 
 void PhantomUsb::latch(DeviceNotice fault) noexcept {
@@ -153,7 +140,7 @@ IoStatus PhantomUsb::read(DeviceSample& newest, Instant now) noexcept {
         calibration_.force_allowed() && (news_.state.inputs & phantom::input::kInkwell) == 0;
     sample_.notice = fault_ != DeviceNotice::none ? fault_
                      : news_.last_second_bad      ? DeviceNotice::states_refused
-                                             : asked(arm_.parameters().calibration, calibration_.state());
+                                                  : calibration_.asks();
     newest = sample_;
     newest.taken_at = std::min(sample_.taken_at, now);
     if (!connected || now - sample_.taken_at > std::max(kLostAfter, settings_.hold_max))

@@ -22,15 +22,6 @@ constexpr Duration kFirstMax =
     std::chrono::seconds(2);  // until its first state, or for ten states that are just not too old
 constexpr Duration kFlushMax = std::chrono::milliseconds(50);
 
-std::string text(const std::array<char, 16>& chars) {
-    std::string s;
-    for (const char c : chars) {
-        if (c == '\0') break;
-        s += c;
-    }
-    return s;
-}
-
 std::string name_of(const std::string& serial) {
     return serial.empty() ? "the arm's USB board" : "the arm's USB board " + serial;
 }
@@ -139,7 +130,8 @@ void PhantomUsb::wait_for_first_state() {
         pump_->round(std::chrono::milliseconds(5));
         if (!pump_->read(news_)) continue;
         if (news_.link == Link::refused) {
-            const std::string what = "the arm's USB board " + text(news_.info.serial);
+            const std::string what =
+                "the arm's USB board " + std::string(phantom::text_of(news_.info.serial));
             if (news_.refusal == LinkRefusal::version) {
                 throw StartupError(what,
                                    "it speaks versions " + versions() + " of the protocol, this program " +
@@ -165,8 +157,8 @@ void PhantomUsb::wait_for_first_state() {
 DeviceInfo PhantomUsb::describe() const {
     const ArmParameters& p = arm_.parameters();
     DeviceInfo info;
-    info.name = p.name + " on " + text(news_.info.model);
-    info.serial = text(news_.info.serial);
+    info.name = p.name + " on " + std::string(phantom::text_of(news_.info.model));
+    info.serial = std::string(phantom::text_of(news_.info.serial));
     info.workspace_half_m = p.workspace_half_m;
     info.force_n_max = p.force_n_max;
     info.force_n_continuous = p.force_n_continuous;

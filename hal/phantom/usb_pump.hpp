@@ -17,6 +17,7 @@
 #include <string>
 
 #include "hal/phantom/packets.hpp"
+#include "hal/phantom/pump_counts.hpp"
 #include "hal/phantom/usb_bus.hpp"
 #include "hal/tracker/tracker_clock.hpp"
 #include "ipc/shm/latest.hpp"
@@ -27,20 +28,6 @@ enum class Link : std::uint8_t { closed, asking, refused, open };
 
 // Why the newest connection was refused.
 enum class LinkRefusal : std::uint8_t { none, version, serial, figures };
-
-struct PumpCounts {
-    std::array<std::uint64_t, kPacketFaults> refused{};  // states and answers, by PacketFault
-    std::uint64_t taken = 0, repeated = 0, stale = 0, clock = 0, restarted = 0, lost = 0;
-    std::uint64_t transfers_failed = 0, stalls = 0, reconnects = 0;
-    std::uint64_t sent = 0, asked = 0, answered = 0;  // commands; queries and infos
-    std::uint64_t early = 0;                          // states before the first answer of a connection
-    std::uint64_t refused_by_board = 0;               // commands
-    std::uint64_t bad_seconds = 0;                    // with more than 5 % refused or lost
-    [[nodiscard]] std::uint64_t bad() const noexcept;
-};
-
-// For people: what came over the bus and what of it was refused. Not for the servo's thread.
-[[nodiscard]] std::string summary(const PumpCounts& counts);
 
 // From the pump to the servo.
 struct PumpNews {

@@ -20,7 +20,7 @@ public:
             now += std::chrono::milliseconds(1);
             s = calibration.step(in, now);
             EXPECT_EQ(calibration.force_allowed(), s == CalibrationState::done);
-            EXPECT_EQ(*calibration.ask() == '\0', s == CalibrationState::done);
+            EXPECT_EQ(calibration.asks() == DeviceNotice::none, s == CalibrationState::done);
         }
         return s;
     }

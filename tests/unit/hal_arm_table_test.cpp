@@ -40,7 +40,7 @@ TEST(ArmTable, what_nobody_knows_is_asked_for_by_its_keys) {
     EXPECT_EQ(omni.find("thigh_mm"), std::string::npos);
     EXPECT_TRUE(says(error_of(arm_figures("premium-1.0")), {"counts_per_turn", "drive_ratio"}));
     EXPECT_TRUE(says(error_of(arm_figures("premium-1.5-6dof")), {"torque_constant_mn_m_a", "current_a_max"}));
-    for (const char* model : arm_models()) {
+    for (const std::string& model : arm_models()) {
         EXPECT_EQ(error_of(sample::complete_figures(model)), "") << model;
         EXPECT_EQ(arm_figures(model).model, model);
     }
@@ -74,7 +74,7 @@ TEST(ArmTable, figures_that_contradict_each_other_are_refused) {
 }
 
 TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
-    for (const char* model : arm_models()) {
+    for (const std::string& model : arm_models()) {
         ArmFigures f = arm_figures(model);
         for (const ArmKey& key : arm_keys(f)) {
             EXPECT_LT(key.low, key.high);
@@ -88,7 +88,7 @@ TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
 }
 
 TEST(ArmTable, the_calibrating_pose_lies_within_the_joints_ends) {
-    for (const char* model : arm_models()) {
+    for (const std::string& model : arm_models()) {
         const ArmKinematics arm = sample::arm(model);
         EXPECT_GE(arm.posture(arm.parameters().calibration_rad).to_limit_rad, 0.0) << model;
     }
@@ -103,7 +103,7 @@ TEST(ArmTable, the_readme_has_a_row_for_every_key_and_every_model) {
     for (const ArmKey& key : arm_keys(f)) {
         EXPECT_NE(text.str().find("| `" + std::string(key.name) + "`"), std::string::npos) << key.name;
     }
-    for (const char* model : arm_models()) {
+    for (const std::string& model : arm_models()) {
         EXPECT_NE(text.str().find(model), std::string::npos) << model;
     }
 }
