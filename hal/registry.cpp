@@ -34,7 +34,6 @@ std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {
     OpenHapticsSettings settings;
     settings.library = s.hd_library;
     settings.device = s.hd_device;
-    settings.say = s.say;
     return std::make_unique<OpenHaptics>(settings);
 }
 

@@ -23,7 +23,7 @@ constexpr std::array<FaultMeaning, kFaultKinds> kMeanings{{
     {FaultKind::refused, false, DeviceNotice::commands_not_taken, "the library refuses what it was asked",
      "name the libHD.so that belongs to the device (device.hd_library) and see to its licence"},
     {FaultKind::calibration, false, DeviceNotice::count_lost, "it lost where its encoders count from",
-     "bring it to its calibration pose and start again"},
+     "bring it to its calibration pose, then re-arm"},
 }};
 
 }  // namespace

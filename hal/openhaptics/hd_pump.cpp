@@ -71,6 +71,8 @@ void Pump::take_sample(Instant now) noexcept {
         sample_.angular_rad_s[i] = turn_rad_s[i];
     }
     for (int i = 0; i < 4; ++i) sample_.quat_xyzw[i] = q.coeffs()[i];
+    if (answered_ns_ != 0) sample_.delay_ns = to_ns(now) - answered_ns_ + settings_.transport.count();
+    answered_ns_ = 0;
     sample_.buttons = static_cast<std::uint32_t>(buttons);
     sample_.hand_present = inkwell_ ? 0 : 1;
     sample_.taken_at_ns = to_ns(now);
@@ -90,14 +92,14 @@ bool Pump::confirmed(Instant now) noexcept {
 }
 
 void Pump::calibrate(Instant now) noexcept {
-    const bool before = calibrated();
+    const bool before = calibrated_;
     const bool confirm = confirmed(now);
     if (before && (state_ == DeviceState::powered || counts_.ticks % kCalibrationEvery != 0) &&
         !(inkwell_ && state_ == DeviceState::ready))
         return;
     const Enum status = api_->hdCheckCalibration();
     if (status == kCalibrationOk) {
-        calibrated_.store(true, std::memory_order_release);  // pairs with calibrated()
+        calibrated_ = true;
         return;
     }
     if (state_ == DeviceState::powered) return;  // the position must not jump under a force
@@ -112,7 +114,8 @@ void Pump::calibrate(Instant now) noexcept {
         api_->hdUpdateCalibration(static_cast<Enum>(style));
         ++counts_.calibrations;
     } else if (before && status == kCalibrationNeedsManualInput) {
-        fail(FaultKind::calibration, true, now);
+        calibrated_ = false;
+        fail(FaultKind::calibration, false, now);
     }
 }
 
@@ -144,11 +147,13 @@ void Pump::obey(Instant now) noexcept {
     if (command_.heartbeat != heartbeat_) {
         heartbeat_ = command_.heartbeat;
         heard_at_ = now;
+        answered_ns_ = command_.answers_ns;
     }
     const bool on = command_.enable != 0;
     const bool edge = on && command_.edge != edge_;
     const bool relaxed = command_.relaxed != relaxed_;
-    edge_ = command_.edge;
+    // Before the calibration an edge waits for it, unless enable falls again.
+    if (calibrated_ || relaxed || state_ == DeviceState::fault) edge_ = command_.edge;
     relaxed_ = command_.relaxed;
     if (state_ == DeviceState::fault) {
         if (!on && now - failed_at_ >= kQuiet && !ended_) state_ = DeviceState::ready;
@@ -156,7 +161,7 @@ void Pump::obey(Instant now) noexcept {
     }
     if (!on || (relaxed && !edge)) {
         state_ = DeviceState::ready;
-    } else if (edge && calibrated()) {
+    } else if (edge && calibrated_) {
         state_ = DeviceState::powered;
     }
     if (state_ == DeviceState::powered && now - heard_at_ > settings_.watchdog) {
@@ -184,31 +189,40 @@ void Pump::show() noexcept {
     if (settings_.torque_n_m_max > 0.0) api_->hdSetDoublev(kTorque, torque_mn_m.data());
 }
 
+DeviceNotice Pump::asked() const noexcept {
+    if (calibrated_) return DeviceNotice::none;
+    if ((settings_.styles & kStyleAutomatic) != 0) return DeviceNotice::move_about;
+    if ((settings_.styles & kStyleInkwell) != 0)
+        return inkwell_ ? DeviceNotice::stylus_stays_in_inkwell : DeviceNotice::stylus_into_inkwell;
+    return DeviceNotice::hold_reset_pose;
+}
+
 void Pump::publish() noexcept {
+    if (!calibrated_) {  // its pose is worth nothing yet
+        std::fill_n(sample_.pos_m, 3, 0.0);
+        std::fill_n(sample_.linear_m_s, 3, 0.0);
+        std::fill_n(sample_.angular_rad_s, 3, 0.0);
+        std::fill_n(sample_.quat_xyzw, 3, 0.0);
+        sample_.quat_xyzw[3] = 1.0;
+        sample_.hand_present = 0;
+    }
     sample_.state = static_cast<std::uint8_t>(state_);
     sample_.ended = ended_ ? 1 : 0;
     const DeviceNotice notice = state_ == DeviceState::fault              ? meaning(counts_.last_kind).notice
                                 : state_ == DeviceState::watchdog_tripped ? DeviceNotice::watchdog_tripped
-                                                                          : DeviceNotice::none;
+                                                                          : asked();
     sample_.notice = static_cast<std::uint8_t>(notice);
     if (sample_.sequence > 0) mail_->sample.publish(sample_);
     mail_->counts.publish(counts_);
-}
-
-const char* Pump::ask() const noexcept {
-    if ((settings_.styles & kStyleAutomatic) != 0)
-        return "leave the arm alone until it has calibrated itself";
-    if ((settings_.styles & kStyleInkwell) != 0) return "put the stylus into the inkwell and leave it there";
-    return "hold the arm still in its reset pose (upper arm level, lower arm hanging, gimbal straight) and "
-           "press "
-           "the stylus's button";
 }
 
 IoStatus Pump::read(DeviceSample& newest, Instant now) noexcept {
     SampleWords w;
     if (!mail_->sample.read(w))
         return status_ = mail_->sample.count() == 0 ? IoStatus::lost : IoStatus::stale;
+    taken_at_ns_ = w.taken_at_ns;
     newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
+    newest.delay = Duration(w.delay_ns);
     newest.sequence = w.sequence;
     newest.T_dev_tool.p_m = Eigen::Map<const Vec3>(w.pos_m);
     newest.T_dev_tool.q = Quat(w.quat_xyzw[3], w.quat_xyzw[0], w.quat_xyzw[1], w.quat_xyzw[2]);
@@ -239,6 +253,7 @@ IoStatus Pump::write(const DeviceCommand& command) noexcept {
     w.edge = edges_sent_;
     w.relaxed = relaxed_sent_;
     w.heartbeat = heartbeat_sent_ = command.heartbeat;
+    w.answers_ns = taken_at_ns_;
     mail_->command.publish(w);
     return status_ == IoStatus::lost || status_ == IoStatus::fault ? status_ : IoStatus::ok;
 }

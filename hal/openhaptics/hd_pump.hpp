@@ -3,16 +3,18 @@
 // Frame     as the device's in hal/api: the library's axes are the same; its origin is moved to the middle
 // Enable    force only after an enable edge, and only while heartbeats come: 10 ms without one trip it here,
 //           whatever the servo's thread does
+// Calibrate the device does it, when the person has done what the notice asks for. Before, and once it is lost,
+//           the arm stands at the origin with nobody's hand on it, and no force comes
 // Errors    force zero in the same tick, counted by kind, latched until enable was low for a whole tick and
-//           none came for 100 ms; what ends the scheduler, and lost calibration, until the device is opened
-//           again. Nothing is re-armed by itself: the next enable edge is a person's.
+//           none came for 100 ms; what ends the scheduler, until the device is opened again. Nothing is
+//           re-armed by itself: the next enable edge is a person's.
+// Delay     from a sample's tick to the one after the tick that sent its answer, and what PumpSettings adds
 // Numbers   what is not finite, or a transform that is no rotation, is refused and counted; the last good
 //           sample stays and grows old
 // Thread    tick() on the vendor's; read(), write() and relax() on the servo's: they only touch memory
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <memory>
 
 #include "hal/api/haptic_device.hpp"
@@ -35,7 +37,8 @@ struct Counts {
 struct PumpSettings {
     Vec3 centre_mm = Vec3::Zero();  // of the workspace, in the library's frame
     double force_n_max = 0.0, torque_n_m_max = 0.0;
-    int styles = 0;  // of calibration
+    int styles = 0;         // of calibration
+    Duration transport{0};  // of the counts to the library and of the force to the motors, which no tick sees
     Duration watchdog = std::chrono::milliseconds(10);
 };
 
@@ -47,10 +50,6 @@ public:
     void set(const PumpSettings& settings) noexcept { settings_ = settings; }
 
     Enum tick(Instant now) noexcept;  // what the callback returns
-
-    // Any thread. The library says that it is calibrated; what a person does so that it will.
-    [[nodiscard]] bool calibrated() const noexcept { return calibrated_.load(std::memory_order_acquire); }
-    [[nodiscard]] const char* ask() const noexcept;
 
     IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT;
     IoStatus write(const DeviceCommand& command) noexcept TACT_RT;
@@ -65,7 +64,7 @@ public:
 private:
     // Plain words of sample and command, for Latest.
     struct SampleWords {
-        std::int64_t taken_at_ns;
+        std::int64_t taken_at_ns, delay_ns;
         std::uint64_t sequence;
         double pos_m[3], quat_xyzw[4], linear_m_s[3], angular_rad_s[3];
         std::uint32_t buttons;
@@ -74,7 +73,8 @@ private:
     struct CommandWords {
         double force_n[3], torque_n_m[3];
         std::uint64_t heartbeat;
-        std::uint64_t edge;  // enable edges so far; the newest one counts once
+        std::int64_t answers_ns;  // taken_at_ns of the sample that it answers; 0: none
+        std::uint64_t edge;       // enable edges so far; the newest one counts once
         std::uint32_t enable;
         std::uint32_t relaxed;  // calls of relax() so far: each drops the force, though overwritten at once
     };
@@ -87,6 +87,7 @@ private:
     void take_sample(Instant now) noexcept;
     void calibrate(Instant now) noexcept;
     [[nodiscard]] bool confirmed(Instant now) noexcept;
+    [[nodiscard]] DeviceNotice asked() const noexcept;
     void take_errors(Instant now) noexcept;
     void fail(FaultKind kind, bool ends, Instant now) noexcept;
     void obey(Instant now) noexcept;
@@ -105,14 +106,15 @@ private:
     DeviceState state_ = DeviceState::ready;
     std::uint64_t heartbeat_ = 0, edge_ = 0;
     std::uint32_t relaxed_ = 0;
+    std::int64_t answered_ns_ = 0;  // by the command that the last frame sent; 0: it was no new one
     Instant heard_at_{}, failed_at_{}, held_since_{};
     Vec3 position_mm_ = Vec3::Zero(), held_mm_ = Vec3::Zero();
-    bool ended_ = false, inkwell_ = false, output_on_ = false;
+    bool ended_ = false, inkwell_ = false, output_on_ = false, calibrated_ = false;
     bool button_before_ = true;  // one that is down from the start confirms nothing
-    std::atomic<bool> calibrated_{false};
 
     // On the servo's.
     std::uint64_t sequence_ = 0, heartbeat_sent_ = 0, edges_sent_ = 0;
+    std::int64_t taken_at_ns_ = 0;  // of the newest sample that was read
     std::uint32_t relaxed_sent_ = 0;
     bool low_seen_ = true;  // enable was low since the last edge
     IoStatus status_ = IoStatus::ok;

@@ -18,8 +18,9 @@ constexpr double kPositionStepM = 5.5e-5;
 constexpr double kTorqueMaxNM = 0.048;
 constexpr unsigned long kRateHz = 1000;
 constexpr Duration kLook = std::chrono::milliseconds(5);
-
-void say_on_stderr(const char* text) { std::fprintf(stderr, "openhaptics: %s\n", text); }
+// An estimate, since the library tells no times: the counts of a frame may have been read a period of
+// HD_UPDATE_RATE before it began, and its force reach the motors a period after it ended.
+constexpr double kTransportPeriods = 2.0;
 
 // What a device calls itself, fit for a terminal.
 std::string plain(const char* text, const char* otherwise) {
@@ -63,12 +64,16 @@ void OpenHaptics::close() noexcept {
     pump_.reset();
 }
 
+void OpenHaptics::forget_errors() {
+    for (int n = 0; n < 100 && library_->api().hdGetError().code != hd::kSuccess; ++n) {
+    }
+}
+
 // The newest error of the stack, which is emptied.
 void OpenHaptics::check(const std::string& attempt) {
     const hd::Api& api = library_->api();
     const hd::ErrorInfo error = api.hdGetError();
-    for (int n = 0; n < 100 && api.hdGetError().code != hd::kSuccess; ++n) {
-    }
+    forget_errors();
     if (error.code == hd::kSuccess) return;
     throw StartupError(attempt,
                        plain(api.hdGetErrorString(error.code), "an error without a name") + " (" +
@@ -115,36 +120,36 @@ DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
     return info;
 }
 
-// Waits for the first sample and for calibration.
-void OpenHaptics::home() {
+// The library's own figure before its scheduler runs, else the rate that it was asked for.
+double OpenHaptics::rate_hz() {
+    const hd::Api& api = library_->api();
+    int rate = 0;
+    api.hdGetIntegerv(hd::kUpdateRate, &rate);
+    forget_errors();  // one that does not tell it
+    return rate >= 200 && rate <= 10000 ? rate : static_cast<double>(kRateHz);
+}
+
+void OpenHaptics::wait_for_first_sample() {
     const Instant begin = clock_->now();
-    bool said = false;
     while (true) {
         const hd::Counts c = pump_->counts();
-        const std::string attempt = "calibrating the haptic device";
         DeviceSample sample;
         const bool sampled = pump_->read(sample, clock_->now()) != IoStatus::lost;
         if (c.last_kind != hd::FaultKind::none && hd::meaning(c.last_kind).ends)
-            throw StartupError(attempt, hd::meaning(c.last_kind).says, hd::meaning(c.last_kind).mends);
-        if (pump_->calibrated() && sampled) return;
+            throw StartupError("starting the haptic device", hd::meaning(c.last_kind).says,
+                               hd::meaning(c.last_kind).mends);
+        if (sampled) return;
         const Duration waited = clock_->now() - begin;
-        if (waited > settings_.calibration_wait) {
+        if (waited > settings_.first_sample_max) {
             const std::string s = std::to_string(static_cast<long>(to_s(waited)));
             if (c.ticks == 0)
                 throw StartupError("starting the haptic device",
                                    "its library called for no cycle in " + s + " s",
                                    "unplug and plug the device; free the processor");
-            if (!sampled)
-                throw StartupError("starting the haptic device",
-                                   "it gave no usable position in " + s + " s (" +
-                                       std::to_string(c.refused_samples) + " refused)",
-                                   "try it in the maker's diagnostic program");
-            throw StartupError(attempt, "it was not brought to its calibration pose within " + s + " s",
-                               std::string("start again and ") + pump_->ask());
-        }
-        if (!said && c.ticks > 2) {
-            (settings_.say != nullptr ? settings_.say : &say_on_stderr)(pump_->ask());
-            said = true;
+            throw StartupError("starting the haptic device",
+                               "it gave no usable position in " + s + " s (" +
+                                   std::to_string(c.refused_samples) + " refused)",
+                               "try it in the maker's diagnostic program");
         }
         clock_->wait_until(clock_->now() + kLook);
     }
@@ -171,13 +176,14 @@ DeviceInfo OpenHaptics::open() {
         api.hdEnable(hd::kMaxForceClamping);
         check("setting up " + which);
         pump_ = std::make_unique<hd::Pump>(api, device_);
-        pump_->set(settings);
         api.hdSetSchedulerRate(kRateHz);
-        static_cast<void>(api.hdGetError());  // one that has a single rate keeps it
+        forget_errors();  // one that has a single rate keeps it
+        settings.transport = Duration(std::llround(kTransportPeriods * 1e9 / rate_hz()));
+        pump_->set(settings);
         scheduled_ = api.hdScheduleAsynchronous(&OpenHaptics::callback, this, hd::kPriorityMax);
         running_ = true;
         api.hdStartScheduler();
-        home();
+        wait_for_first_sample();
         return info;
     } catch (...) {
         close();

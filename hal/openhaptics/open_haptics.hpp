@@ -1,8 +1,8 @@
 // A Touch, Omni, Desktop or Premium through its maker's library, where that is installed.
 //
 // Pump     the library's own scheduler thread, 1 kHz: it calls tick() of hd_pump.hpp, which owns the device
-// Home     open() waits until the library says that the arm is calibrated, and tells what a person does for
-// it Ramp     the library's own is off: the force comes through Tact's output chain; its clamp stays on
+// Home     open() waits for the first sample; calibration comes while it runs, with notices for the person
+// Ramp     the library's own is off: the force comes through Tact's output chain; its clamp stays on
 // Thread   open() and destruction at start-up and end; read(), write() and relax() as the contract says
 // Untried  on a real arm: the tests' library takes its place
 #pragma once
@@ -18,8 +18,7 @@ namespace tact {
 struct OpenHapticsSettings {
     std::string library;  // libHD.so; empty: searched
     std::string device;   // as named in the maker's set-up program; empty: the default one
-    Duration calibration_wait = std::chrono::seconds(30);
-    void (*say)(const char* text) = nullptr;  // what a person does now; null: on standard error
+    Duration first_sample_max = std::chrono::seconds(5);
 };
 
 class OpenHaptics final : public HapticDevice {
@@ -41,8 +40,10 @@ private:
     static hd::Enum callback(void* self) noexcept;
     void close() noexcept;
     void check(const std::string& attempt);
+    void forget_errors();
+    [[nodiscard]] double rate_hz();
     DeviceInfo describe(hd::PumpSettings& settings);
-    void home();
+    void wait_for_first_sample();
 
     OpenHapticsSettings settings_;
     std::unique_ptr<Clock> own_clock_;

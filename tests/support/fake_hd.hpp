@@ -20,6 +20,7 @@ struct FakeHd {
     const char* model = "Fake Arm";
     unsigned init_error = 0;  // of the next hdInitDevice
     int styles = 2, dof = 3;  // automatic; only force
+    int rate_hz = 1000;       // that it reports; 0: it does not know the question
     double force_n_max = 3.3;
     bool never_calls = false;         // the scheduler runs nothing
     std::atomic<bool> always{false};  // the error of raise() stays

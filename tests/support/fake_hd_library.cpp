@@ -90,6 +90,7 @@ void reset() {
     f.init_error = 0;
     f.styles = kStyleAutomatic;
     f.dof = 3;
+    f.rate_hz = 1000;
     f.force_n_max = 3.3;
     f.always = f.needs_update = f.needs_manual = f.no_rotation = f.not_a_number = false;
     f.inkwell = f.buttons = 0;
@@ -184,6 +185,8 @@ void hdGetIntegerv(Enum name, int* value) {
         *value = fake().dof;
     } else if (name == kCalibrationStyle) {
         *value = fake().styles;
+    } else if (name == kUpdateRate && fake().rate_hz != 0) {
+        *value = fake().rate_hz;
     } else {
         push(kInvalidEnum);
     }

@@ -44,14 +44,9 @@ private:
     Instant now_ = instant_from_ns(1'000'000'000);
 };
 
-std::string asked;
-void ask(const char* text) { asked = text; }
-
 OpenHapticsSettings settings() {
     OpenHapticsSettings s;
     s.library = TACT_FAKE_HD;
-    s.calibration_wait = std::chrono::seconds(5);
-    s.say = &ask;
     return s;
 }
 
@@ -73,10 +68,7 @@ INSTANTIATE_TEST_SUITE_P(OpenHaptics, HapticDeviceContract,
 
 class OpenHapticsTest : public testing::Test {
 protected:
-    OpenHapticsTest() {
-        fake().reset();
-        asked.clear();
-    }
+    OpenHapticsTest() { fake().reset(); }
 
     void open() {
         device = std::make_unique<OpenHaptics>(settings(), clock);
@@ -307,54 +299,84 @@ TEST_F(OpenHapticsTest, a_scheduler_that_stops_calling_is_a_lost_device) {
     EXPECT_EQ(device->write(command, clock.now()), IoStatus::lost);
 }
 
-TEST_F(OpenHapticsTest, an_arm_that_calibrates_itself_is_waited_for) {
+TEST_F(OpenHapticsTest, an_arm_that_calibrates_itself_is_updated_and_is_ready) {
     fake().needs_update = true;
     open();
+    cycles(3, Vec3::Zero(), false);
     EXPECT_EQ(fake().updates.load(), 1U);
     EXPECT_EQ(device->counts().calibrations, 1U);
+    EXPECT_EQ(sample.notice, DeviceNotice::none);
+    power();
 }
 
-TEST_F(OpenHapticsTest, the_stylus_belongs_into_the_inkwell_and_the_words_say_so) {
+TEST_F(OpenHapticsTest, before_it_is_calibrated_it_stands_at_the_origin_without_hand_and_force_and_asks) {
     fake().styles = hd::kStyleInkwell;
     fake().needs_manual = true;
-    EXPECT_TRUE(says(refusal(), {"calibration pose within 5 s", "mend:", "inkwell"}));
-    EXPECT_TRUE(says(asked, {"inkwell"}));
+    fake().position_mm[0] = 12.0;
+    open();
+    EXPECT_EQ(cycles(300, Vec3(1.0, 0.0, 0.0), true), IoStatus::ok);
+    EXPECT_EQ(sample.notice, DeviceNotice::stylus_into_inkwell);
+    EXPECT_FALSE(sample.hand_present);
+    EXPECT_EQ(sample.T_dev_tool.p_m, Vec3::Zero());
+    EXPECT_EQ(sample.state, DeviceState::ready);
+    EXPECT_EQ(shown(), Vec3::Zero());
     EXPECT_EQ(fake().updates.load(), 0U);
     fake().inkwell = 1;
-    open();
+    cycles(3, Vec3::Zero(), true);
     EXPECT_EQ(fake().updates.load(), 1U);
+    EXPECT_FALSE(sample.hand_present);  // it is still in the inkwell
+    fake().inkwell = 0;
+    cycles(3, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_EQ(sample.notice, DeviceNotice::none);
+    EXPECT_TRUE(sample.hand_present);
+    EXPECT_EQ(sample.state, DeviceState::powered);  // a person enabled it before, and it never fell
+}
+
+TEST_F(OpenHapticsTest, an_enable_that_fell_before_the_calibration_or_was_relaxed_brings_nothing) {
+    for (const bool relax : {false, true}) {
+        fake().reset();
+        fake().styles = hd::kStyleInkwell;
+        fake().needs_manual = true;
+        open();
+        cycles(10, Vec3::Zero(), true);
+        if (relax)
+            device->relax();
+        else
+            cycles(2, Vec3::Zero(), false);
+        fake().inkwell = 1;
+        cycles(10, Vec3::Zero(), relax);
+        fake().inkwell = 0;
+        cycles(10, Vec3(1.0, 0.0, 0.0), relax);
+        EXPECT_EQ(sample.notice, DeviceNotice::none);
+        EXPECT_EQ(sample.state, DeviceState::ready);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        power();
+    }
 }
 
 TEST_F(OpenHapticsTest, the_reset_pose_is_confirmed_by_a_button_after_half_a_second_of_rest) {
-    // The clock presses the button after a second.
-    class Person final : public Clock {
-    public:
-        explicit Person(TickingClock& t) : t_(t), begin_(t.now()) {}
-        Instant now() noexcept override { return t_.now(); }
-        void wait_until(Instant t) noexcept override {
-            fake().buttons = t_.now() - begin_ > std::chrono::seconds(1) ? 1 : 0;
-            t_.wait_until(t);
-        }
-
-    private:
-        TickingClock& t_;
-        Instant begin_;
-    } person(clock);
     fake().styles = hd::kStyleEncoderReset;
     fake().needs_manual = true;
-    OpenHaptics premium(settings(), person);
-    static_cast<void>(premium.open());
-    EXPECT_EQ(fake().updates.load(), 1U);
-    EXPECT_TRUE(says(asked, {"reset pose", "button"}));
-    // A button that is down from the start, or an arm that moves, confirms nothing.
-    fake().reset();
-    fake().styles = hd::kStyleEncoderReset;
-    fake().needs_manual = true;
+    fake().buttons = 1;  // down from the start
+    open();
+    cycles(1000, Vec3::Zero(), false);
+    EXPECT_EQ(sample.notice, DeviceNotice::hold_reset_pose);
+    fake().buttons = 0;
+    for (int i = 0; i < 1000; ++i) {  // an arm that moves
+        fake().position_mm[1] = 0.02 * i;
+        fake().buttons = i % 100 == 99 ? 1 : 0;
+        cycle(Vec3::Zero(), false);
+    }
+    EXPECT_EQ(fake().updates.load(), 0U);
+    fake().buttons = 0;
+    cycles(600, Vec3::Zero(), false);
     fake().buttons = 1;
-    EXPECT_TRUE(says(refusal(), {"calibration pose"}));
+    cycles(3, Vec3::Zero(), false);
+    EXPECT_EQ(fake().updates.load(), 1U);
+    EXPECT_EQ(sample.notice, DeviceNotice::none);
 }
 
-TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_end_it) {
+TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_are_a_fault_that_asks_again) {
     fake().styles = hd::kStyleInkwell;
     open();
     power();
@@ -367,8 +389,34 @@ TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_end_it
     EXPECT_EQ(fake().updates.load(), 1U);
     fake().inkwell = 0;
     fake().needs_manual = true;
-    EXPECT_EQ(cycles(100, Vec3::Zero(), false), IoStatus::lost);
+    EXPECT_EQ(cycles(70, Vec3::Zero(), false), IoStatus::fault);
+    EXPECT_EQ(sample.notice, DeviceNotice::count_lost);
     EXPECT_EQ(device->counts().last_kind, hd::FaultKind::calibration);
+    cycles(200, Vec3::Zero(), false);
+    EXPECT_EQ(sample.notice, DeviceNotice::stylus_into_inkwell);
+    fake().inkwell = 1;
+    cycles(3, Vec3::Zero(), false);
+    EXPECT_EQ(fake().updates.load(), 2U);
+    fake().inkwell = 0;
+    power();
+}
+
+// The force of the cycle after a sample moves the sample after that; 2 periods more are the estimate.
+TEST_F(OpenHapticsTest, the_delay_is_the_ticks_that_are_seen_and_two_periods_of_the_reported_rate) {
+    struct Row {
+        int reported_hz;
+        Duration delay;
+    };
+    for (const Row& row : {Row{1000, milliseconds(4)}, Row{500, milliseconds(6)}, Row{0, milliseconds(4)},
+                           Row{-5, milliseconds(4)}}) {
+        fake().reset();
+        fake().rate_hz = row.reported_hz;
+        open();
+        EXPECT_EQ(sample.delay, Duration{0}) << row.reported_hz;
+        cycles(20, Vec3::Zero(), false);
+        EXPECT_EQ(sample.delay, row.delay) << row.reported_hz;
+        sample = {};
+    }
 }
 
 TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
@@ -400,7 +448,7 @@ TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
 TEST_F(OpenHapticsTest, samples_and_forces_cross_between_the_threads) {
     fake().threaded = true;
     OpenHapticsSettings s = settings();
-    s.calibration_wait = std::chrono::seconds(60);
+    s.first_sample_max = std::chrono::seconds(60);
     OpenHaptics own(s);
     static_cast<void>(own.open());
     const Instant end = Monotonic::now() + std::chrono::minutes(1);
