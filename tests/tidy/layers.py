@@ -32,7 +32,7 @@ BELOW = {
 }
 # Third-party header -> folders that wrap it.
 WRAPPED = [
-    (r"libusb", ["hal/phantom"]),
+    (r"libusb", ["hal/phantom", "hal/falcon"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),

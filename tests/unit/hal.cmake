@@ -24,5 +24,7 @@ add_dependencies(hal_openhaptics_test fake_hd fake_hd_old)
 target_compile_definitions(hal_openhaptics_test PRIVATE TACT_FAKE_HD="$<TARGET_FILE:fake_hd>"
     TACT_FAKE_HD_OLD="$<TARGET_FILE:fake_hd_old>")
 tact_test(unit/hal_polhem_test.cpp USES base arm phantom phantom_usb polhem probe hal_api emu_board SYSTEM rapidcheck)
+tact_test(unit/hal_falcon_boot_test.cpp USES base falcon falcon_core phantom phantom_usb arm hal_api)
+tact_test(unit/hal_falcon_test.cpp USES base falcon falcon_core phantom phantom_usb arm hal_api LABELS tsan)
 tact_test(unit/hal_falcon_kinematics_test.cpp USES base falcon_core)
 tact_test(unit/hal_falcon_packets_test.cpp USES base falcon_core SYSTEM rapidcheck)

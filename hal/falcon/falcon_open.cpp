@@ -1,0 +1,144 @@
+// What happens on the main thread: finding the device, its firmware, the pump's thread.
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+
+#include "hal/falcon/falcon.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+using falcon::BootFault;
+using falcon::Link;
+using phantom::BusFault;
+using phantom::BusFinding;
+
+namespace {
+
+constexpr Duration kFindMax = std::chrono::seconds(3);    // of a device that is just being plugged
+constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, written up to three times
+constexpr Duration kFlushMax = std::chrono::milliseconds(50);
+
+[[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
+    const std::string what = "opening the Falcon" + (serial.empty() ? "" : " " + serial);
+    const std::string there = found.detail.empty() ? "" : "; there are: " + found.detail;
+    switch (found.fault) {
+        case BusFault::missing:
+            throw StartupError(
+                what, "no such device is on the bus" + there,
+                "plug it in, with its own power supply too, or correct device.serial; lsusb shows "
+                "it as 0403:cb48");
+        case BusFault::several:
+            throw StartupError(what, "there are several" + there,
+                               "say which one by device.serial in the configuration");
+        case BusFault::twins:
+            throw StartupError(what, "two have this serial", "plug in one of them");
+        case BusFault::denied:
+            throw StartupError(what, "this user may not open it (" + found.detail + ")",
+                               "sudo deploy/install.sh --rights, which installs deploy/60-tact.rules; log in "
+                               "again and plug it in again");
+        case BusFault::busy:
+            throw StartupError(what, "another program has it (" + found.detail + ")",
+                               "end that program; lsof names it");
+        default:
+            throw StartupError(what, found.detail, "unplug it and plug it in again; see dmesg");
+    }
+}
+
+[[noreturn]] void refuse(BootFault fault, const std::string& serial) {
+    const std::string what = "starting the Falcon" + (serial.empty() ? "" : " " + serial);
+    if (fault == BootFault::no_firmware)
+        throw StartupError(
+            what, boot_fault_text(fault),
+            "set device.firmware to the file that came with the device's own software; Tact has none");
+    throw StartupError(what, boot_fault_text(fault),
+                       "see that its power supply is plugged in; take it off USB and power for a moment; "
+                       "hal/falcon/PROTOCOL.md says what it has to answer");
+}
+
+}  // namespace
+
+Falcon::Falcon(const FalconSettings& settings) : Falcon(settings, falcon::make_ftdi_bus()) {}
+
+Falcon::Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> bus)
+    : settings_(settings), legs_(settings.geometry), bus_(std::move(bus)) {}
+
+Falcon::~Falcon() {
+    relax();
+    leave_.store(true, std::memory_order_relaxed);
+    if (thread_.joinable()) thread_.join();
+    if (pump_) pump_->close();
+}
+
+DeviceInfo Falcon::open() {
+    if (opened_) return describe();
+    std::vector<std::byte> firmware;
+    if (!settings_.firmware.empty()) firmware = falcon::read_firmware(settings_.firmware);
+    pump_ =
+        std::make_unique<falcon::Pump>(*bus_, settings_.serial, std::move(firmware), legs_.rad_per_count());
+    find();
+    wait_for_first_reply();
+    opened_ = true;
+    if (settings_.thread) start_thread();
+    return describe();
+}
+
+void Falcon::find() {
+    const Instant end = bus_->now() + kFindMax;
+    while (true) {
+        const BusFinding found = pump_->open();
+        serial_ = found.serial;
+        if (found.fault == BusFault::none) return;
+        const bool soon = found.fault == BusFault::not_ready || found.fault == BusFault::busy;
+        if (!soon || bus_->now() >= end) refuse(found, settings_.serial);
+        static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
+    }
+}
+
+void Falcon::wait_for_first_reply() {
+    const Instant end = bus_->now() + kFirstMax;
+    while (bus_->now() < end) {
+        pump_->round(std::chrono::milliseconds(1));
+        if (!pump_->read(news_)) continue;
+        if (news_.link == Link::refused) refuse(news_.boot_fault, serial_);
+        if (news_.link == Link::open && news_.replies > 0) return;
+    }
+    throw StartupError("the Falcon " + serial_, "it does not answer (" + summary(news_.counts) + ")",
+                       "take it off USB and power for a moment, and plug it in again");
+}
+
+DeviceInfo Falcon::describe() const {
+    DeviceInfo info;
+    info.name = "Novint Falcon";
+    info.serial = serial_;
+    info.workspace_half_m = Vec3::Constant(falcon::kWorkspaceHalfM);
+    info.force_n_max = falcon::kForceMaxN;
+    info.force_n_continuous = kForceContinuousN;
+    info.stiffness_n_m_max = kStiffnessNM;
+    info.position_step_m = legs_.position_step_m();
+    return info;
+}
+
+void Falcon::start_thread() {
+    // The new thread inherits a mask that lets no signal in: they belong to main.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] { live(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void Falcon::live() noexcept {
+    pthread_setname_np(pthread_self(), "falcon");
+    if (settings_.pump_priority > 0) {
+        sched_param param{};
+        param.sched_priority = settings_.pump_priority;
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+    }
+    while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
+    const Instant end = bus_->now() + kFlushMax;
+    do pump_->round(std::chrono::milliseconds(1));
+    while (!pump_->quiet() && bus_->now() < end);
+}
+
+}  // namespace tact
