@@ -44,6 +44,18 @@ void show(const Observer& observer, bool as_json) {
         std::printf("safety lines %s: %s\n", report["lines"]["state"].get<std::string>().c_str(),
                     report["lines"]["reason"].get<std::string>().c_str());
     }
+    for (const nlohmann::json& device : report["devices"]) {
+        const std::string notice = device["notice"].get<std::string>();
+        if (!notice.empty()) std::printf("device: %s\n", notice.c_str());
+        if (device["bus"].is_null()) continue;
+        std::string wrong;
+        for (const auto& [name, n] : device["bus"].items()) {
+            if (name != "packets" && n != 0)
+                wrong += (wrong.empty() ? "; " : ", ") + name + " " + std::to_string(n.get<std::uint32_t>());
+        }
+        std::printf("device's bus: %u packets%s\n", device["bus"]["packets"].get<std::uint32_t>(),
+                    wrong.c_str());
+    }
     std::printf("law %s, goal %.0f Hz\n",
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);

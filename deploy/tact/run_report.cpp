@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/observer.hpp"
+#include "ipc/base/device_notice.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/topics/text.hpp"
 
@@ -53,6 +55,30 @@ json governor(const RtRegion& region) {
             {"goal_hz", levels->goal_hz},
             {"rate_seen_hz", levels->rate_hz},
             {"paths", paths}};
+}
+
+// Of each hand: what its device says, and what came over its bus where the driver counts.
+json devices(const HealthTopic& h) {
+    json all = json::array();
+    for (std::size_t i = 0; i < std::size(h.device_bus); ++i) {
+        const BusCounts& b = h.device_bus[i];
+        const bool counts = b.packets > 0 || !b.clean();
+        if (i > 0 && !counts && h.device_notice[i] == 0) continue;  // there is no such hand
+        json device = {{"notice", device_notice_text(static_cast<DeviceNotice>(h.device_notice[i]))}};
+        device["bus"] = !counts ? json(nullptr)
+                                : json{{"packets", b.packets},
+                                       {"checksum", b.checksum},
+                                       {"refused", b.refused},
+                                       {"repeated", b.repeated},
+                                       {"lost", b.lost},
+                                       {"transfers_failed", b.transfers_failed},
+                                       {"stalls", b.stalls},
+                                       {"reconnects", b.reconnects},
+                                       {"commands_refused", b.commands_refused},
+                                       {"bad_seconds", b.bad_seconds}};
+        all.push_back(device);
+    }
+    return all;
 }
 
 json head(const RtRegion& region) {
@@ -178,6 +204,7 @@ json controller_report(const RtRegion& region) {
                 {"heartbeat_age_ms", h.gui_heartbeat_age_ns >= 0
                                          ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
                                          : json(nullptr)}};
+    j["devices"] = devices(h);
     j["governor"] = governor(region);
     j["head"] = head(region);
     j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},

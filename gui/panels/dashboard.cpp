@@ -17,7 +17,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px) {
 
     // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
     const float usable = height_px - 4.0F * gap;
-    const float health = std::round(std::min(theme.px(296.0F), 0.44F * usable));
+    const float health = std::round(std::min(theme.px(330.0F), 0.48F * usable));
     const float fit = std::round(std::min(theme.px(212.0F), 0.3F * usable));
     const float inner = at_least_one(left - 2.0F * gap);
     float y = gap;

@@ -70,6 +70,18 @@ void words(const Theme& theme, const HealthTopic& h, const Verdict& state) {
     if (!said) text_small(theme, grade_colour(state.grade), state.words);
 }
 
+// What came over the devices' buses; of those that count.
+void buses(const Theme& theme, const HealthTopic& h) {
+    const char* name = "Bus packets";
+    for (const BusCounts& bus : h.device_bus) {
+        if (bus.packets > 0 || !bus.clean()) {
+            row(theme, name, grouped(bus.packets), bus_verdict(bus));
+            if (!bus.clean()) text_small(theme, colour::kDim, bus_text(bus));
+        }
+        name = "of hand 2";
+    }
+}
+
 void law_and_goal(const Theme& theme, DashboardState& state) {
     if (!state.have_levels) return;
     std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
@@ -142,6 +154,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         row(theme, "Device", device_state_text(h.device_state),
             Verdict{device_grade(h.device_state), grade_text(device_grade(h.device_state))});
         delay(theme, h);
+        buses(theme, h);
         law_and_goal(theme, state);
     }
     buttons(theme, state);

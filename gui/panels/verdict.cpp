@@ -50,6 +50,12 @@ Verdict fresh_verdict(float mean) {
     return {mean >= 0.5F ? Grade::watch : Grade::bad, "the rest is older sums"};
 }
 
+Verdict bus_verdict(const BusCounts& counts) {
+    if (counts.clean()) return {Grade::good, "no errors"};
+    const std::uint64_t bad = std::uint64_t{counts.checksum} + counts.refused + counts.repeated;
+    return {Grade::watch, std::to_string(bad) + " bad, " + std::to_string(counts.lost) + " lost"};
+}
+
 Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles) {
     if (overruns == 0) return {Grade::good, "none"};
     const double part = static_cast<double>(overruns) / static_cast<double>(cycles > 0 ? cycles : 1);

@@ -34,6 +34,8 @@ struct Verdict {
 [[nodiscard]] const char* device_state_text(std::uint8_t device_state) noexcept;
 // What a device asks for is worth a look, what keeps it from showing force is bad.
 [[nodiscard]] Grade notice_grade(DeviceNotice notice) noexcept;
+// What ever was wrong on it is worth a look; whether it still is, its notice says.
+[[nodiscard]] Verdict bus_verdict(const BusCounts& counts);
 [[nodiscard]] Grade device_grade(std::uint8_t device_state) noexcept;
 
 }  // namespace tact

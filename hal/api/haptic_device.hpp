@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "ipc/base/bus_counts.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/base/pose.hpp"
@@ -39,6 +40,7 @@ struct DeviceSample {
     // From an older sample to the first one that the command which answered it could have moved: the way from
     // the encoders to the motors in whole samples, never less than it is. 0: unknown.
     Duration delay{0};
+    BusCounts bus{};
 };
 
 struct DeviceCommand {

@@ -212,6 +212,11 @@ void Pump::publish() noexcept {
                                 : state_ == DeviceState::watchdog_tripped ? DeviceNotice::watchdog_tripped
                                                                           : asked();
     sample_.notice = static_cast<std::uint8_t>(notice);
+    const auto failed = [this](FaultKind kind) { return counts_.faults[static_cast<std::size_t>(kind)]; };
+    sample_.bus.packets = saturated(sample_.sequence);
+    sample_.bus.refused = saturated(counts_.refused_samples);
+    sample_.bus.transfers_failed = saturated(failed(FaultKind::link) + failed(FaultKind::frame));
+    sample_.bus.commands_refused = saturated(failed(FaultKind::refused));
     if (sample_.sequence > 0) mail_->sample.publish(sample_);
     mail_->counts.publish(counts_);
 }
@@ -231,6 +236,7 @@ IoStatus Pump::read(DeviceSample& newest, Instant now) noexcept {
     newest.hand_present = w.hand_present != 0;
     newest.state = static_cast<DeviceState>(w.state);
     newest.notice = static_cast<DeviceNotice>(w.notice);
+    newest.bus = w.bus;
     const bool fresh = w.sequence != sequence_;
     sequence_ = w.sequence;
     if (w.ended != 0 || now - newest.taken_at > kLostAfter) return status_ = IoStatus::lost;

@@ -69,6 +69,7 @@ private:
         double pos_m[3], quat_xyzw[4], linear_m_s[3], angular_rad_s[3];
         std::uint32_t buttons;
         std::uint8_t hand_present, state, ended, notice;
+        BusCounts bus;
     };
     struct CommandWords {
         double force_n[3], torque_n_m[3];

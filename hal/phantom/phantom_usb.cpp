@@ -141,6 +141,7 @@ IoStatus PhantomUsb::read(DeviceSample& newest, Instant now) noexcept {
     sample_.notice = fault_ != DeviceNotice::none ? fault_
                      : news_.last_second_bad      ? DeviceNotice::states_refused
                                                   : calibration_.asks();
+    sample_.bus = news_.counts.shown();
     newest = sample_;
     newest.taken_at = std::min(sample_.taken_at, now);
     if (!connected || now - sample_.taken_at > std::max(kLostAfter, settings_.hold_max))

@@ -8,6 +8,24 @@ std::uint64_t PumpCounts::bad() const noexcept {
     return n;
 }
 
+BusCounts PumpCounts::shown() const noexcept {
+    const std::uint64_t checksum = refused[static_cast<std::size_t>(PacketFault::checksum)];
+    std::uint64_t others = 0;
+    for (const std::uint64_t r : refused) others += r;
+    BusCounts b{};
+    b.packets = saturated(taken);
+    b.checksum = saturated(checksum);
+    b.refused = saturated(others - checksum);
+    b.repeated = saturated(repeated + stale + clock);
+    b.lost = saturated(lost);
+    b.transfers_failed = saturated(transfers_failed);
+    b.stalls = saturated(stalls);
+    b.reconnects = saturated(reconnects);
+    b.commands_refused = saturated(refused_by_board);
+    b.bad_seconds = saturated(bad_seconds);
+    return b;
+}
+
 std::string summary(const PumpCounts& c) {
     constexpr std::array<const char*, kPacketFaults> kNames{"",     "size",     "magic",    "version",
                                                             "kind", "checksum", "reserved", "text"};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hal/phantom/packets.hpp"
+#include "ipc/base/bus_counts.hpp"
 
 namespace tact::phantom {
 
@@ -18,6 +19,8 @@ struct PumpCounts {
     std::uint64_t refused_by_board = 0;               // commands
     std::uint64_t bad_seconds = 0;                    // with more than 5 % refused or lost
     [[nodiscard]] std::uint64_t bad() const noexcept;
+    // The same for topic and screen.
+    [[nodiscard]] BusCounts shown() const noexcept TACT_RT;
 };
 
 // For people: what came over the bus and what of it was refused. Not for the servo's thread.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "ipc/base/device_notice.hpp"
 #include "ipc/topics/bodies.hpp"
@@ -311,6 +312,23 @@ std::string event_text(const EventTopic& event) {
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);
     }
+}
+
+std::string bus_text(const BusCounts& counts) {
+    const std::pair<const char*, std::uint32_t> kRows[] = {{"checksum", counts.checksum},
+                                                           {"refused", counts.refused},
+                                                           {"repeated", counts.repeated},
+                                                           {"lost", counts.lost},
+                                                           {"transfers failed", counts.transfers_failed},
+                                                           {"stalls", counts.stalls},
+                                                           {"connected again", counts.reconnects},
+                                                           {"commands refused", counts.commands_refused},
+                                                           {"bad seconds", counts.bad_seconds}};
+    std::string text;
+    for (const auto& [name, n] : kRows) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(n);
+    }
+    return text;
 }
 
 std::string schedule_text(std::uint32_t schedule_flags) {

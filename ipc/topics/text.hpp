@@ -28,6 +28,8 @@ namespace tact {
 
 // One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
 [[nodiscard]] std::string event_text(const EventTopic& event);
+// What was wrong on a device's bus: "checksum 3, lost 12, connected again 1"; empty: nothing.
+[[nodiscard]] std::string bus_text(const BusCounts& counts);
 // "FIFO, pinned, memory locked", or "ordinary scheduling".
 [[nodiscard]] std::string schedule_text(std::uint32_t schedule_flags);
 

@@ -147,8 +147,10 @@ void Servo::publish_health(const CycleState& c) noexcept {
     t.delay_p50_ns = f.delay_p50_ns;
     t.delay_p99_ns = f.delay_p99_ns;
     t.stiffness_n_m_max = static_cast<float>(stiffness_n_m_max_);
-    for (std::uint32_t i = 0; i < c.hands; ++i)
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
         t.device_notice[i] = static_cast<std::uint8_t>(c.hand[i].sample.notice);
+        t.device_bus[i] = c.hand[i].sample.bus;
+    }
     region_.health.publish(t);
 }
 

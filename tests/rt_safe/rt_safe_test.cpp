@@ -271,6 +271,10 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     cycles(20);
     EXPECT_EQ(servo.state().run.state, RunState::fault);
     arm_again();
+    cycles(100);
+    EXPECT_EQ(health().device_bus[0].lost, 5U);
+    EXPECT_EQ(health().device_bus[0].checksum + health().device_bus[0].refused, 5U);
+    EXPECT_EQ(health().device_bus[1], BusCounts{});
     bus.unplug();
     cycles(2);
     EXPECT_EQ(servo.state().run.state, RunState::fault);

@@ -20,6 +20,7 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/run.hpp"
+#include "ipc/base/device_notice.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
 #include "tests/unit/assets_samples.hpp"
@@ -54,6 +55,8 @@ inline void fill(RtRegion& region, std::uint64_t cycle) {
     h.gui_vertices = 1234;
     h.gui_attached = 1;
     h.state = static_cast<std::uint8_t>(RunState::active);
+    h.device_notice[0] = static_cast<std::uint8_t>(DeviceNotice::states_refused);
+    h.device_bus[0] = {.packets = 1000, .checksum = 3, .reconnects = 1};
     region.health.publish(h);
     DurationHistogram lateness;
     for (int i = 0; i < 99; ++i) lateness.add(std::chrono::nanoseconds(2000));

@@ -25,6 +25,12 @@ TEST_F(DeployRun, the_json_holds_what_the_controller_published) {
     EXPECT_NEAR(servo["lateness_us"]["p99"].get<double>(), 2.0, 0.13);
     EXPECT_EQ(servo["lateness_us"]["p999"], servo["lateness_us"]["p99"]);  // of 100 samples
     EXPECT_EQ(servo["lateness_us"]["max"], 50.0);
+    ASSERT_EQ(report_["devices"].size(), 1U);  // the second hand says and counts nothing
+    EXPECT_NE(report_["devices"][0]["notice"], "");
+    EXPECT_EQ(report_["devices"][0]["bus"]["packets"], 1000);
+    EXPECT_EQ(report_["devices"][0]["bus"]["checksum"], 3);
+    EXPECT_EQ(report_["devices"][0]["bus"]["reconnects"], 1);
+    EXPECT_EQ(report_["devices"][0]["bus"]["lost"], 0);
     EXPECT_EQ(report_["gui"]["fps"], 42.5);
     EXPECT_EQ(report_["gui"]["vertices"], 1234);
     EXPECT_EQ(report_["governor"]["law"], "sensitus");

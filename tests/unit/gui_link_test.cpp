@@ -222,6 +222,10 @@ TEST(Verdict, EveryGradeComesWithWords) {
     EXPECT_EQ(overrun_verdict(100, 1000).grade, Grade::bad);
     EXPECT_EQ(lateness_verdict(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_verdict(900'000, 1'000'000).grade, Grade::bad);
+    EXPECT_EQ(bus_verdict({.packets = 1000}).grade, Grade::good);
+    EXPECT_EQ(bus_verdict({.packets = 1000, .stalls = 1}).grade, Grade::watch);
+    EXPECT_EQ(bus_verdict({.packets = 1000, .checksum = 1, .refused = 2, .repeated = 3, .lost = 4}).words,
+              "6 bad, 4 lost");
     HealthTopic health{};
     EXPECT_EQ(memory_verdict(health).grade, Grade::good);
     health.page_faults = 2;

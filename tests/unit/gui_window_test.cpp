@@ -217,7 +217,7 @@ TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
     LevelsTopic levels;
     std::memset(&levels, 0xFF, sizeof levels);
     HealthTopic health;
-    std::memset(&health, 0xFF, sizeof health);
+    std::memset(static_cast<void*>(&health), 0xFF, sizeof health);
     ToolTopic tool;
     std::memset(&tool, 0xFF, sizeof tool);
     EventTopic event;

@@ -284,6 +284,7 @@ TEST_F(OpenHapticsTest, poses_that_cannot_be_are_refused_counted_and_grow_old) {
         EXPECT_EQ(sample.sequence, before);
         EXPECT_TRUE(sample.T_dev_tool.finite());
         EXPECT_EQ(device->counts().refused_samples, 1U);
+        EXPECT_GT(sample.bus.packets, 0U);
         EXPECT_EQ(cycles(110, Vec3::Zero(), false), IoStatus::lost);
         *spoil = false;
         EXPECT_EQ(cycle(Vec3::Zero(), false), IoStatus::ok);

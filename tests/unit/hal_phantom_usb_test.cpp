@@ -138,6 +138,10 @@ TEST_F(Phantom, a_refused_state_is_counted_and_the_last_good_one_holds_for_two_c
     for (const std::uint64_t r : counts.refused) refused += r;
     EXPECT_EQ(refused, 20U);
     EXPECT_EQ(counts.lost, 20U);
+    EXPECT_EQ(arm_.sample.bus.checksum + arm_.sample.bus.refused, 20U);
+    EXPECT_EQ(arm_.sample.bus.lost, 20U);
+    EXPECT_GT(arm_.sample.bus.packets, 200U);
+    EXPECT_EQ(arm_.sample.bus.stalls + arm_.sample.bus.reconnects + arm_.sample.bus.transfers_failed, 0U);
 }
 
 TEST_F(Phantom, at_the_third_refused_state_the_force_is_zero_and_latched) {
@@ -305,6 +309,7 @@ TEST_F(Phantom, unplugged_it_is_lost_and_plugged_in_again_it_needs_calibration_a
     run(4000, on_);  // the ritual is done, the enable stayed up
     EXPECT_EQ(arm_.bus().last_serial, "EMU-1");
     EXPECT_EQ(arm_.news().counts.reconnects, 1U);
+    EXPECT_EQ(arm_.sample.bus.reconnects, 1U);
     EXPECT_EQ(arm_.device().calibration(), CalibrationState::done);
     expect_latched(DeviceNotice::gone);
     expect_recovers();
@@ -325,6 +330,7 @@ TEST_F(Phantom, a_stall_is_cleared_and_costs_a_fault_at_most) {
     run(50, on_);
     EXPECT_EQ(arm_.bus().stalls_cleared, 1U);
     EXPECT_EQ(arm_.news().counts.stalls, 1U);
+    EXPECT_EQ(arm_.sample.bus.stalls, 1U);
     EXPECT_EQ(run(1, on_), IoStatus::ok);
 }
 

@@ -80,6 +80,19 @@ TEST(Text, HostileEventsAreOnlyWords) {
     }
 }
 
+TEST(Text, OfABusOnlyWhatWasWrongIsSaid) {
+    EXPECT_EQ(bus_text({.packets = 5}), "");
+    EXPECT_EQ(bus_text({.packets = 5, .checksum = 3, .lost = 12, .reconnects = 1}),
+              "checksum 3, lost 12, connected again 1");
+    BusCounts all{};
+    all.refused = all.repeated = all.transfers_failed = all.stalls = all.commands_refused = all.bad_seconds =
+        saturated(1ULL << 40U);
+    EXPECT_EQ(
+        bus_text(all),
+        "refused 4294967295, repeated 4294967295, transfers failed 4294967295, stalls 4294967295, commands "
+        "refused 4294967295, bad seconds 4294967295");
+}
+
 TEST(Text, ScheduleIsSpelledOut) {
     EXPECT_EQ(schedule_text(0), "ordinary scheduling");
     EXPECT_EQ(schedule_text(kScheduleFifo | kSchedulePinned | kScheduleLocked),
