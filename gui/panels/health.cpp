@@ -111,7 +111,7 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
 }  // namespace
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    begin_card(theme, "Controller", card);
+    begin_card(theme, "Controller", card, true);  // two hands with much to say are higher than it
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
     if (!state.attached) {
