@@ -65,6 +65,7 @@ json docking() {
             {"jump_1m_copy_ms", m.copy_ms},
             {"ns_per_vertex_contraction", m.ns_per_contraction},
             {"ns_per_vertex_split", m.ns_per_vertex_split},
+            {"changes_1000_steps_ms", m.changes_ms},
             {"mesh_bytes_per_vertex", m.bytes_per_vertex}};
 }
 

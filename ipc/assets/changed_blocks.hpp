@@ -1,16 +1,15 @@
 // Which blocks of a buffer were written since somebody last asked, as ranges to upload.
 //
 // A range is whole blocks. Ranges with few untouched blocks between them are joined, where sending those
-// costs less than one more call. Marks are bytes: one store each, which no other waits for.
+// costs less than one more call. Marks are bits, so that those of a large mesh stay in the nearest cache.
 //
-// Memory   a byte a block; nothing is allocated after construction.
+// Memory   a bit a block, and the runs of the worst case; nothing is allocated after construction.
 // Thread   belongs to one.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -27,59 +26,90 @@ public:
     ChangedBlocks(std::size_t elements, std::uint32_t shift, std::uint32_t join)
         : elements_(elements), shift_(shift), join_(join) {
         const std::size_t blocks = (elements >> shift) + 1;
-        flag_.assign((blocks + 63) / 64 * 64, 0);
-        range_.resize(blocks / (join + 1U) + 2);
+        mark_.assign(blocks / 64 + 2, 0);  // the last one stays empty, so that every run ends
+        const std::size_t runs = blocks / 2 + 1;
+        start_.resize(runs + kSlack);
+        end_.resize(runs + kSlack);
+        range_.resize(runs);
     }
 
-    void mark(std::size_t element) noexcept { flag_[element >> shift_] = 1; }
+    void mark(std::size_t element) noexcept {
+        const std::size_t block = element >> shift_;
+        mark_[block / 64] |= std::uint64_t{1} << block % 64;
+    }
+    // Three elements from `first` on, which seldom lie in two blocks.
+    void mark_triangle(std::size_t first) noexcept {
+        mark(first);
+        if (((first ^ (first + 2)) >> shift_) != 0) mark(first + 2);
+    }
     void mark(std::size_t first, std::size_t end) noexcept {
         if (first >= end) return;
-        std::memset(&flag_[first >> shift_], 1, ((end - 1) >> shift_) - (first >> shift_) + 1);
+        const std::size_t a = first >> shift_, b = (end - 1) >> shift_;
+        const std::uint64_t from = ~std::uint64_t{0} << a % 64, to = ~std::uint64_t{0} >> (63 - b % 64);
+        if (a / 64 == b / 64) {
+            mark_[a / 64] |= from & to;
+            return;
+        }
+        mark_[a / 64] |= from;
+        for (std::size_t i = a / 64 + 1; i < b / 64; ++i) mark_[i] = ~std::uint64_t{0};
+        mark_[b / 64] |= to;
     }
 
     // Rising, apart. Holds until the next call; forgets the marks.
     std::span<const MeshRange> take() noexcept {
-        std::size_t count = 0, first = 0, end = 0;  // of the range that grows, in blocks
-        const auto close = [&] {
-            if (end == 0) return;
-            const std::size_t a = first << shift_, b = std::min(elements_, end << shift_);
-            if (a < b) range_[count++] = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b - a)};
+        const std::size_t runs = take_runs();
+        if (runs == 0) return {};
+        const auto range = [&](std::uint32_t first, std::uint32_t end) {
+            const std::size_t a = std::size_t{first} << shift_,
+                              b = std::min(elements_, std::size_t{end} << shift_);
+            return MeshRange{static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b - a)};
         };
-        for (std::size_t at = 0; at < flag_.size(); at += 64) {
-            std::uint64_t left = take_64(&flag_[at]);
-            while (left != 0) {
-                const int bit = std::countr_zero(left);
-                const int run = std::countr_one(left >> bit);
-                const std::size_t a = at + static_cast<std::size_t>(bit);
-                if (end == 0 || a > end + join_) {
-                    close();
-                    first = a;
-                }
-                end = a + static_cast<std::size_t>(run);
-                if (bit + run == 64) break;
-                left &= ~std::uint64_t{0} << (bit + run);
-            }
+        // Whether a run begins a range depends on the gap before it alone, so nothing here need branch.
+        std::size_t count = 0;
+        std::uint32_t first = start_[0];
+        for (std::size_t i = 1; i < runs; ++i) {
+            range_[count] = range(first, end_[i - 1]);
+            const bool apart = start_[i] - end_[i - 1] > join_;
+            count += apart ? 1 : 0;
+            first = apart ? start_[i] : first;
         }
-        close();
+        const MeshRange last = range(first, end_[runs - 1]);
+        if (last.count != 0) range_[count++] = last;
         return {range_.data(), count};
     }
 
 private:
-    // The flags as bits, the first lowest; clears them.
-    static std::uint64_t take_64(std::uint8_t* flags) noexcept {
-        std::uint64_t eight[8], any = 0, bits = 0;
-        std::memcpy(eight, flags, 64);
-        for (const std::uint64_t e : eight) any |= e;
-        if (any == 0) return 0;
-        std::memset(flags, 0, 64);
-        // Byte i of a word has its bit 0 moved to bit 56 + i; none of the products overlap.
-        for (int i = 0; i < 8; ++i) bits |= (eight[i] * 0x0102040810204080U >> 56) << (8 * i);
-        return bits;
+    static constexpr std::size_t kSlack = 2;
+
+    // Where runs of marked blocks start and end, into start_ and end_; clears the marks. Few words hold more
+    // than two starts when marks are sparse, and none when they are dense: the first two go without a branch.
+    std::size_t take_runs() noexcept {
+        std::size_t starts = 0, ends = 0;
+        const auto list = [](std::uint64_t bits, std::uint32_t at, std::uint32_t* to, std::size_t& count) {
+            for (int i = 0; i < 2; ++i) {
+                to[count] = at + static_cast<std::uint32_t>(std::countr_zero(bits));
+                count += bits != 0 ? 1 : 0;
+                bits &= bits - 1;
+            }
+            for (; bits != 0; bits &= bits - 1)
+                to[count++] = at + static_cast<std::uint32_t>(std::countr_zero(bits));
+        };
+        std::uint64_t before = 0;  // the highest bit of the word before, as the lowest
+        for (std::size_t i = 0; i < mark_.size(); ++i) {
+            const std::uint64_t now = mark_[i], shifted = now << 1 | before;
+            const auto at = static_cast<std::uint32_t>(64 * i);
+            list(now & ~shifted, at, start_.data(), starts);
+            list(~now & shifted, at, end_.data(), ends);
+            before = now >> 63;
+            mark_[i] = 0;
+        }
+        return starts;
     }
 
     std::size_t elements_;
     std::uint32_t shift_, join_;
-    std::vector<std::uint8_t> flag_;
+    std::vector<std::uint64_t> mark_;
+    std::vector<std::uint32_t> start_, end_;  // of runs, in blocks
     std::vector<MeshRange> range_;
 };
 

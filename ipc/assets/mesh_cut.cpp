@@ -3,22 +3,22 @@
 // copied, the collapse map of the level is one pass over the vertices contracted since the lists were made
 // (parents come first), and every patch looks the vertices of its list up in it.
 //
-// Measured 2026-11-21, a million vertices, medians of processor time while compilers kept both cores busy; in
-// brackets what this replaced, in alternation: vertices of 20 bytes, all versions of a vertex together,
-// places of triangles written at each rebuild.
-//   100 % -> 28 %           4.7 ms (12.3), where a plain copy of the result takes 2.0
-//   28 % -> 100 %           10.2 ms (24.4)
-//   1000 steps              0.09 ms down, 0.10 up (0.10, 0.11)
-//   memory of the mesh      170 bytes a vertex (149)
-// and with one core left free what was replaced took 6.4 and 11.9 ms, and 0.026 and 0.028 for the steps.
+// Measured 2026-11-22, a million vertices, medians of processor time in a quiet moment of a shared machine;
+// while other programs keep its caches busy all of it takes 1.3 to 2 times as long.
+//   100 % -> 28 %           3.7 ms, where a plain copy of the result takes 1.4
+//   28 % -> 100 %           8.3 ms
+//   1000 steps              0.022 ms down, 0.027 up, and 0.013 to find what they changed
+//   memory of the mesh      170 bytes a vertex
+// A step meets a dozen lines of memory at random, so it costs what those do. Where each corner lies is known
+// when the mesh is made, as a level always shows the same lists: 31 -> 23 ns a step, 39 -> 30 up. Marks are
+// bits and their runs are listed without branches: 30 -> 12 us after 1000 steps.
 //
 // Nothing is far from what the memory gives: 15 MB are written and 18 MB read for the 28 %. Vertices drawn
 // are transformed 1.3 to 1.5 times; below 100 %, 44 % of degenerate triangles come on top. The lists of the
 // next patch are fetched ahead; what that saves is within the noise here. Tried: the same for coming steps or
 // vertices changed nothing, and so did writing vertices past the caches; versions listed per contraction
 // instead of per vertex wrote to memory at random, 14 ms instead of 3 for the vertices alone; a branch for
-// dead triangles when looking up 2.7 ms instead of 2.1; marks as bits 0.030 ms instead of 0.022 per 1000
-// steps.
+// dead triangles when looking up 2.7 ms instead of 2.1.
 #include "ipc/assets/mesh_cut.hpp"
 
 #include <algorithm>
@@ -28,8 +28,8 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kVertexShift = 3, kVertexJoin = 3;
-constexpr std::uint32_t kIndexShift = 5, kIndexJoin = 4;
+constexpr std::uint32_t kVertexShift = 4, kVertexJoin = 2;
+constexpr std::uint32_t kIndexShift = 6, kIndexJoin = 2;
 
 constexpr std::uint32_t kListed = 1024;  // versions at a time
 
@@ -74,7 +74,6 @@ MeshCut::MeshCut(const ProgressiveMesh& mesh)
       next_change_(mesh.patches_.change.size()),
       shown_(mesh.patches_.list_first.begin(), mesh.patches_.list_first.end() - 1),
       draw_(shown_.size()),
-      slot_(shown_.size()),
       vertex_(mesh.vertices()),
       index_(std::size_t{3} * mesh.triangles()),
       map_(mesh.vertices()),
@@ -144,16 +143,14 @@ void MeshCut::step_down() noexcept {
     std::uint32_t* const index = index_.data();
     const std::uint32_t* const changes = m.change_.data();
     for (std::uint32_t i = m.change_first_[k], end = m.change_first_[k + 1]; i < end; ++i) {
-        const std::size_t at = place(changes[i] >> 2) + (changes[i] & 3U);
-        index[at] = parent;
-        index_changed_.mark(at);
+        index[changes[i]] = parent;
+        index_changed_.mark(changes[i]);
     }
     const ProgressiveMesh::Birth* const births = m.birth_.data() - m.triangle_count_[0];
     for (std::uint32_t t = m.triangle_count_[k], end = m.triangle_count_[k + 1]; t < end; ++t) {
-        const std::size_t at = place(births[t].number);
+        const std::uint32_t at = births[t].place;
         index[at] = index[at + 1] = index[at + 2] = 0;
-        index_changed_.mark(at);
-        index_changed_.mark(at + 2);
+        index_changed_.mark_triangle(at);
     }
     while (next_change_ > 0 && m.patches_.change[next_change_ - 1].level >= level_)
         show_next(m.patches_.change[--next_change_].patch);
@@ -171,19 +168,17 @@ void MeshCut::step_up() noexcept {
     std::uint32_t* const index = index_.data();
     const std::uint32_t* const changes = m.change_.data();
     for (std::uint32_t i = m.change_first_[k], end = m.change_first_[k + 1]; i < end; ++i) {
-        const std::size_t at = place(changes[i] >> 2) + (changes[i] & 3U);
-        index[at] = child;
-        index_changed_.mark(at);
+        index[changes[i]] = child;
+        index_changed_.mark(changes[i]);
     }
     const ProgressiveMesh::Birth* const births = m.birth_.data() - m.triangle_count_[0];
     for (std::uint32_t t = m.triangle_count_[k], end = m.triangle_count_[k + 1]; t < end; ++t) {
-        const std::size_t at = place(births[t].number);
+        const std::uint32_t at = births[t].place;
         const auto& turn = kTurn[births[t].other_and_turn >> 29];
         index[at + turn[0]] = child;
         index[at + turn[1]] = parent;
         index[at + turn[2]] = births[t].other_and_turn & ((1U << 29) - 1);
-        index_changed_.mark(at);
-        index_changed_.mark(at + 2);
+        index_changed_.mark_triangle(at);
     }
 }
 
@@ -221,10 +216,8 @@ void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
     const MeshPatches& p = m.patches_;
     std::uint32_t mapped = wanted;
     for (std::uint32_t patch = 0; patch < shown_.size(); ++patch) {
-        std::uint32_t list = p.list_first[patch];
-        while (list + 1 < p.list_first[patch + 1] && p.list[list + 1].level >= wanted) ++list;
-        shown_[patch] = list;
-        mapped = std::max(mapped, p.list[list].level);
+        shown_[patch] = p.list_at(patch, wanted);
+        mapped = std::max(mapped, p.list[shown_[patch]].level);
     }
     kernels_->follow(m.parent_.data() + (wanted - m.base_), wanted, mapped - wanted, map_.data());
     for (std::uint32_t patch = 0; patch < shown_.size(); ++patch) {
@@ -267,15 +260,15 @@ void MeshCut::show_next(std::uint32_t patch) noexcept {
 void MeshCut::show_previous(std::uint32_t patch) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& now = p.list[shown_[patch]];
-    const std::uint16_t* const from_slot = slot_[patch];
-    place_list(patch, shown_[patch] - 1);
+    const std::uint16_t* const from_slot = p.slot.data() + now.first;
+    const std::uint16_t* const to_slot = p.slot.data() + place_list(patch, shown_[patch] - 1).first;
     std::uint32_t* const to = index_.data() + draw_[patch].first;
     const std::uint32_t* const vertex = p.vertex.data() + now.vertex_first;
     const std::uint16_t* const corner = p.corner.data() + std::size_t{3} * now.first;
     std::fill_n(to, draw_[patch].count, 0U);
     for (std::uint32_t t = 0; t < now.triangles; ++t) {
         const std::uint16_t* const from = corner + 3 * std::size_t{from_slot[t]};
-        std::uint32_t* const at = to + 3 * std::size_t{slot_[patch][t]};
+        std::uint32_t* const at = to + 3 * std::size_t{to_slot[t]};
         for (int i = 0; i < 3; ++i) at[i] = vertex[from[i]];
     }
 }
@@ -286,7 +279,6 @@ const MeshPatches::List& MeshCut::place_list(std::uint32_t patch, std::uint32_t 
     const MeshPatches::List& l = p.list[list];
     const std::size_t first = std::size_t{3 * MeshPatches::kTriangles} * patch;
     shown_[patch] = list;
-    slot_[patch] = p.slot.data() + l.first;
     draw_[patch] = {static_cast<std::uint32_t>(first), 3U * l.triangles};
     index_changed_.mark(first, first + draw_[patch].count);
     return l;

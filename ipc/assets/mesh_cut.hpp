@@ -5,7 +5,7 @@
 //           (0, 0, 0). Vertices from vertices() on are not used.
 // Repeats   all that is drawn depends on the vertex count alone, bit for bit, however it was reached.
 // Time      single steps, or a rebuild by the collapse map, whichever its cost model says is cheaper: 20 to
-//           110 ns a step, at most about 10 ns per vertex of the mesh. Nothing is ever allocated.
+//           60 ns a step, at most about 10 ns per vertex of the mesh. Nothing is ever allocated.
 // Thread    a MeshCut belongs to one thread; the mesh may be shared and must outlive it.
 #pragma once
 
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] std::span<const MeshRange> draws() const { return draw_; }
 
     // What differs from the last call of changes(); the spans hold until the next one. Ranges are whole
-    // blocks of 8 vertices (128 bytes) or 32 indices (128 bytes), joined over gaps of up to 512 bytes.
+    // blocks of 16 vertices or 64 indices (256 bytes), joined over gaps of up to 512 bytes.
     MeshChanges changes() noexcept;
 
 private:
@@ -63,11 +63,6 @@ private:
     const MeshPatches::List& place_list(std::uint32_t patch, std::uint32_t list) noexcept;
     void show_next(std::uint32_t patch) noexcept;
     void show_previous(std::uint32_t patch) noexcept;
-    [[nodiscard]] std::size_t place(std::uint32_t number) const noexcept {
-        const std::uint32_t patch = number >> MeshPatches::kShift;
-        const std::uint32_t slot = slot_[patch][number & (MeshPatches::kTriangles - 1)];
-        return 3 * ((std::size_t{patch} << MeshPatches::kShift) + slot);
-    }
 
     const ProgressiveMesh* mesh_;
     const MeshKernels* kernels_;
@@ -76,7 +71,6 @@ private:
     std::size_t next_change_;           // of the patches: those before it have levels below level_
     std::vector<std::uint32_t> shown_;  // list of each patch
     std::vector<MeshRange> draw_;
-    std::vector<const std::uint16_t*> slot_;  // of each patch: MeshPatches::slot of the list shown
     HugeVector<PackedVertex> vertex_;
     HugeVector<std::uint32_t> index_;
     HugeVector<std::uint32_t> map_;     // of rebuild: where the vertices from the level on have gone

@@ -46,6 +46,18 @@ struct MeshPatches {
     std::vector<Change> change;             // levels rising
 
     [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(list_first.size() - 1); }
+    // The list that a patch shows at a level.
+    [[nodiscard]] std::uint32_t list_at(std::uint32_t patch, std::uint32_t level) const {
+        std::uint32_t i = list_first[patch];
+        while (i + 1 < list_first[patch + 1] && list[i + 1].level >= level) ++i;
+        return i;
+    }
+    // Of a triangle, by its PatchedMesh::number: where its first corner is at a level, in the index buffer.
+    [[nodiscard]] std::uint32_t place_at(std::uint32_t number, std::uint32_t level) const {
+        const std::uint32_t patch = number >> kShift;
+        const std::size_t triangle = list[list_at(patch, level)].first + (number & (kTriangles - 1));
+        return 3 * ((patch << kShift) + slot[triangle]);
+    }
     [[nodiscard]] std::size_t memory_bytes() const;
 };
 

@@ -193,16 +193,18 @@ void ProgressiveMesh::derive_corners(const ProgressiveMeshData& data) {
     std::vector<std::uint32_t> next(change_first_.begin(), change_first_.end() - 1);
     all(
         [&](std::uint32_t k, std::size_t t, std::size_t corner) {
-            change_[next[k]++] = patched.number[t] << 2 | static_cast<std::uint32_t>(corner);
+            change_[next[k]++] =
+                patches_.place_at(patched.number[t], base + k + 1) + static_cast<std::uint32_t>(corner);
         },
         [&](std::size_t t, std::size_t k, const std::array<std::uint32_t, 3>& v) {
-            if (k > 0)
-                birth_[t - data.triangle_count[0]] =
-                    birth(patched.number[t], v, base + static_cast<std::uint32_t>(k) - 1, data.parent[k - 1]);
+            if (k == 0) return;
+            const std::uint32_t level = base + static_cast<std::uint32_t>(k);
+            birth_[t - data.triangle_count[0]] =
+                birth(patches_.place_at(patched.number[t], level), v, level - 1, data.parent[k - 1]);
         });
 }
 
-ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t number,
+ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t place,
                                               const std::array<std::uint32_t, 3>& corners,
                                               std::uint32_t child, std::uint32_t parent) {
     const auto at = [&](std::uint32_t v) {
@@ -210,7 +212,7 @@ ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t number,
     };
     const std::uint32_t c = at(child), p = at(parent), other = 3 - c - p;
     const std::uint32_t mirrored = p == (c + 1) % 3 ? 0 : 1;
-    return {number, corners[other] | (2 * c + mirrored) << 29};
+    return {place, corners[other] | (2 * c + mirrored) << 29};
 }
 
 std::size_t ProgressiveMesh::memory_bytes() const {

@@ -84,7 +84,7 @@ private:
     friend class MeshCut;
     // A triangle that contraction k brings back: its corners are vertex B+k, the parent and another one.
     struct Birth {
-        std::uint32_t number;          // as PatchedMesh has it
+        std::uint32_t place;           // of its first corner at the level that has it, in the index buffer
         std::uint32_t other_and_turn;  // the other vertex; from bit 29 on which corner is which, see birth()
     };
     // A run of levels, at most halved from the first to the last.
@@ -103,7 +103,7 @@ private:
         return version_coarsest_[v + 1 - base_];
     }
     void derive_corners(const ProgressiveMeshData& data);
-    [[nodiscard]] static Birth birth(std::uint32_t number, const std::array<std::uint32_t, 3>& corners,
+    [[nodiscard]] static Birth birth(std::uint32_t place, const std::array<std::uint32_t, 3>& corners,
                                      std::uint32_t child, std::uint32_t parent);
 
     std::uint32_t base_;
@@ -119,7 +119,7 @@ private:
     MeshPatches patches_;
     std::vector<Birth> birth_;                 // of all triangles that the base has not, in their order
     std::vector<std::uint32_t> change_first_;  // N-B+1: [k] where the corners that contraction k moves begin
-    std::vector<std::uint32_t> change_;        // those corners: number of the triangle * 4 + corner
+    std::vector<std::uint32_t> change_;        // places in the index buffer of those corners, at level B+k+1
 };
 
 void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData& data);

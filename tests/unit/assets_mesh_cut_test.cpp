@@ -225,8 +225,8 @@ TEST(MeshCut, WhatIsUploadedIsWhatChanged) {
         const MeshChanges changes = cut.changes();
         if (same_lists) {  // a patch that changes lists is written anew
             ++steps;
-            ASSERT_LE(longest_idle(before.vertex, cut.vertex(), changes.vertex), 8U + 8U + 24U);
-            ASSERT_LE(longest_idle(before.index, cut.index(), changes.index), 32U + 32U + 128U);
+            ASSERT_LE(longest_idle(before.vertex, cut.vertex(), changes.vertex), 16U + 16U + 32U);
+            ASSERT_LE(longest_idle(before.index, cut.index(), changes.index), 64U + 64U + 128U);
         }
         for (const MeshRange r : changes.vertex)
             std::copy_n(cut.vertex().begin() + r.first, r.count, mirror.vertex.begin() + r.first);

@@ -72,6 +72,10 @@ TEST(ChangedBlocks, ReportWhatWasMarkedAndJoinSmallGaps) {
                 for (std::size_t k = a; k < b; ++k) block[k / 4] = true;
                 changed.mark(a);
                 block[a / 4] = true;
+                if (a + 2 < elements) {
+                    changed.mark_triangle(a);
+                    block[(a + 2) / 4] = true;
+                }
             }
             std::vector<bool> reported(block.size());
             std::size_t end = 0;
