@@ -42,10 +42,10 @@ struct Felt {
 class StallScenario : public testing::Test {
 protected:
     explicit StallScenario(double damping_n_s_m = 0.0) : loop_(settings(damping_n_s_m)) {
-        std::unique_ptr<ForceModel> offered = std::make_unique<StiffModel>();
+        std::unique_ptr<ForceModel> offered(&stiff_);
         loop_.mail_.model.offer(offered);
         loop_.cycles(10);
-        static_cast<void>(loop_.mail_.model.collect().release());  // the fixture's own
+        static_cast<void>(loop_.mail_.model.collect().release());  // the lockstep's own
         loop_.active();
     }
     static ServoSettings settings(double damping_n_s_m) {
@@ -71,6 +71,7 @@ protected:
         while (i < felt.scale.size() && (down ? felt.scale[i] > scale : felt.scale[i] < scale)) ++i;
         return i;
     }
+    StiffModel stiff_;
     Lockstep loop_;
 };
 
