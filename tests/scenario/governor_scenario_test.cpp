@@ -6,6 +6,8 @@
 namespace tact {
 namespace {
 
+using std::chrono::microseconds;
+
 // A visual process whose frames take so long at all of the picture, in proportion below it.
 struct Picture {
     Lockstep& loop;
@@ -174,6 +176,59 @@ TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_thei
             EXPECT_LE(picture.level(), 1.0F);
         }
     }
+}
+
+// A step costs up to 500 us by its level; the picture is not there. Goal 4 kHz: a level of one half.
+TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
+    ServoSettings s;
+    s.free_running = true;
+    s.governor.goal_hz = 4000.0;
+    s.watchdogs.timing_latches = false;
+    Lockstep loop(s);
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(500);
+    loop.cycles(30000);
+    EXPECT_NEAR(loop.health().force_rate_hz, 4000.0, 0.05 * 4000.0);
+    EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.5, 0.03);
+    EXPECT_EQ(loop.health().period_ns, 0);
+    LatenessTopic lateness{};
+    ASSERT_TRUE(loop.region_->lateness.read(lateness));
+    EXPECT_EQ(lateness.total, 0U);  // without a plan nothing is late
+}
+
+TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_return_when_there_is_time) {
+    ServoSettings s;
+    s.watchdogs.timing_latches = false;
+    Lockstep loop(s);
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(1600);
+    loop.cycles(20000);
+    const float low = loop.levels().path[Servo::kForceIndex].level;
+    EXPECT_LT(low, 0.75F);
+    EXPECT_GT(low, 0.35F);
+    loop.model_.cost = microseconds(100);
+    loop.cycles(10000);
+    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    EXPECT_GT(loop.said(EventCode::level_changed), 2);
+}
+
+TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {
+    ServoSettings s;
+    s.free_running = true;
+    s.governor.goal_hz = 1000.0;
+    s.watchdogs.timing_latches = false;
+    Lockstep loop(s);
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(2000);  // the machine is too slow even so
+    for (int i = 0; i < 20; ++i) {
+        loop.mail_.house.publish(gui_at(loop.clock_.now()));
+        loop.cycles(100);
+        if (loop.levels().path[Servo::kMeshIndex].level > 0.011F) {
+            EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+        }
+    }
+    EXPECT_LT(loop.levels().path[Servo::kMeshIndex].level, 0.5F);
+    EXPECT_EQ(loop.levels().path[Servo::kMeshIndex].items_max, 10000U);
 }
 
 }  // namespace

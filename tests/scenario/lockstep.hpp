@@ -75,4 +75,14 @@ public:
     std::uint64_t sequence_ = 0;
 };
 
+// What the house says of a visual process that reported then.
+inline HouseReport gui_at(Instant t) {
+    HouseReport r{};
+    r.gui_heartbeat_ns = to_ns(t);
+    r.gui_attached = 1;
+    r.gui_generation = 5;
+    r.gui_vertices_max = 10000;
+    return r;
+}
+
 }  // namespace tact

@@ -1,5 +1,4 @@
-// Stories of the whole loop: it converges, it faults, it is commanded, it is stopped, and it repeats to the
-// bit.
+// Stories of the whole loop: it converges, it is commanded, it is stopped, and it repeats to the bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -9,15 +8,7 @@
 namespace tact {
 namespace {
 
-using std::chrono::microseconds;
 using std::chrono::milliseconds;
-
-ServoSettings strict() {
-    ServoSettings s;
-    s.watchdogs.timing_latches = true;
-    s.watchdogs.device_watchdog_latches = true;
-    return s;
-}
 
 TEST(ServoScenario, a_spring_draws_the_emulated_hand_to_its_rest) {
     Lockstep loop;
@@ -79,149 +70,6 @@ TEST(ServoScenario, the_same_run_twice_writes_the_same_bytes) {
                           static_cast<const void*>(b->region_.get()), sizeof(RtRegion)),
               0);
     EXPECT_GT(a->device_.hand_pose().p_m.norm(), 1e-3);
-}
-
-// --- faults: zero within one cycle of detection, latched, said, and only a person brings it back ---
-
-struct Fault {
-    const char* name;
-    void (*happen)(Lockstep&);
-    void (*mend)(Lockstep&);
-    RunReason reason;
-    int cycles_until_zero;
-};
-
-class FaultScenario : public testing::TestWithParam<Fault> {};
-
-TEST_P(FaultScenario, leads_to_zero_force_latched_until_a_person_resets_it) {
-    const Fault& f = GetParam();
-    Lockstep loop(strict());
-    loop.model_.stiffness_n_m = 4.0;  // still far from its rest when the fault comes
-    loop.active();
-    ASSERT_EQ(loop.state(), RunState::active);
-    ASSERT_GT(loop.shown_n(), 0.05);
-    f.happen(loop);
-    loop.cycles(f.cycles_until_zero);
-    EXPECT_EQ(loop.shown_n(), 0.0);
-    EXPECT_EQ(loop.state(), RunState::fault);
-    EXPECT_EQ(loop.reason(), f.reason);
-    EXPECT_EQ(loop.said(EventCode::fault_latched), 1);
-    FaultSnapshot snapshot{};
-    ASSERT_TRUE(loop.mail_.fault.read(snapshot));
-    EXPECT_EQ(snapshot.reason, static_cast<std::uint64_t>(f.reason));
-    EXPECT_EQ(snapshot.cycle, loop.servo_->state().cycle);
-
-    // Arming is refused, the trouble's end changes nothing.
-    f.mend(loop);
-    loop.order(CommandKind::arm);
-    loop.cycles(50);
-    EXPECT_EQ(loop.state(), RunState::fault);
-    EXPECT_EQ(loop.health().command_result, static_cast<std::uint32_t>(CommandResult::refused_state));
-    EXPECT_EQ(loop.shown_n(), 0.0);
-    loop.order(CommandKind::reset_fault);
-    loop.cycles(2);
-    EXPECT_EQ(loop.state(), RunState::ready);
-    EXPECT_EQ(loop.shown_n(), 0.0);
-    loop.order(CommandKind::arm);
-    loop.cycles(3);
-    EXPECT_EQ(loop.state(), RunState::active);
-    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp from its beginning
-    loop.cycles(300);
-    EXPECT_GT(loop.shown_n(), 0.0);
-}
-
-const Fault kFaults[] = {
-    {"force_not_a_number", [](Lockstep& l) { l.model_.not_a_number = true; },
-     [](Lockstep& l) { l.model_.not_a_number = false; }, RunReason::force_not_finite, 1},
-    {"pose_not_a_number", [](Lockstep& l) { l.device_.inject(SimFault::wild_pose); },
-     [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::device_fault, 1},
-    {"amplifier", [](Lockstep& l) { l.device_.inject(SimFault::amplifier); },
-     [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::device_fault, 1},
-    {"unplugged", [](Lockstep& l) { l.device_.inject(SimFault::unplugged); },
-     [](Lockstep& l) {
-         l.device_.inject(SimFault::none);
-         static_cast<void>(l.device_.open());
-     },
-     RunReason::device_lost, 1},
-    {"the_devices_own_watchdog_by_itself", [](Lockstep& l) { l.device_.inject(SimFault::watchdog); },
-     [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::device_fault, 1},
-    {"sample_frozen", [](Lockstep& l) { l.device_.inject(SimFault::frozen); },
-     [](Lockstep& l) { l.device_.inject(SimFault::none); }, RunReason::sample_stale, 4},
-    {"cycle_six_milliseconds_late", [](Lockstep& l) { l.clock_.advance(milliseconds(7)); }, [](Lockstep&) {},
-     RunReason::too_late, 1},
-    {"five_overruns_in_a_row",
-     [](Lockstep& l) {
-         l.model_.clock = &l.clock_;
-         l.model_.cost = microseconds(1500);
-     },
-     [](Lockstep& l) { l.model_.clock = nullptr; }, RunReason::overruns, 6},
-    {"one_step_of_seven_milliseconds",
-     [](Lockstep& l) {
-         l.model_.clock = &l.clock_;
-         l.model_.cost = milliseconds(7);
-         l.cycles(1);
-         l.model_.clock = nullptr;
-     },
-     [](Lockstep&) {}, RunReason::too_late, 1},
-};
-INSTANTIATE_TEST_SUITE_P(Servo, FaultScenario, testing::ValuesIn(kFaults),
-                         [](const auto& tested) { return std::string(tested.param.name); });
-
-TEST(ServoScenario, a_frozen_sample_is_held_for_three_cycles_before_it_is_a_fault) {
-    Lockstep loop;
-    loop.active();
-    loop.device_.inject(SimFault::frozen);
-    loop.cycles(3);
-    EXPECT_EQ(loop.state(), RunState::active);
-    EXPECT_GT(loop.shown_n(), 0.0);
-}
-
-TEST(ServoScenario,
-     a_pause_beyond_the_devices_own_watchdog_is_a_fault_or_where_an_emulated_one_latches_none_a_new_ramp) {
-    for (const bool latches : {true, false}) {
-        ServoSettings settings;
-        settings.watchdogs.timing_latches = false;
-        settings.watchdogs.device_watchdog_latches = latches;
-        Lockstep loop(settings);
-        loop.model_.stiffness_n_m = 4.0;
-        loop.active();
-        const double before = loop.shown_n();
-        ASSERT_GT(before, 0.05);
-        loop.clock_.advance(milliseconds(30));
-        loop.cycles(1);
-        EXPECT_EQ(loop.shown_n(), 0.0);
-        EXPECT_EQ(loop.state(), latches ? RunState::fault : RunState::active);
-        if (latches) {
-            EXPECT_EQ(loop.reason(), RunReason::device_fault);
-            loop.cycles(1000);
-            EXPECT_EQ(loop.shown_n(), 0.0);
-        } else {
-            EXPECT_EQ(loop.said(EventCode::device_watchdog), 1);
-            loop.cycles(10);
-            EXPECT_EQ(loop.device_.state(), DeviceState::powered);
-            EXPECT_LT(loop.shown_n(), 0.1 * before);
-            loop.cycles(500);
-            EXPECT_GT(loop.shown_n(), 0.02);
-        }
-    }
-}
-
-TEST(ServoScenario, overruns_are_counted_and_skip_forward_without_a_burst) {
-    ServoSettings lenient;
-    lenient.watchdogs.timing_latches = false;
-    lenient.governor.law = Law::fixed;
-    Lockstep loop(lenient);
-    loop.active();
-    const HealthTopic before = loop.health();
-    loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(2300);
-    const Instant begin = loop.clock_.now();
-    loop.cycles(100);
-    EXPECT_EQ(loop.clock_.now() - begin, 100 * milliseconds(3) + microseconds(300));
-    EXPECT_EQ(loop.servo_->pacer().overruns(), 100U);
-    EXPECT_EQ(loop.servo_->pacer().skipped(), 200U);
-    EXPECT_EQ(loop.state(), RunState::active);
-    EXPECT_EQ(before.overruns, 0U);
 }
 
 TEST(ServoScenario, the_hand_leaving_takes_the_force_out_and_its_return_ramps_it_in) {
@@ -311,15 +159,6 @@ TEST(ServoScenario, a_refused_command_is_answered_without_effect) {
 
 // --- the visual process ---
 
-HouseReport gui_at(Instant t) {
-    HouseReport r{};
-    r.gui_heartbeat_ns = to_ns(t);
-    r.gui_attached = 1;
-    r.gui_generation = 5;
-    r.gui_vertices_max = 10000;
-    return r;
-}
-
 TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_configured) {
     for (const bool ramps : {false, true}) {
         ServoSettings s;
@@ -339,61 +178,6 @@ TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_c
         }
         EXPECT_EQ(loop.said(EventCode::gui_attached), 1);
     }
-}
-
-// --- the governor in the loop ---
-
-// A step costs up to 500 us by its level; the picture is not there. Goal 4 kHz: a level of one half.
-TEST(ServoScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
-    ServoSettings s;
-    s.free_running = true;
-    s.governor.goal_hz = 4000.0;
-    s.watchdogs.timing_latches = false;
-    Lockstep loop(s);
-    loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(500);
-    loop.cycles(30000);
-    EXPECT_NEAR(loop.health().force_rate_hz, 4000.0, 0.05 * 4000.0);
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.5, 0.03);
-    EXPECT_EQ(loop.health().period_ns, 0);
-    LatenessTopic lateness{};
-    ASSERT_TRUE(loop.region_->lateness.read(lateness));
-    EXPECT_EQ(lateness.total, 0U);  // without a plan nothing is late
-}
-
-TEST(ServoScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_return_when_there_is_time) {
-    ServoSettings s;
-    s.watchdogs.timing_latches = false;
-    Lockstep loop(s);
-    loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(1600);
-    loop.cycles(20000);
-    const float low = loop.levels().path[Servo::kForceIndex].level;
-    EXPECT_LT(low, 0.75F);
-    EXPECT_GT(low, 0.35F);
-    loop.model_.cost = microseconds(100);
-    loop.cycles(10000);
-    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
-    EXPECT_GT(loop.said(EventCode::level_changed), 2);
-}
-
-TEST(ServoScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {
-    ServoSettings s;
-    s.free_running = true;
-    s.governor.goal_hz = 1000.0;
-    s.watchdogs.timing_latches = false;
-    Lockstep loop(s);
-    loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(2000);  // the machine is too slow even so
-    for (int i = 0; i < 20; ++i) {
-        loop.mail_.house.publish(gui_at(loop.clock_.now()));
-        loop.cycles(100);
-        if (loop.levels().path[Servo::kMeshIndex].level > 0.011F) {
-            EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
-        }
-    }
-    EXPECT_LT(loop.levels().path[Servo::kMeshIndex].level, 0.5F);
-    EXPECT_EQ(loop.levels().path[Servo::kMeshIndex].items_max, 10000U);
 }
 
 // --- handing a model over ---
