@@ -1,1 +1,2 @@
 # Benches of rt.
+tact_bench(bench/supervisor_bench.cpp USES base shm topics hal io force loop)
