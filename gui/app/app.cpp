@@ -26,6 +26,7 @@
 #include "gui/app/png.hpp"
 #include "gui/app/region_checks.hpp"
 #include "gui/app/scene_loader.hpp"
+#include "gui/app/second_hand.hpp"
 #include "gui/app/show_controller.hpp"
 #include "gui/app/window.hpp"
 #include "gui/render/scene_view.hpp"
@@ -126,6 +127,7 @@ private:
         if (news.arrived) {
             spdlog::info("attached to the controller of session {}", options_.session);
             list_.forget_motion();
+            second_hand_.forget();
             commands_.forget();
             std::string path = controller_.scene_path();
             if (options_.scene.empty() && !path.empty() &&
@@ -134,6 +136,7 @@ private:
         }
         const Controller::Fresh fresh = controller_.read();
         if (fresh.bodies) list_.follow(controller_.bodies);
+        if (fresh.second) second_hand_.follow(controller_.second);
         if (fresh.health) add_health(controller_.health, state_.history);
         if (controller_.have_health) commands_.update(controller_.health, now_ns);
         show_controller(controller_, commands_, state_);
@@ -297,6 +300,10 @@ private:
             const double* const f = controller_.tool.force_model_n;
             view.force_world_n = Vec3(f[0], f[1], f[2]);
         }
+        if (controller_.attached()) view.second_hand = second_hand_.at(now_ns, content_->meta);
+        state_.second_hand = view.second_hand.has_value();
+        state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
+        state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
         state_.force_n = view.force_world_n.norm();
         state_.arrow_a_per_n = static_cast<double>(view_->arrow_a_per_n());
         const SceneToggles& t = state_.toggles;
@@ -384,6 +391,7 @@ private:
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     FitDesk desk_;
     BodyList list_;
+    SecondHand second_hand_;
     std::vector<DrawnBody> shown_;
     ViewOptions view_options_;
     Camera camera_;

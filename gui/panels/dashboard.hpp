@@ -153,6 +153,8 @@ struct DashboardState {
     double a_per_px = 0.0;
     float eye_axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // scene x, y, z in the eye's axes
     double force_n = 0.0;
+    bool second_hand = false, second_at_wall = false;
+    double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
     std::string renderer;
     // What a person chose.

@@ -67,12 +67,18 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
     if (state.scene.loaded) {
         pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
         y += pen.theme.px(22.0F);
-        if (state.toggles.force && state.attached) {
+        const auto line = [&](ImU32 swatch, const std::string& text) {
             pen.draw->AddRectFilled({x, y + pen.theme.px(6.0F)},
-                                    {x + pen.theme.px(18.0F), y + pen.theme.px(9.0F)}, colour::kForce);
-            pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText,
-                     format("model force %.2f N   (arrow: %g Å per N)", state.force_n, state.arrow_a_per_n));
-        }
+                                    {x + pen.theme.px(18.0F), y + pen.theme.px(9.0F)}, swatch);
+            pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText, text);
+            y += pen.theme.px(18.0F);
+        };
+        if (state.toggles.force && state.attached)
+            line(colour::kForce,
+                 format("model force %.2f N   (arrow: %g Å per N)", state.force_n, state.arrow_a_per_n));
+        if (state.second_hand)
+            line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
+                                             state.second_at_wall ? ", at the workspace's wall" : ""));
     }
     const std::string fps =
         format("%.0f fps   %s vertices", state.load.fps, grouped(state.load.vertices_drawn).c_str());

@@ -115,7 +115,11 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     if (options.box) draw_box(pass);
     if (options.surface) contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
     glDisable(GL_BLEND);
+    // Always seen, also inside the structures: everything else is drawn, so its depth may go.
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
     if (options.force) draw_force(pass);
+    if (frame.second_hand) draw_second_hand(pass);
     glDisable(GL_DEPTH_TEST);
     glBindVertexArray(0);
     glUseProgram(0);
@@ -163,10 +167,26 @@ void SceneView::draw_force(const Pass& pass) {
     if (mesh.index.empty()) return;
     arrow_.fill(mesh, GL_STREAM_DRAW);
     programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
-    // Always seen, also inside the structure: everything else is drawn, so its depth may go.
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
     arrow_.draw();
+}
+
+void SceneView::draw_second_hand(const Pass& pass) {
+    const DrawnHand& hand = *pass.frame.second_hand;
+    const Eigen::Vector3f tip =
+        ((hand.T_model_hand.p_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    const TubeMesh mesh = build_second_hand(hand, tip, radius_a(), arrow_a_per_n());
+    if (mesh.index.empty()) return;
+    second_hand_.fill(mesh, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    second_hand_.draw();
+    const TubeMesh wall = build_touched_wall(hand, tip, radius_a());
+    if (wall.index.empty()) return;
+    touched_wall_.fill(wall, GL_STREAM_DRAW);
+    const auto share = [](std::uint8_t c) { return static_cast<float>(c) / 255.0F; };
+    const Rgb8& c = kTouchedWallColour;
+    const float rgba[4] = {share(c[0]), share(c[1]), share(c[2]), 1.0F};
+    programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, rgba);
+    touched_wall_.draw();
 }
 
 void SceneView::draw_box(const Pass& pass) {

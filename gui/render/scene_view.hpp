@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "gui/render/molecules.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
+#include "gui/render/second_hand.hpp"
 #include "gui/render/triangle_buffers.hpp"
 
 namespace tact {
@@ -33,6 +35,7 @@ struct ViewFrame {
     std::size_t active = 0;         // the body in the hand; none where it is not one of them
     std::uint32_t points_felt = 0;  // picks the level of the codebook that is shown
     Vec3 force_world_n = Vec3::Zero();
+    std::optional<DrawnHand> second_hand;
 };
 
 class SceneView {
@@ -71,6 +74,7 @@ private:
     [[nodiscard]] Haze haze_of(const Camera& camera, const ViewOptions& options) const;
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
+    void draw_second_hand(const Pass& pass);
     void draw_box(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
@@ -79,7 +83,7 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
-    TriangleBuffers arrow_;
+    TriangleBuffers arrow_, second_hand_, touched_wall_;
     Points box_;
 };
 

@@ -10,7 +10,7 @@
 namespace tact {
 
 struct alignas(64) ToolTopic {
-    static constexpr TopicInfo kInfo{.name = "tool", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "tool", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     double pos_world_m[3];
@@ -21,7 +21,8 @@ struct alignas(64) ToolTopic {
     double velocity_world_m_s[3];
     std::uint32_t buttons;      // bit 0: clutch
     std::uint8_t device_state;  // DeviceState
-    std::uint8_t reserved[11];  // zero
+    std::uint8_t at_wall;       // 1: a wall of the workspace pushes back
+    std::uint8_t reserved[10];  // zero
 };
 static_assert(std::is_trivially_copyable_v<ToolTopic> && sizeof(ToolTopic) == 192);
 static_assert(offsetof(ToolTopic, force_world_n) == 72);

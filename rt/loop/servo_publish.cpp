@@ -81,6 +81,7 @@ void Servo::publish_tools(const CycleState& c) noexcept {
         put(t.velocity_world_m_s, h.tool.twist_world.linear_m_s);
         t.buttons = h.tool.buttons;
         t.device_state = static_cast<std::uint8_t>(h.sample.state);
+        t.at_wall = (h.out.acts & kChainWall) != 0 ? 1 : 0;
         region_.tool[i].publish(t);
     }
     const ModelBodies bodies = c.hand[0].model->bodies();

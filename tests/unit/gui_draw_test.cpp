@@ -224,6 +224,7 @@ protected:
         frame.height_px = kHeight;
         frame.bodies = bodies;
         frame.active = 1000;
+        frame.second_hand = second_hand_;
         view_->draw(camera_, options_, frame);
         return read_pixels(kWidth, kHeight);
     }
@@ -232,6 +233,7 @@ protected:
     std::optional<SceneView> view_;
     ViewOptions options_;
     DrawnBody home_;
+    std::optional<DrawnHand> second_hand_;
 };
 
 TEST_F(GuiDrawScene, EachStyleDrawsSomethingOfItsOwn) {
@@ -259,6 +261,45 @@ TEST_F(GuiDrawScene, CopiesAreDrawnWhereTheyAreHiddenAndUnknownOnesNotAtAll) {
     copy.hidden = false;
     copy.structure = 77;
     EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
+}
+
+TEST_F(GuiDrawScene, ASecondHandIsDrawnWhereItIsWithItsForceAndTheWallItTouches) {
+    EXPECT_EQ(drawn(picture({})), 0U);
+    const auto in_half = [](const Image& image, bool right) {
+        std::size_t count = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = right ? kWidth / 2 : 0; x < (right ? kWidth : kWidth / 2); ++x) {
+                const std::size_t at = std::size_t{3} * static_cast<std::size_t>(y * kWidth + x);
+                count += (image.rgb[at] | image.rgb[at + 1] | image.rgb[at + 2]) != 0 ? 1U : 0U;
+            }
+        return count;
+    };
+    DrawnHand hand;
+    hand.T_model_hand.p_m = content_->centre_model_m + Vec3(0.5 * content_->radius_m, 0.0, 0.0);
+    second_hand_ = hand;
+    const Image right = picture({});
+    EXPECT_GT(in_half(right, true), 60U);
+    EXPECT_EQ(in_half(right, false), 0U);
+    second_hand_->T_model_hand.p_m.x() -= 1.2 * content_->radius_m;
+    EXPECT_GT(in_half(picture({}), false), 30U);
+    second_hand_ = hand;
+
+    // It turns with the tool.
+    second_hand_->T_model_hand.q = quat_from_rotation_vector({0.0, 0.0, 2.0});
+    EXPECT_NE(picture({}).rgb, right.rgb);
+    second_hand_ = hand;
+
+    const auto force = [&](const Vec3& force_n, bool at_wall) {
+        second_hand_->force_world_n = force_n;
+        second_hand_->at_wall = at_wall;
+        return drawn(picture({}));
+    };
+    const std::size_t alone = drawn(right);
+    const std::size_t pushed = force({-0.7, 0.0, 0.0}, false);
+    EXPECT_GT(pushed, alone + 20);
+    EXPECT_GT(force({-0.7, 0.0, 0.0}, true), pushed + 10);
+    EXPECT_EQ(force(Vec3::Zero(), true), alone);  // no force says where the wall is
+    EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
 }
 
 TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {

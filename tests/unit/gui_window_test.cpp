@@ -229,7 +229,7 @@ TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
         controller.region().bodies.publish(bodies);
         controller.region().levels.publish(levels);
         controller.region().health.publish(health);
-        controller.region().tool[0].publish(tool);
+        for (auto& hand : controller.region().tool) hand.publish(tool);
         controller.region().events.push(event);
         (void)controller.gui()->load.read(load);
         std::this_thread::sleep_for(milliseconds(1));
@@ -240,6 +240,43 @@ TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
         wait_for([&] { return controller.gui()->load.read(load) && load.vertices_drawn == vertices_ / 4; }));
     process->signal(SIGTERM);
     EXPECT_EQ(process->wait(), 0) << log();
+}
+
+TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
+    fake::Controller controller("t", scene(), checksum_);
+    std::vector<std::set<std::uint32_t>> pictures;
+    for (const bool there : {false, true}) {
+        const std::string picture = folder_ + "/second_" + std::to_string(there) + ".png";
+        const auto process = gui({"--screenshot", picture, "--hidden"});
+        ASSERT_TRUE(drawing(controller)) << log();
+        ToolTopic tool{};
+        tool.quat_world_tool_xyzw[3] = 1.0;
+        tool.pos_world_m[0] = 0.02;
+        tool.force_world_n[0] = -0.5;
+        tool.at_wall = 1;
+        LoadTopic load{};
+        ASSERT_TRUE(controller.gui()->load.read(load));
+        const std::uint64_t before = load.frame;
+        ASSERT_TRUE(wait_for([&] {
+            tool.taken_at_ns = to_ns(Monotonic::now());
+            if (there) controller.region().tool[1].publish(tool);
+            controller.serve(1);
+            return controller.gui()->load.read(load) && load.frame > before + 5;
+        })) << log();
+        process->signal(SIGTERM);
+        EXPECT_EQ(process->wait(), 0) << log();
+        pictures.push_back(colours(picture, 640, 480));
+    }
+    // Violet, whatever the light: nothing else in the picture is.
+    const auto violet = [](const std::set<std::uint32_t>& seen) {
+        return std::count_if(seen.begin(), seen.end(), [](std::uint32_t c) {
+            const auto r = static_cast<int>(c & 255U), g = static_cast<int>(c >> 8 & 255U),
+                       b = static_cast<int>(c >> 16 & 255U);
+            return b > r + 25 && r > g + 15;
+        });
+    };
+    EXPECT_EQ(violet(pictures[0]), 0);
+    EXPECT_GT(violet(pictures[1]), 5);
 }
 
 TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {

@@ -1,0 +1,30 @@
+// The second of two hands: a pen, and what its tip touches.
+//
+// Pen      tip where the hand is, held as a right hand holds it; violet, so that it is neither a body nor the
+//          first hand's force
+// Wall     two rings in the plane of the wall that pushes the tip back, and an arrow for the force
+// Frame    scene, ångström. Pure functions; gui/render/scene_view.cpp draws what they give.
+#pragma once
+
+#include "gui/render/tube.hpp"
+#include "ipc/base/pose.hpp"
+
+namespace tact {
+
+struct DrawnHand {
+    Pose T_model_hand;
+    Vec3 force_world_n = Vec3::Zero();  // that it feels
+    bool at_wall = false;
+};
+
+inline constexpr Rgb8 kSecondHandColour{178, 132, 255};
+
+// `tip_a` in the scene, `size_a` the radius of what is shown, `arrow_a_per_n` as the first hand's arrow has it.
+[[nodiscard]] TubeMesh build_second_hand(const DrawnHand& hand, const Eigen::Vector3f& tip_a, float size_a,
+                                         float arrow_a_per_n);
+// The wall's rings; empty where the hand is at none. To be drawn without light: a wall may be seen from its dark
+// side.
+[[nodiscard]] TubeMesh build_touched_wall(const DrawnHand& hand, const Eigen::Vector3f& tip_a, float size_a);
+inline constexpr Rgb8 kTouchedWallColour{222, 204, 255};
+
+}  // namespace tact
