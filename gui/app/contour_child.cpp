@@ -3,10 +3,9 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 
 #include "gui/app/child_job.hpp"
+#include "gui/app/scratch_folder.hpp"
 #include "ipc/assets/contour_mesh.hpp"
 #include "ipc/base/error.hpp"
 
@@ -15,29 +14,6 @@ namespace {
 
 constexpr Duration kPatience = std::chrono::minutes(2);
 constexpr Duration kLook = std::chrono::milliseconds(10);
-
-// Removed with all that is in it.
-class ScratchFolder {
-public:
-    ScratchFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "tact-contour-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr)
-            throw StartupError("refining the contour",
-                               "no folder can be made in " + std::filesystem::temp_directory_path().string(),
-                               "make room there, or set TMPDIR");
-        path_ = name;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 }  // namespace
 

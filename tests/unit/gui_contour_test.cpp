@@ -1,13 +1,18 @@
 // Contours beside the frame loop: extraction, the worker, the child that refines.
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "gui/app/contour_child.hpp"
 #include "gui/app/contour_option.hpp"
+#include "gui/app/scratch_folder.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_fake.hpp"
 #include "tests/unit/gui_wait.hpp"
@@ -205,6 +210,55 @@ TEST_F(ContourChild, FailuresAreWordsNeverCrashes) {
     EXPECT_NE(failure(refine_by_child(content_, folder_ + "/none")), "no error");
     EXPECT_THROW((void)refine_by_child(content_, program("exec sleep 1000\n"))(0.6, [] { return true; }),
                  Cancelled);
+}
+
+TEST(ScratchFolder, GoesWithItsOwnerAndWhereThatWasKilledWithTheNextOne) {
+    char name[] = "/tmp/tact-scratch-test-XXXXXX";
+    const std::filesystem::path parent = mkdtemp(name);
+    const auto folders = [&] {
+        std::set<std::string> seen;
+        for (const auto& entry : std::filesystem::directory_iterator(parent))
+            seen.insert(entry.path().filename().string());
+        return seen;
+    };
+    // What is not its own stays, whatever its name.
+    std::filesystem::create_directories(parent / "tact-gui-scratch-of-a-person" / "x");
+    std::filesystem::create_directories(parent / "elsewhere");
+    std::ofstream(parent / "elsewhere" / "kept") << "kept";
+    std::filesystem::create_directory_symlink(parent / "elsewhere", parent / "tact-gui-scratch-linked");
+    std::ofstream(parent / "tact-gui-scratch-a_file") << "no folder";
+    const auto others = folders();
+
+    int told[2];
+    ASSERT_EQ(pipe(told), 0);
+    const pid_t owner = fork();
+    if (owner == 0) {
+        const ScratchFolder folder(parent);
+        std::ofstream(folder.path() / "contour.tact") << "half a surface";
+        if (write(told[1], "x", 1) != 1) _exit(1);
+        for (;;) pause();
+    }
+    char made = 0;
+    ASSERT_EQ(read(told[0], &made, 1), 1);
+    close(told[0]);
+    close(told[1]);
+    {
+        const ScratchFolder beside(parent);  // takes nothing from one that lives
+        EXPECT_EQ(folders().size(), others.size() + 2);
+    }
+    EXPECT_EQ(folders().size(), others.size() + 1);
+    kill(owner, SIGKILL);
+    waitpid(owner, nullptr, 0);
+    EXPECT_EQ(folders().size(), others.size() + 1);
+    {
+        const ScratchFolder next(parent);
+        EXPECT_EQ(folders().size(), others.size() + 1);
+        EXPECT_TRUE(std::filesystem::is_empty(next.path()));
+    }
+    EXPECT_EQ(folders(), others);
+    EXPECT_TRUE(std::filesystem::exists(parent / "elsewhere" / "kept"));
+    EXPECT_THROW(ScratchFolder(parent / "none"), StartupError);
+    std::filesystem::remove_all(parent);
 }
 
 TEST(ContourOption, SaysLevelColourOpacityAndStyle) {
