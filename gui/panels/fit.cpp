@@ -1,4 +1,7 @@
 // Fit: how well the structures, where they are now, explain the map. Every number says how it is defined.
+#include <array>
+#include <string>
+
 #include "gui/panels/panels.hpp"
 #include "gui/panels/widgets.hpp"
 #include "ipc/base/units.hpp"
@@ -8,10 +11,13 @@ namespace tact {
 namespace {
 
 void metrics(const Theme& theme, const FitMetrics& m) {
-    row(theme, "Correlation", format("%.4f", m.cc_zero), "about zero");
-    row(theme, "", format("%.4f", m.cc_mean), "about the mean");
-    row(theme, "Density", format("%.2f σ", m.mean_density_sigma),
-        format("%.4g, mean over atoms", m.mean_density));
+    row(theme, "Correlation", fixed(m.cc_zero, 4), "about zero");
+    row(theme, "", fixed(m.cc_mean, 4), "about the mean");
+    // In the map's unit too, where there is room for the number.
+    const std::array<std::string, 3> notes{format("%.4g, mean over atoms", m.mean_density),
+                                           format("%.2g, mean over atoms", m.mean_density),
+                                           std::string("mean over atoms")};
+    row(theme, "Density", fixed(m.mean_density_sigma, 2) + " σ", notes);
     row(theme, "Inside", format("%.1f %%", 100.0 * m.fraction_inside), "of atoms above contour");
     row(theme, "Overlap", format("%.4g", m.overlap), "map unit · Z");
 }
@@ -33,8 +39,8 @@ void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& 
     if (f.known) {
         metrics(theme, f.body_id != 0 ? f.body : f.all);
         if (f.body_id != 0 && f.bodies > 1)
-            row(theme, "All bodies", format("%.4f", f.all.cc_zero),
-                format("about zero, %.4f mean", f.all.cc_mean));
+            row(theme, "All bodies", fixed(f.all.cc_zero, 4),
+                "about zero, " + fixed(f.all.cc_mean, 4) + " mean");
         const FitMetrics& m = f.body_id != 0 ? f.body : f.all;
         if (f.bodies > 1) row(theme, "Clashes", grouped(m.clashes), "atom pairs with other bodies");
         text_small(theme, colour::kDim,

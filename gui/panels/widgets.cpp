@@ -81,6 +81,17 @@ void row(const Theme& theme, const char* what, const std::string& value, const s
     text_coloured(colour::kDim, note);
 }
 
+void row(const Theme& theme, const char* what, const std::string& value, std::span<const std::string> notes) {
+    row_start(theme, what, value, colour::kText);
+    ImGui::SameLine(0.0F, theme.px(6.0F));
+    const float room = ImGui::GetContentRegionAvail().x;
+    for (std::size_t i = 0; i < notes.size(); ++i) {
+        if (i + 1 < notes.size() && ImGui::CalcTextSize(notes[i].c_str()).x > room) continue;
+        text_coloured(colour::kDim, notes[i]);
+        return;
+    }
+}
+
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen) {
     ImGui::PushStyleColor(ImGuiCol_HeaderHovered, colour::kPanelEdge);
     ImGui::PushStyleColor(ImGuiCol_HeaderActive, colour::kPanelEdge);
@@ -101,6 +112,12 @@ std::string format(const char* pattern, ...) {
     va_start(arguments, pattern);
     std::vsnprintf(text, sizeof text, pattern, arguments);
     va_end(arguments);
+    return text;
+}
+
+std::string fixed(double value, int digits) {
+    std::string text = format("%.*f", digits, value);
+    if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
     return text;
 }
 

@@ -20,6 +20,8 @@ void badge(const Theme& theme, const std::string& word, ImU32 fill);
 void row(const Theme& theme, const char* what, const std::string& value, const Verdict& verdict);
 void row(const Theme& theme, const char* what, const std::string& value,
          const std::string& unit_or_note = "");
+// With the first of the notes that fits, else the last.
+void row(const Theme& theme, const char* what, const std::string& value, std::span<const std::string> notes);
 void text_coloured(ImU32 c, const std::string& text);
 void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap = true);
 
@@ -27,6 +29,8 @@ void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap 
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen);
 
 [[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+// "%.2f", but a number that rounds to nothing has no sign.
+[[nodiscard]] std::string fixed(double value, int digits);
 // "1 234 567"
 [[nodiscard]] std::string grouped(std::uint64_t n);
 // In the unit that reads best: "820 ns", "12.3 us", "4.56 ms".

@@ -8,6 +8,7 @@
 
 #include "gui/panels/plot.hpp"
 #include "gui/panels/plot_series.hpp"
+#include "gui/panels/widgets.hpp"
 
 namespace tact {
 namespace {
@@ -126,6 +127,15 @@ TEST(PlotAxis, LogAxisSpansWholeDecades) {
     EXPECT_DOUBLE_EQ(axis.high, 1000.0);
     EXPECT_EQ(axis.mark.size(), 4U);
     EXPECT_GT(log_axis(0.0, 0.0).high, log_axis(0.0, 0.0).low);
+}
+
+TEST(Numbers, ThatRoundToNothingHaveNoSign) {
+    EXPECT_EQ(fixed(-0.004, 2), "0.00");
+    EXPECT_EQ(fixed(-0.0, 4), "0.0000");
+    EXPECT_EQ(fixed(-0.4, 0), "0");
+    EXPECT_EQ(fixed(-0.006, 2), "-0.01");
+    EXPECT_EQ(fixed(-10.0, 2), "-10.00");
+    EXPECT_EQ(fixed(2.0, 2), "2.00");
 }
 
 }  // namespace
