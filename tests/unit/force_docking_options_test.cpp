@@ -154,6 +154,22 @@ TEST(DockingOptions, BothTogetherAreTheContoursOfWhatIsLeft) {
     EXPECT_LT(std::abs(density_at(*next, other)), 0.2 * density_at(*next, own));
 }
 
+TEST(DockingOptions, TheUnitOfTheContoursIsTheSameWhicheverOptionCameFirst) {
+    const Vec3 own = scene().structures[0].home_com_model_m;
+    const auto both = make_model();
+    ASSERT_TRUE(set_option(*both, kOptionLaplacian | kOptionSubtraction, true));
+    const auto at_once = rebuilt(*both);
+    const auto model = make_model();
+    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    const auto whole = rebuilt(*model);
+    ASSERT_TRUE(set_option(*whole, kOptionSubtraction, true));
+    const auto after = rebuilt(*whole);
+    EXPECT_EQ(density_at(*after, own), density_at(*at_once, own));
+    ASSERT_TRUE(set_option(*after, kOptionSubtraction, false));
+    EXPECT_EQ(density_at(*rebuilt(*after), own), density_at(*whole, own));
+    EXPECT_EQ(density_at(*make_model(), own), density_at(*model, own));
+}
+
 TEST(DockingOptions, AClashIsFeltAtOnceWithoutAStepOfTheForce) {
     const auto model = make_model();
     Pose overlapping = scene().structures[1].home();

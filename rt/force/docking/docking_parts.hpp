@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "ipc/assets/density_map.hpp"
@@ -17,6 +18,12 @@
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {
+
+// Of the Laplacian, the same whatever is subtracted (felt_density.hpp): found when first asked for, then kept.
+struct LaplacianUnit {
+    std::once_flag once;
+    double value = 0.0;
+};
 
 struct DockingParts {
     // A level of so few points is computed whatever the deadline says: some 5 us.
@@ -28,6 +35,7 @@ struct DockingParts {
     std::vector<std::vector<PointSet>> levels;
     std::vector<ClashField> clash;  // by structure
     ClashGains clash_gains;
+    std::shared_ptr<LaplacianUnit> laplacian_unit = std::make_shared<LaplacianUnit>();
 };
 
 // codebooks: one for each structure.

@@ -101,11 +101,15 @@ DensityMap felt_map(const DockingParts& parts, std::uint32_t options, const Mode
     if ((options & kOptionLaplacian) == 0) {
         return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma};
     }
-    const DensityGrid whole = laplacian_map(parts.grid, meta.map_background, contour_resolution_m(parts));
-    const double unit = laplacian_unit(parts, whole);
-    if (!subtracted) return {whole, 0.0, unit};
-    return {laplacian_map(without_others(parts, bodies), meta.map_background, contour_resolution_m(parts)),
-            0.0, unit};
+    const auto filtered = [&](const DensityGrid& grid) {
+        return laplacian_map(grid, meta.map_background, contour_resolution_m(parts));
+    };
+    const DensityGrid felt = filtered(subtracted ? without_others(parts, bodies) : parts.grid);
+    // Half of the work of this function, and nothing in it changes from one body in the hand to the next.
+    LaplacianUnit& unit = *parts.laplacian_unit;
+    std::call_once(unit.once,
+                   [&] { unit.value = laplacian_unit(parts, subtracted ? filtered(parts.grid) : felt); });
+    return {felt, 0.0, unit.value};
 }
 
 }  // namespace
