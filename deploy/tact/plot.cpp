@@ -11,7 +11,8 @@ namespace {
 
 constexpr Colour kPaper{255, 255, 255}, kInk{38, 38, 38}, kFaint{228, 228, 228}, kGrey{110, 110, 110};
 constexpr Colour kShade{240, 236, 224}, kTint{214, 214, 214};
-constexpr double kTintOpacity = 0.16;
+constexpr double kStripOpacity = 0.6;
+constexpr int kStripPx = 8;
 constexpr int kTitlePx = 26, kTextPx = 18, kSmallPx = 16;
 constexpr int kMargin = 28;
 constexpr int kTickPx = 6;
@@ -147,15 +148,22 @@ struct Axes {
 };
 
 void draw_axes(Canvas& canvas, const Font& font, const Axes& a, const Panel& panel, bool x_numbers) {
+    std::array<int, 7> row_of{};  // from 1; by colour
+    int rows = 0;
     for (const Span& s : panel.spans) {
         const int from =
             static_cast<int>(std::lround(a.at({std::clamp(s.x_from, a.x.low, a.x.high), 0.0}).x));
         const int to = static_cast<int>(std::lround(a.at({std::clamp(s.x_to, a.x.low, a.x.high), 0.0}).x));
-        const Box box{from, a.box.top, std::max(to, from + 1), a.box.bottom};
-        if (s.colour < 0)
+        Box box{from, a.box.top, std::max(to, from + 1), a.box.bottom};
+        if (s.colour < 0) {
             canvas.fill(box, kShade);
-        else
-            canvas.fill(box, okabe_ito(s.colour), kTintOpacity);
+            continue;
+        }
+        int& row = row_of[static_cast<std::size_t>(s.colour) % row_of.size()];
+        if (row == 0) row = ++rows;
+        box.top += (row - 1) * (kStripPx + 1);
+        box.bottom = box.top + kStripPx;
+        canvas.fill(box, okabe_ito(s.colour), kStripOpacity);
     }
     const auto step_of = [](const std::vector<double>& t) { return t.size() > 1 ? t[1] - t[0] : 1.0; };
     const auto ys = ticks(a.y, std::max(a.box.height() / 55, 2));

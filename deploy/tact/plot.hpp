@@ -29,10 +29,12 @@ struct Goal {  // a horizontal line that curves are to be seen against
     std::string name{};
 };
 
-struct Span {  // a part of the common axis that is shaded
+struct Span {  // a part of the common axis that is marked
     double x_from = 0.0, x_to = 0.0;
     std::string name{};
-    int colour = -1;  // 0..6: a light tint of okabe_ito(), for what is said of one curve; -1: neutral
+    // -1: all of the panel is shaded there. 0..6: a strip at its head in okabe_ito(), for what is said of one
+    // curve; each colour has a row of its own, so that none hides another or the curves.
+    int colour = -1;
 };
 
 struct Panel {

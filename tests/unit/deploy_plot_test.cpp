@@ -217,6 +217,32 @@ TEST_F(PlotWithFont, the_shaded_part_is_where_it_is_said_to_be) {
     EXPECT_GT(right - left, image.width / 3);
 }
 
+TEST_F(PlotWithFont, what_is_said_of_curves_is_in_rows_at_the_head_and_hides_nothing) {
+    const auto rows_with = [&](std::vector<Span> spans) {
+        Plot plot{.panels = {{.y_label = "y", .spans = std::move(spans), .y_min = 0.0, .y_max = 1.0}}};
+        const Image image = draw(plot, *font_);
+        int rows = 0, last = 0;
+        for (int y = 0; y < image.height; ++y) {
+            int coloured = 0;
+            for (int x = 0; x < image.width; ++x) {
+                const std::uint8_t* const p =
+                    &image.rgba[4U * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                      static_cast<std::size_t>(x))];
+                coloured += std::abs(p[0] - p[2]) > 20 ? 1 : 0;
+            }
+            if (coloured > image.width / 4) ++rows, last = y;
+        }
+        EXPECT_LT(last, image.height / 4);
+        return rows;
+    };
+    const Span blue{0.0, 10.0, "", 0}, orange{0.0, 10.0, "", 1};
+    const int one = rows_with({blue});
+    EXPECT_GT(one, 3);
+    EXPECT_EQ(rows_with({blue, blue}), one);
+    EXPECT_NEAR(rows_with({blue, orange}), 2 * one, 2);  // a line of the grid may lie on one
+    EXPECT_EQ(rows_with({}), 0);
+}
+
 TEST_F(PlotWithFont, empty_constant_and_impossible_data_still_give_a_picture) {
     for (const auto& points : std::vector<std::vector<Point>>{{},
                                                               {{0, 0}},

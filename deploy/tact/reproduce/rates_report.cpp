@@ -28,8 +28,8 @@ plot::Curve triangle_curve(const Rates& r, const Run& run, const std::string& na
 }
 
 // Where windows of a run were disturbed, joined where they touch, in the colour of its curve.
-void shade_disturbed(const Rates& r, const std::vector<plot::Panel*>& panels, const Run& run, int colour,
-                     double until_s = 1e9) {
+void mark_disturbed(const Rates& r, const std::vector<plot::Panel*>& panels, const Run& run, int colour,
+                    double until_s = 1e9) {
     std::vector<plot::Span> spans;
     for (const RateWindow100& w : windows(run.samples, 0.2, until_s, kWindow_s, r.fast_s(run))) {
         if (!w.disturbed) continue;
@@ -68,13 +68,13 @@ plot::Plot figure_5(const Rates& r) {
                       [&](const plot::Point& p) { return p.x > std::min(r.off.phase.load_on_s(), end); });
     plot::Panel rates{.y_label = kRateLabel,
                       .curves = {off, rate_curve(r.low, b, 1), rate_curve(r.high, a, 2)},
-                      .goals = {{r.low.goal_hz, "goal B"}, {r.high.goal_hz, "goal A"}}};
+                      .goals = {{r.low.goal_hz, "goals of B and A"}, {r.high.goal_hz, ""}}};
     plot::Panel triangles{
         .y_label = kTriangleLabel,
         .curves = {off_triangles, triangle_curve(r, r.low, "B", 1), triangle_curve(r, r.high, "A", 2)}};
-    shade_disturbed(r, {&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
-    shade_disturbed(r, {&rates, &triangles}, r.low, 1);
-    shade_disturbed(r, {&rates, &triangles}, r.high, 2);
+    mark_disturbed(r, {&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
+    mark_disturbed(r, {&rates, &triangles}, r.low, 1);
+    mark_disturbed(r, {&rates, &triangles}, r.high, 2);
     return {.title = "Figure 5: force rate without external load, by goal",
             .remark = remark_of(r),
             .x_label = "time, s",
@@ -90,7 +90,7 @@ plot::Plot with_load(const Rates& r, const std::string& title,
     int colour = 0;
     for (const auto& [run, name] : runs) {
         const int of = run == &r.on_seed ? 3 : colour++;
-        shade_disturbed(r, {&rates, &triangles}, *run, of);
+        mark_disturbed(r, {&rates, &triangles}, *run, of);
         rates.curves.push_back(rate_curve(*run, name, of));
         triangles.curves.push_back(triangle_curve(r, *run, "", of));
     }
@@ -125,9 +125,11 @@ nlohmann::json json_of(const RateSummary& s, double goal_hz, double settled_s) {
     return j;
 }
 
-std::string disturbance(const RateSummary& s) {
-    if (s.disturbed_percent <= 0.0) return "";
-    return text("; %.0f %% of the windows were disturbed by other programs or a core slower than at its best",
+// The note, and how much was disturbed.
+std::string disturbed(const std::string& note, const RateSummary& s) {
+    if (s.disturbed_percent <= 0.0) return note;
+    return note + (note.empty() ? "" : "; ") +
+           text("%.0f %% of the windows were disturbed by other programs or a core slower than at its best",
                 s.disturbed_percent);
 }
 
@@ -217,11 +219,13 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
     };
     std::vector<SummaryRow> rows{
         {"5", "C: updates/s without adaptation", "about 550", whole(r.off.free.rate_mean_hz),
-         "today's core is faster: every atom is felt " + std::to_string(r.scale.atom_repeats) + " times (" +
-             std::to_string(r.scene.points_felt) + " points, the seed had 200) and the surface has " +
-             whole(r.triangles(r.scene.vertices)) + " triangles" + disturbance(r.off.free)},
+         disturbed("today's core is faster: every atom is felt " + std::to_string(r.scale.atom_repeats) +
+                       " times (" + std::to_string(r.scene.points_felt) +
+                       " points, the seed had 200) and the surface has " +
+                       whole(r.triangles(r.scene.vertices)) + " triangles",
+                   r.off.free)},
         {"5", "B: goal 800", "held", held(r.low.free, r.low.goal_hz),
-         "the goal is 1.45 times C, as there" + disturbance(r.low.free)},
+         disturbed("the goal is 1.45 times C, as there", r.low.free)},
         {"5", "A: goal 1200", "not reached",
          text("%.0f of %.0f, %.0f %% of each step's work done anew", r.high.free.rate_mean_hz, r.high.goal_hz,
               100.0 * r.high.free.fresh_mean),
@@ -232,17 +236,18 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
               r.triangles(r.off.free.vertices_mean), r.triangles(r.low.free.vertices_mean),
               r.low.free.fps_mean, r.off.free.fps_mean)},
         {"7", "updates/s with load, no adaptation", "300 to 400 (-27 to -45 %)",
-         text("%.0f (-%.0f %%)", r.off.loaded.rate_mean_hz, fall), disturbance(r.off.loaded)},
+         text("%.0f (-%.0f %%)", r.off.loaded.rate_mean_hz, fall), disturbed("", r.off.loaded)},
         {"8", "updates/s with load, law " + r.settings.law, "near its goal", held(r.on.loaded, r.on.goal_hz),
-         text(
-             "without adaptation %.0f %% below this goal; settled %.1f s after the load began; %.0f %% fewer "
-             "triangles%s",
-             -off_percent(r.off.loaded.rate_mean_hz, r.on.goal_hz), r.on.settled_loaded_s,
-             fewer(r.on.loaded, r.off.loaded), disturbance(r.on.loaded).c_str())}};
+         disturbed(text("without adaptation %.0f %% below this goal; settled %.1f s after the load began; "
+                        "%.0f %% fewer "
+                        "triangles",
+                        -off_percent(r.off.loaded.rate_mean_hz, r.on.goal_hz), r.on.settled_loaded_s,
+                        fewer(r.on.loaded, r.off.loaded)),
+                   r.on.loaded)}};
     if (!r.on_seed.samples.empty())
         rows.push_back({"8", "the same, law sensitus", "near its goal",
                         held(r.on_seed.loaded, r.on_seed.goal_hz),
-                        "the seed's own law" + disturbance(r.on_seed.loaded)});
+                        disturbed("the seed's own law", r.on_seed.loaded)});
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
             rows.push_back({"8", name, "not tried",
