@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "hal/falcon/falcon.hpp"
 #include "hal/openhaptics/open_haptics.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "hal/polhem/hidraw_port.hpp"
@@ -47,6 +48,16 @@ std::unique_ptr<HapticDevice> make_polhem(const DeviceSettings& s) {
         std::make_unique<polhem::PolhemBus>(std::make_unique<polhem::HidrawPort>()));
 }
 
+std::unique_ptr<HapticDevice> make_falcon(const DeviceSettings& s) {
+    FalconSettings settings;
+    settings.serial = s.serial;
+    settings.firmware = s.firmware;
+    settings.hold_max = s.state_hold;
+    settings.pump_priority = s.pump_priority;
+    settings.say = s.say;
+    return std::make_unique<Falcon>(settings);
+}
+
 constexpr std::array kDevices{
     DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
     DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
@@ -57,6 +68,8 @@ constexpr std::array kDevices{
                 false, &make_open_haptics},
     DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; untried on hardware", false,
                 &make_polhem},
+    DeviceEntry{"falcon", "Novint Falcon, with its owner's firmware file; untried on hardware", false,
+                &make_falcon},
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ struct DeviceSettings {
     std::string process_log;  // of "sim-process": file for its changes of state; empty: none
     std::string hd_library;   // of "openhaptics": path of libHD.so; empty: searched
     std::string hd_device;    // and the arm's name in the maker's set-up program; empty: the default one
+    std::string firmware;     // of "falcon": file that its owner has; empty: it has to run already
 };
 
 struct DeviceEntry {

@@ -133,6 +133,22 @@ Finding driver_arm(const Buses& b, const DeviceWish& wish, const std::string& hd
     return {"device", FindingLevel::ok, what + "there is one" + which, ""};
 }
 
+// A Falcon forgets its firmware with its power, and its owner has the file.
+Finding falcon_firmware(const DeviceWish& wish) {
+    if (wish.firmware.empty())
+        return {"firmware", FindingLevel::warn,
+                "device.firmware is not set: a Falcon that has just got its power does not start",
+                "set it to the file that came with the device's own software"};
+    if (wish.firmware_bytes <= 0)
+        return {"firmware", FindingLevel::fail,
+                "device.firmware = \"" + wish.firmware +
+                    "\": there is no such file, it cannot be read, or it is empty",
+                "set it to the file that came with the device's own software"};
+    return {"firmware", FindingLevel::ok,
+            "device.firmware = \"" + wish.firmware + "\": " + std::to_string(wish.firmware_bytes) + " bytes",
+            ""};
+}
+
 Finding can(const Buses& b, const DeviceWish& wish) {
     const bool wanted = wish.tracker == "can";
     const std::string what = wanted ? "tracker.interface = \"" + wish.tracker_interface + "\": " : "";
@@ -204,6 +220,7 @@ std::vector<Finding> judge_devices(const Buses& buses, const DeviceWish& wish, c
                                    const std::string& hd_library) {
     std::vector<Finding> out{driver_arm(buses, wish, hd_library), usb(buses)};
     known_devices(buses, wish, out);
+    if (wish.driver == "falcon") out.push_back(falcon_firmware(wish));
     if (wish.driver != "openhaptics")
         out.push_back({"openhaptics", FindingLevel::ok,
                        hd_library.empty() ? "the maker's library libHD.so is not where it is looked for"

@@ -5,6 +5,7 @@
 // is told, or warned about.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,14 @@ namespace tact::launch {
 
 // Of the configuration of tact-rt, what it says about devices; the defaults are tact-rt's.
 struct DeviceWish {
-    std::string driver = "sim", serial, hd_library;
+    std::string driver = "sim", serial, hd_library, firmware;
+    std::int64_t firmware_bytes = -1;  // of that file, as the machine has it; -1: it cannot be read
     std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
     std::string lines = "none", lines_chip = "cp2112_gpio";
 };
 
 // Reads the keys above and looks at no other; tact-rt --check judges the rest. Throws StartupError where the
-// file cannot be read or one of the keys is not a text.
+// file cannot be read or one of the keys is not a text. The size of the firmware is looked at too.
 [[nodiscard]] DeviceWish read_device_wish(const std::string& path);
 
 struct Person {

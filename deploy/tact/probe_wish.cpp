@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 
 #include "deploy/tact/probe.hpp"
 #include "ipc/base/error.hpp"
@@ -26,12 +27,12 @@ DeviceWish read_device_wish(const std::string& path) {
         const char *section, *name;
         std::string* target;
     };
-    for (const Key& key :
-         std::array{Key{"device", "driver", &wish.driver}, Key{"device", "serial", &wish.serial},
-                    Key{"device", "hd_library", &wish.hd_library}, Key{"tracker", "driver", &wish.tracker},
-                    Key{"tracker", "interface", &wish.tracker_interface},
-                    Key{"tracker", "format", &wish.tracker_format}, Key{"lines", "driver", &wish.lines},
-                    Key{"lines", "chip", &wish.lines_chip}}) {
+    for (const Key& key : std::array{
+             Key{"device", "driver", &wish.driver}, Key{"device", "serial", &wish.serial},
+             Key{"device", "firmware", &wish.firmware}, Key{"device", "hd_library", &wish.hd_library},
+             Key{"tracker", "driver", &wish.tracker}, Key{"tracker", "interface", &wish.tracker_interface},
+             Key{"tracker", "format", &wish.tracker_format}, Key{"lines", "driver", &wish.lines},
+             Key{"lines", "chip", &wish.lines_chip}}) {
         const auto node = file[key.section][key.name];
         if (!node) continue;
         if (!node.is_string())
@@ -39,6 +40,10 @@ DeviceWish read_device_wish(const std::string& path) {
                                "see deploy/tact.toml for the key and its default");
         *key.target = node.value_or(std::string());
     }
+    std::error_code error;
+    if (const auto bytes = std::filesystem::file_size(wish.firmware, error);
+        !error && access(wish.firmware.c_str(), R_OK) == 0)
+        wish.firmware_bytes = static_cast<std::int64_t>(bytes);
     return wish;
 }
 

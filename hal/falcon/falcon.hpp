@@ -1,7 +1,7 @@
 // Novint's Falcon: three degrees of freedom, through the firmware that its owner has, over its serial converter
 // (PROTOCOL.md). Untried on hardware.
 //
-// open()    finds the device, gives it its firmware if it does not run yet (some ten seconds), waits for its first
+// open()    waits for the device for up to kFindMax, gives it its firmware if it does not run yet (some ten seconds), waits for its first
 //           reply; then a pump thread owns the bus
 // read()    newest state: position, speed, buttons (bit 0, the clutch: the middle one); no orientation. Until all
 //           three encoders have found their marks it stands at the origin, nobody's hand is on it, and the
@@ -23,6 +23,7 @@
 #include "hal/api/haptic_device.hpp"
 #include "hal/arm/velocity.hpp"
 #include "hal/falcon/pump.hpp"
+#include "ipc/base/fifo.hpp"
 
 namespace tact {
 
@@ -31,8 +32,10 @@ struct FalconSettings {
     std::string firmware;  // file; empty: it has to run already
     falcon::Geometry geometry;
     Duration hold_max = std::chrono::milliseconds(3);  // the newest state is good for so long
-    int pump_priority = 0;                             // FIFO; 0: ordinary scheduling
+    int pump_priority = kPumpPriority;                 // FIFO; 0: ordinary scheduling
     bool thread = true;                                // false: the caller runs pump().round(), for tests
+    void (*say)(const char* text) =
+        nullptr;  // while open() waits or goes on with less; null: on standard error
 };
 
 class Falcon final : public HapticDevice {
@@ -40,6 +43,7 @@ public:
     // What its maker does not tell: low, and to be raised by who has measured it.
     static constexpr double kForceContinuousN = 2.5;
     static constexpr double kStiffnessNM = 1000.0;
+    static constexpr Duration kFindMax = std::chrono::seconds(5);  // it is just being plugged or switched on
 
     explicit Falcon(const FalconSettings& settings);
     Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> bus);
@@ -58,6 +62,7 @@ public:
 private:
     void find();
     void wait_for_first_reply();
+    void say(const std::string& text) const;
     void start_thread();
     void live() noexcept;
     [[nodiscard]] DeviceInfo describe() const;

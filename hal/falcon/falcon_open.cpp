@@ -1,7 +1,8 @@
 // What happens on the main thread: finding the device, its firmware, the pump's thread.
 #include <pthread.h>
-#include <sched.h>
 #include <signal.h>
+
+#include <cstdio>
 
 #include "hal/falcon/falcon.hpp"
 #include "ipc/base/error.hpp"
@@ -15,9 +16,14 @@ using phantom::BusFinding;
 
 namespace {
 
-constexpr Duration kFindMax = std::chrono::seconds(3);    // of a device that is just being plugged
 constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, written up to three times
 constexpr Duration kFlushMax = std::chrono::milliseconds(50);
+
+// What a moment may mend: udev gives the rights a little after the plug.
+bool passes(BusFault fault) noexcept {
+    return fault == BusFault::missing || fault == BusFault::denied || fault == BusFault::busy ||
+           fault == BusFault::not_ready;
+}
 
 [[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
     const std::string what = "opening the Falcon" + (serial.empty() ? "" : " " + serial);
@@ -83,25 +89,37 @@ DeviceInfo Falcon::open() {
     return describe();
 }
 
+void Falcon::say(const std::string& text) const {
+    if (settings_.say != nullptr) return settings_.say(text.c_str());
+    std::fprintf(stderr, "%s\n", text.c_str());
+}
+
 void Falcon::find() {
     const Instant end = bus_->now() + kFindMax;
+    bool said = false;
     while (true) {
         const BusFinding found = pump_->open();
         serial_ = found.serial;
         if (found.fault == BusFault::none) return;
-        const bool soon = found.fault == BusFault::not_ready || found.fault == BusFault::busy;
-        if (!soon || bus_->now() >= end) refuse(found, settings_.serial);
+        if (!passes(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
+        if (!said) say("waiting a few seconds for the Falcon: it is not there, or not ready yet");
+        said = true;
         static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
     }
 }
 
 void Falcon::wait_for_first_reply() {
-    const Instant end = bus_->now() + kFirstMax;
-    while (bus_->now() < end) {
+    const Instant start = bus_->now();
+    bool said = false;
+    while (bus_->now() - start < kFirstMax) {
         pump_->round(std::chrono::milliseconds(1));
         if (!pump_->read(news_)) continue;
         if (news_.link == Link::refused) refuse(news_.boot_fault, serial_);
         if (news_.link == Link::open && news_.replies > 0) return;
+        if (!said && bus_->now() - start > std::chrono::seconds(1)) {
+            say("giving the Falcon its firmware: some ten seconds");
+            said = true;
+        }
     }
     throw StartupError("the Falcon " + serial_, "it does not answer (" + summary(news_.counts) + ")",
                        "take it off USB and power for a moment, and plug it in again");
@@ -126,15 +144,13 @@ void Falcon::start_thread() {
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this] { live(); });
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    const std::string refused =
+        raise_to_fifo(thread_.native_handle(), "the Falcon's bus", settings_.pump_priority);
+    if (!refused.empty()) say(refused);
 }
 
 void Falcon::live() noexcept {
     pthread_setname_np(pthread_self(), "falcon");
-    if (settings_.pump_priority > 0) {
-        sched_param param{};
-        param.sched_priority = settings_.pump_priority;
-        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
-    }
     while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
     const Instant end = bus_->now() + kFlushMax;
     do pump_->round(std::chrono::milliseconds(1));

@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kPhantomInterface = 0xFF5401;
 inline constexpr std::array kKnownDevices{
     KnownDevice{Use::arm, "phantom-usb", "Phantom arm on an amplifier board", 0, 0, kPhantomInterface},
     KnownDevice{Use::arm, "polhem", "Haptikfabriken or Polhem arm", 0x16c0, 0x0486},
-    KnownDevice{Use::arm, "", "Novint Falcon", 0x0403, 0xcb48},
+    KnownDevice{Use::arm, "falcon", "Novint Falcon", 0x0403, 0xcb48},
     KnownDevice{Use::lines, "gpio", "CP2112, 8 lines", 0x10c4, 0xea90},
     KnownDevice{Use::lines, "gpio", "MCP2221A, 4 lines", 0x04d8, 0x00dd},
     KnownDevice{Use::lines, "gpio", "FT232H, 4 lines", 0x0403, 0x6014},

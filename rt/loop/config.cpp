@@ -59,6 +59,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.process_log", &c.device.process_log, 0, 0, {}},
         {"device.serial", &c.device.serial, 0, 0, {}},
         {"device.pump_priority", &c.device.pump_priority, 0, 94, {}},
+        {"device.firmware", &c.device.firmware, 0, 0, {}},
         {"device.hd_library", &c.device.hd_library, 0, 0, {}},
         {"device.hd_device", &c.device.hd_device, 0, 0, {}},
         {"device2.driver", &c.device2.driver, 0, 0, device2_names()},
@@ -325,6 +326,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.sim.hand.script = c.device.hand;
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
     d.process_log = c.device.process_log;
+    d.firmware = c.device.firmware;
     d.hd_library = c.device.hd_library;
     d.hd_device = c.device.hd_device;
     d.arm = c.arm;

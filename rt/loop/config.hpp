@@ -38,8 +38,9 @@ struct RtConfig {
         std::string process_log;                     // of sim-process: file for its changes of state
         std::string serial;                          // of a real device; empty: the only one
         std::int64_t pump_priority = kPumpPriority;  // FIFO, of the thread on its bus; 0: ordinary
-        std::string hd_library;                      // of openhaptics: libHD.so; empty: searched
-        std::string hd_device;  // of openhaptics: name of the arm; empty: the default one
+        std::string firmware;    // of falcon: its owner's file; empty: it has to run already
+        std::string hd_library;  // of openhaptics: libHD.so; empty: searched
+        std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
     } device;
     struct Device2 {
         std::string driver = "none";  // of the second hand, a pointer; the bodies are in the first one

@@ -259,6 +259,7 @@ public:
         FalconSettings settings;
         settings.thread = false;
         settings.firmware = firmware;
+        settings.say = [](const char* /*text*/) {};
         device_ = std::make_unique<Falcon>(settings, std::move(board));
     }
 

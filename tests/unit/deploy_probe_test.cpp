@@ -213,6 +213,31 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     EXPECT_FALSE(usb.there[1].nodes[0].usable);
 }
 
+TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
+    const Tree tree;
+    tree.usb("1-4", "0403", "cb48", "FA-1", 8);
+    tree.file("sys/bus/usb/devices/1-4/speed", "12\n");
+    DeviceWish wish;
+    EXPECT_EQ(ask(tree, wish).one("firmware").says, "");  // nobody asked for one
+    wish.driver = "falcon";
+    Answer a = ask(tree, wish);
+    EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, may be opened"}));
+    EXPECT_EQ(a.one("firmware").level, FindingLevel::warn);
+    EXPECT_TRUE(says(a.one("firmware").mend, {"the file that came with the device"}));
+    tree.file("tact.toml",
+              "[device]\ndriver = \"falcon\"\nfirmware = \"" + (tree.root() / "fw.bin").string() + "\"\n");
+    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
+    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "no such file"}));
+    tree.file("fw.bin", "");
+    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
+    tree.file("fw.bin", "12345");
+    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    EXPECT_FALSE(a.fails());
+    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "5 bytes"}));
+}
+
 TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
     const Tree tree;
     tree.can("eth0", "0x1003\n", 1500, 1);

@@ -61,6 +61,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.device.process_log, defaults.device.process_log);
     EXPECT_EQ(config.device.serial, defaults.device.serial);
     EXPECT_EQ(config.device.pump_priority, defaults.device.pump_priority);
+    EXPECT_EQ(config.device.firmware, defaults.device.firmware);
     EXPECT_EQ(config.device2.driver, defaults.device2.driver);
     EXPECT_EQ(config.device2.serial, defaults.device2.serial);
     EXPECT_EQ(config.device2.hand_seed, defaults.device2.hand_seed);
