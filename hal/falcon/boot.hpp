@@ -42,7 +42,10 @@ public:
     static constexpr Duration kEchoMax = std::chrono::seconds(1);
     static constexpr unsigned kAsks = 5, kAsksAfterLoad = 50, kHellos = 30, kAttempts = 3;
 
-    Boot(FtdiBus& bus, std::vector<std::byte> firmware) : bus_(&bus), firmware_(std::move(firmware)) {}
+    explicit Boot(FtdiBus& bus) : bus_(&bus) {}
+
+    // Before the first start().
+    void give(std::vector<std::byte> firmware) { firmware_ = std::move(firmware); }
 
     // After every connect. anew: not asked first, so that the device starts without its marks.
     void start(Instant now, bool anew = false) noexcept;

@@ -138,8 +138,6 @@ IoStatus Falcon::write(const DeviceCommand& command, Instant now) noexcept {
     return sample_.state == DeviceState::fault ? IoStatus::fault : IoStatus::ok;
 }
 
-void Falcon::relax() noexcept {
-    if (pump_) pump_->relax();
-}
+void Falcon::relax() noexcept { pump_->relax(); }
 
 }  // namespace tact

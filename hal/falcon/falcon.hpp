@@ -56,8 +56,7 @@ public:
     IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT override;
     void relax() noexcept override;
 
-    // Before open() there is none.
-    [[nodiscard]] falcon::Pump* pump() noexcept { return pump_.get(); }
+    [[nodiscard]] falcon::Pump& pump() noexcept { return *pump_; }
 
 private:
     void find();

@@ -67,21 +67,21 @@ bool passes(BusFault fault) noexcept {
 Falcon::Falcon(const FalconSettings& settings) : Falcon(settings, falcon::make_ftdi_bus()) {}
 
 Falcon::Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> bus)
-    : settings_(settings), legs_(settings.geometry), bus_(std::move(bus)) {}
+    : settings_(settings),
+      legs_(settings.geometry),
+      bus_(std::move(bus)),
+      pump_(std::make_unique<falcon::Pump>(*bus_, settings.serial, legs_.rad_per_count())) {}
 
 Falcon::~Falcon() {
     relax();
     leave_.store(true, std::memory_order_relaxed);
     if (thread_.joinable()) thread_.join();
-    if (pump_) pump_->close();
+    pump_->close();
 }
 
 DeviceInfo Falcon::open() {
     if (opened_) return describe();
-    std::vector<std::byte> firmware;
-    if (!settings_.firmware.empty()) firmware = falcon::read_firmware(settings_.firmware);
-    pump_ =
-        std::make_unique<falcon::Pump>(*bus_, settings_.serial, std::move(firmware), legs_.rad_per_count());
+    if (!settings_.firmware.empty()) pump_->give(falcon::read_firmware(settings_.firmware));
     find();
     wait_for_first_reply();
     opened_ = true;

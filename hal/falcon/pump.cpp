@@ -33,10 +33,10 @@ std::string summary(const PumpCounts& c) {
            ", connected again " + std::to_string(c.reconnects);
 }
 
-Pump::Pump(FtdiBus& bus, std::string serial, std::vector<std::byte> firmware, double rad_per_count)
+Pump::Pump(FtdiBus& bus, std::string serial, double rad_per_count)
     : bus_(bus),
       serial_(std::move(serial)),
-      boot_(bus, std::move(firmware)),
+      boot_(bus),
       counts_per_s_(kLegRadS / rad_per_count),
       amplifier_(0, kMost) {}
 
@@ -57,6 +57,7 @@ void Pump::connected(Instant now, bool anew) noexcept {
     news_.link = Link::starting;
     news_.boot_fault = BootFault::none;
     news_.reply.homed = 0;
+    news_.on = news_.tripped = false;
     sending_ = due_ = stalled_ = known_ = moved_ = false;
     owed_ = unanswered_ = far_ = 0;
     amplifier_ = phantom::Amplifier(0, kMost);  // off: enable has to be seen low first
@@ -83,6 +84,7 @@ void Pump::lose(Instant now) noexcept {
     bus_.close();
     news_.link = Link::closed;
     news_.reply.homed = 0;
+    news_.on = news_.tripped = false;
     sending_ = moved_ = false;
     retry_at_ = now + kReopenEvery;
 }
@@ -194,7 +196,7 @@ bool Pump::possible(const Reply& reply, Instant at) const noexcept {
     return true;
 }
 
-void Pump::take_reply(const Reply& reply, Instant at) noexcept {
+void Pump::take_reply(Reply reply, Instant at) noexcept {
     if (owed_ == 0) {
         ++news_.counts.unasked;
         return;
@@ -204,11 +206,16 @@ void Pump::take_reply(const Reply& reply, Instant at) noexcept {
     if (last_answers_ns_ != 0) news_.delay_ns = std::max<std::int64_t>(to_ns(at) - last_answers_ns_, 0);
     last_answers_ns_ = sent_answers_ns_;
     sent_answers_ns_ = 0;
+    if (doubted_ && reply.homed == kHomedAll)
+        reply.homed = 0;
+    else
+        doubted_ = false;
     if (!possible(reply, at)) {
         ++news_.counts.far;
         if (++far_ < kFarMax) return;
         ++news_.counts.jumps;
         ++news_.jumps;
+        doubted_ = true;
         connected(at, true);
         return;
     }

@@ -2,7 +2,8 @@
 // not do itself: enable edges, a watchdog, latched faults (hal/phantom/amplifier.hpp, fed from here).
 //
 // Replies   only such that were asked for; with counts that a Falcon can have and that are not farther from the
-//           last ones than its legs can go. Three of those in a row are a jump: the device is started anew.
+//           last ones than its legs can go. Three of those in a row are a jump: the device is started anew, and
+//           its marks count again once it said that it has lost them.
 // Requests  one on its way at a time, with the servo's newest torque, or kIdle after the last one. While the
 //           amplifier is off, and before all encoders are homed, its torque is zero. A zero that is due by a
 //           watchdog or relax() does not wait for a reply.
@@ -71,7 +72,10 @@ public:
     static constexpr double kLegRadS = 60.0;  // twice what a quick hand makes of a leg
     static constexpr std::size_t kBatch = 16, kBatchesMax = 4;
 
-    Pump(FtdiBus& bus, std::string serial, std::vector<std::byte> firmware, double rad_per_count);
+    Pump(FtdiBus& bus, std::string serial, double rad_per_count);
+
+    // Before open().
+    void give(std::vector<std::byte> firmware) { boot_.give(std::move(firmware)); }
 
     // Start-up: one try to open the bus. From then on round() keeps it open.
     [[nodiscard]] phantom::BusFinding open();
@@ -107,7 +111,7 @@ private:
     [[nodiscard]] Torque3 torque() const noexcept;
     void take(const phantom::BusEvent& event) noexcept;
     void take_bytes(std::span<const std::byte> bytes, Instant at) noexcept;
-    void take_reply(const Reply& reply, Instant at) noexcept;
+    void take_reply(Reply reply, Instant at) noexcept;
     [[nodiscard]] bool possible(const Reply& reply, Instant at) const noexcept;
     void count_second(Instant now) noexcept;
     void publish() noexcept;
@@ -127,7 +131,8 @@ private:
     unsigned owed_ = 0;  // replies
     unsigned unanswered_ = 0, far_ = 0;
     bool sending_ = false, due_ = false, known_ = false, stalled_ = false;
-    bool moved_ = false;  // there is torque on the wire
+    bool moved_ = false;    // there is torque on the wire
+    bool doubted_ = false;  // what the encoders call their marks, until one of them has none
     Instant asked_at_{}, taken_at_{}, retry_at_{}, second_at_{}, ordered_at_{};
     std::int64_t interval_ns_ = 1'000'000;
     std::int64_t answers_ns_ = 0, sent_answers_ns_ = 0, last_answers_ns_ = 0;

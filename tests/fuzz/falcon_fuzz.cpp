@@ -105,7 +105,7 @@ bool run(std::span<const std::byte> input) {
             default:
                 bus.push(BusEventKind::packet, encode(Reply{{}, 0, falcon::kHomedAll}));
         }
-        device.pump()->round(Duration{0});
+        device.pump().round(Duration{0});
         const Instant now = bus.time;
         const IoStatus status = device.read(sample, now);
         require(sample.T_dev_tool.finite() && sample.twist_dev.linear_m_s.allFinite());
@@ -122,7 +122,7 @@ bool run(std::span<const std::byte> input) {
                          now));
         if ((what & 128U) != 0) device.relax();
         if (!enable || (what & 128U) != 0) bus.may_push = false;
-        device.pump()->round(Duration{0});
+        device.pump().round(Duration{0});
     }
     return taken > 0;
 }

@@ -287,7 +287,7 @@ public:
     }
     IoStatus write(const DeviceCommand& command, Instant /*now*/) noexcept override {
         const IoStatus status = device_->write(command, board_->now());
-        if (opened_) device_->pump()->round(Duration{0});
+        if (opened_) device_->pump().round(Duration{0});
         return status;
     }
     void relax() noexcept override { device_->relax(); }
@@ -298,7 +298,7 @@ public:
         const IoStatus status = device_->read(sample, board_->now());
         given.heartbeat = ++heartbeat_;
         write_status = device_->write(given, board_->now());
-        device_->pump()->round(Duration{0});
+        device_->pump().round(Duration{0});
         return status;
     }
     // At most a millisecond without the servo.
@@ -308,14 +308,14 @@ public:
         while (left > Duration{0}) {
             const Duration piece = std::min<Duration>(left, std::chrono::microseconds(250));
             board_->advance(piece);
-            device_->pump()->round(Duration{0});
+            device_->pump().round(Duration{0});
             left -= piece;
         }
     }
     [[nodiscard]] FalconBoard& board() noexcept { return *board_; }
     [[nodiscard]] falcon::PumpNews news() noexcept {
         falcon::PumpNews n;
-        static_cast<void>(device_->pump()->read(n));
+        static_cast<void>(device_->pump().read(n));
         return n;
     }
 

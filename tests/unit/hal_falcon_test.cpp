@@ -211,6 +211,16 @@ TEST_F(FalconArm, encoders_that_stay_where_no_leg_can_have_gone_to_are_a_jump_th
     EXPECT_EQ(arm_.news().counts.jumps, 1U);
     run(100, on_);
     EXPECT_TRUE(powerless());
+    // Without its firmware it could not be started anew: its marks are not believed until it has lost them.
+    rearm();
+    EXPECT_TRUE(powerless());
+    EXPECT_EQ(arm_.sample.notice, DeviceNotice::move_about);
+    board().homed = 0;
+    run(5, on_);
+    board().shift = {};
+    board().push_through();
+    rearm();
+    EXPECT_FALSE(powerless());
 }
 
 TEST_F(FalconArm, counts_that_no_grip_can_have_are_lost_ones) {
