@@ -135,12 +135,14 @@ std::string disturbed(const std::string& note, const RateSummary& s) {
 
 // Rate, worst window and picture of a run with a goal.
 std::string held(const RateSummary& s, double goal_hz) {
+    const std::string quiet = s.rate_worst_quiet_hz > 0.0
+                                  ? text("undisturbed %.0f (%.0f %%)", s.rate_worst_quiet_hz,
+                                         100.0 * s.rate_worst_quiet_hz / goal_hz)
+                                  : std::string("none undisturbed");
     return text(
-        "%.0f of %.0f (%+.1f %%), worst 0.1 s %.0f (%.0f %%), undisturbed %.0f (%.0f %%); %.0f %% of each "
-        "step's work done anew",
+        "%.0f of %.0f (%+.1f %%), worst 0.1 s %.0f (%.0f %%), %s; %.0f %% of each step's work done anew",
         s.rate_mean_hz, goal_hz, off_percent(s.rate_mean_hz, goal_hz), s.rate_worst_100ms_hz,
-        100.0 * s.rate_worst_100ms_hz / goal_hz, s.rate_worst_quiet_hz,
-        100.0 * s.rate_worst_quiet_hz / goal_hz, 100.0 * s.fresh_mean);
+        100.0 * s.rate_worst_100ms_hz / goal_hz, quiet.c_str(), 100.0 * s.fresh_mean);
 }
 
 }  // namespace
