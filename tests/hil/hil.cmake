@@ -1,5 +1,7 @@
 # Programs that only tests/hil runs, in its machine.
 tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics assets launch emu_lines)
-set_target_properties(hil_lines_story PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 target_compile_definitions(hil_lines_story PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
 add_dependencies(hil_lines_story tact-rt)
+tact_program(hil_give_way SOURCES hil/give_way.cpp USES base)
+set_target_properties(hil_lines_story hil_give_way PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)

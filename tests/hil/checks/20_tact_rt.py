@@ -13,7 +13,7 @@ import time
 BIN = sys.argv[1]
 HERE = os.path.dirname(os.path.abspath(__file__))
 ACCEL = os.environ.get("TACT_HIL_ACCEL", "kvm")
-CYCLES = 5000 if ACCEL == "kvm" else 500
+CYCLES = 5000 if ACCEL == "kvm" else 2000
 PATIENCE_S = 100
 FIFO, PINNED, ISOLATED, LOCKED, NO_DEEP_SLEEP = (1 << i for i in range(5))  # ipc/topics/health.hpp
 

@@ -42,7 +42,7 @@ def said_as_nobody(rtprio, memlock):
         os.setgid(NOBODY)
         os.setuid(NOBODY)
 
-    done = subprocess.run([f"{MINE}/tact-rt", f"{MINE}/small.tact", "--seconds", "1"], preexec_fn=become, cwd=MINE,
+    done = subprocess.run([f"{MINE}/tact-rt", f"{MINE}/small.tact", "--seconds", "0.3"], preexec_fn=become, cwd=MINE,
                           env=dict(os.environ, TACT_RUNTIME_DIR=MINE), capture_output=True, text=True, timeout=100)
     print(f"with rtprio {rtprio}, memlock {memlock}:\n{done.stderr}")
     assert done.returncode == 0, done.returncode

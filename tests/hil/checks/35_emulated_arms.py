@@ -28,14 +28,14 @@ def powered(board, emulator, serial):
 
 
 def main():
-    with parts.Emulator(sys.argv[1], "--arm", "LEFT", "--arm", "RIGHT:premium-1.5", "--rate-hz", "200", "--watchdog-ms", "3000",
+    with parts.Emulator(sys.argv[1], "--arm", "LEFT", "--arm", "RIGHT:premium-1.5", "--rate-hz", "200", "--watchdog-ms", "500",
                         "--hand", "passive", "--no-ritual") as emulator:
         left, right = parts.Board("LEFT"), parts.Board("RIGHT")
         assert left.node != right.node
         infos = [b.query() for b in (left, right)]
         print(*infos, sep="\n")
         assert [i["serial"] for i in infos] == ["LEFT", "RIGHT"] and infos[0]["boot"] != infos[1]["boot"]
-        assert all(i["versions"] == (1, 1) and i["rate_hz"] == 200 and i["watchdog_ms"] == 3000 for i in infos)
+        assert all(i["versions"] == (1, 1) and i["rate_hz"] == 200 and i["watchdog_ms"] == 500 for i in infos)
         good_states(right, 20)
         still = good_states(left, 20)[-1]
 
@@ -59,8 +59,10 @@ def main():
         while not left.state()["status"] & BROWN_OUT:
             pass
         emulator.order("well LEFT")
-        left.command((0,) * 6, False)
-        emulator.until("amplifier", "off", "LEFT")
+        emulator.until("fault", "well", "LEFT")
+        while emulator.newest("amplifier", "LEFT")[1]["detail"] != "off":  # mended by the board's next step
+            left.command((0,) * 6, False)
+            left.state()
 
         # A board whose states are not fetched in time drops the oldest, so many are spoilt and one has to be seen.
         for fault, seen in (("corrupt", lambda a, b: not b["good"]),
