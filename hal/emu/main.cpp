@@ -34,7 +34,8 @@ struct Options {
     std::vector<std::string> arms;
     std::string tracker, faults, hand = "wander";
     double seconds = 0.0;
-    unsigned rate_hz = 1000, watchdog_ms = 10, slow = 1;
+    unsigned rate_hz = 1000, watchdog_ms = 10;
+    double slow = 1.0;
     std::uint64_t seed = 1;
     bool orders = false, json = false, check = false, no_ritual = false, unplugged = false;
     bool lines = false;
@@ -56,7 +57,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--seed", o.seed, "of hands and head");
     app.add_flag("--no-ritual", o.no_ritual, "nobody takes the arms to their calibration pose");
     app.add_option("--slow", o.slow, "the calibration takes so many times as long")
-        ->check(CLI::Range(1, 100));
+        ->check(CLI::Range(0.6, 100.0));
     app.add_flag("--unplugged", o.unplugged, "the arms wait for the order \"plug\"");
     app.add_flag("--json", o.json, "what happens, as one JSON object a line");
     app.add_flag("--check", o.check, "read and check everything, then exit");

@@ -1,0 +1,95 @@
+"""A person at a desk with emulated arms: arms until the motors pull, makes faults, and sees each end in zero."""
+import re
+import time
+
+import parts
+
+ARM_S = 60
+TOLD = ("safety open", "hot", "over-current", "brown-out", "count lost", "encoder jump")  # by the board's next state
+TOLD_COMMANDS_MAX = 8  # of the controller, from such a fault to no current
+
+
+class Desk:
+    """The emulator, the controller and the person; faults are those of the arm LEFT unless another is named."""
+
+    def __init__(self, emulator, rt, person, arms=("LEFT",)):
+        self.emulator, self.rt, self.person, self.arms = emulator, rt, person, arms
+
+    def newest(self, what, arm="LEFT"):
+        """Index and line; asked of what the emulator said, since each question costs time."""
+        return self.emulator.newest(what, arm)
+
+    def flowing(self, arm="LEFT"):
+        return self.newest("currents", arm)[1]["detail"] == "flowing"
+
+    def new_states(self, what, arm="LEFT"):
+        """Waits for states that the controller fetches."""
+        sent = self.emulator.status(arm)["states"]
+        parts.wait_for(lambda: self.emulator.status(arm)["states"] > sent + 10, f"states after {what}")
+
+    def arm(self):
+        """Until the motors pull: what a person does whom the screen tells what is wrong."""
+        end = time.monotonic() + ARM_S
+        while True:
+            state = self.rt.state()
+            if state == "active" and parts.soon(self.flowing, 2.0):
+                return
+            assert time.monotonic() < end, f"not armed in {ARM_S} s; {state}, {self.notice()}"
+            if state == "active":  # the board's watchdog has tripped
+                self.person.send("disarm")
+            elif state == "fault":
+                self.person.send("reset")
+            elif "reset pose" in self.notice():
+                for arm in self.arms:
+                    self.emulator.order(f"calibrate {arm}")
+                for arm in self.arms:
+                    parts.wait_for(lambda a=arm: self.newest("hand", a)[1]["detail"] == "free", f"{arm} calibrated")
+            elif state == "ready":
+                self.person.send("arm")
+            parts.soon(lambda s=state: self.rt.state() != s, 0.5)
+
+    def stopped(self, arm):
+        """The controller has latched; where its timing latches nothing (KVM on a busy host), the board's watchdog may have."""
+        return self.rt.state() == "fault" or (
+            parts.ACCEL == "kvm" and self.newest("amplifier", arm)[1]["detail"] == "tripped")
+
+    def notice(self):
+        """What the screen asks the person to do."""
+        return next((line for line in reversed(self.rt.said()) if ": device: " in line), "")
+
+    def fault(self, order, arm="LEFT", patience_s=parts.PATIENCE_S):
+        """Gives the order and asserts that it ends in zero, and stays there once it is mended. False: it never came."""
+        self.arm()
+        self.emulator.order(f"{order} {arm}")
+        what, name = ("usb", "unplugged") if order == "unplug" else ("fault", re.sub(r" -?\d.*", "", order))
+        self.emulator.until(what, name, arm)
+        at, line = self.newest(what, arm)
+        if not parts.soon(lambda: not self.flowing() and self.stopped(arm), patience_s):
+            assert patience_s < parts.PATIENCE_S, f"zero and fault after {order}"
+            self.emulator.order(f"well {arm}")
+            return False
+        zero_at, zero = self.newest("currents")
+        told = re.findall(r"cycle (\d+): device: (.*)", "".join(self.rt.said()))[-1]
+        latched = re.findall(r"cycle (\d+): state changed: ", "".join(self.rt.said()))[-1]
+        commands = zero["commands"] - line["commands"]
+        if arm == "LEFT":
+            print(f"-- {order}: no current{' already' if zero_at < at else ''} after {commands} commands and "
+                  f"{(zero['t_ns'] - line['t_ns']) / 1e6:.1f} ms; told in cycle {told[0]} ({told[1]}), latched in "
+                  f"{latched}", flush=True)
+            assert name not in TOLD or commands <= TOLD_COMMANDS_MAX, f"{commands} commands from {order} to zero"
+        else:
+            print(f"-- {order} {arm}: no current in LEFT after {(zero['t_ns'] - line['t_ns']) / 1e6:.1f} ms; latched in cycle "
+                  f"{latched}", flush=True)
+        if order == "unplug":
+            self.emulator.order(f"plug {arm}")
+        self.emulator.order(f"well {arm}")
+        self.new_states(order, arm)
+        assert self.stopped(arm) and not self.flowing(), f"armed by itself after {order}: {self.rt.state()}"
+        return True
+
+
+def names_of_the_kernel(*serials):
+    """Prints where the kernel put each board, once its host has configured it."""
+    for serial in serials:
+        node = parts.wait_for(lambda s=serial: parts.find_board(s), f"{serial} configured")
+        print(f"{serial}: {node}", flush=True)
