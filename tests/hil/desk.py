@@ -54,8 +54,9 @@ class Desk:
             parts.ACCEL == "kvm" and self.newest("amplifier", arm)[1]["detail"] == "tripped")
 
     def notice(self):
-        """What the screen asks the person to do."""
-        return next((line for line in reversed(self.rt.said()) if ": device: " in line), "")
+        """What the screen asks the person to do, for each hand."""
+        return "".join(next((line for line in reversed(self.rt.said()) if words in line), "")
+                       for words in (": device: ", ": device of the second hand: "))
 
     def fault(self, order, arm="LEFT", patience_s=parts.PATIENCE_S):
         """Gives the order and asserts that it ends in zero, and stays there once it is mended. False: it never came."""

@@ -1,13 +1,17 @@
 // tact-rt as it is shipped, with safety lines on a CP2112 adapter by the kernel's own driver and libgpiod: every stop leads
 // to zero force, latched with its cause, released by nothing but a person; a servo that stands loses its enable line.
 //
-// usage: hil_lines_story [FIFO_PRIORITY CORE]. As root, on a kernel with uhid and hid-cp2112.
+// usage: hil_lines_story [FIFO_PRIORITY CORE [counted]]. As root, on a kernel with uhid and hid-cp2112. "counted": the
+//        machine's clock counts its instructions, so that no host can make anything in it late; then the servo's silence
+//        may be 5 ms, as deployed, and the enable line of a starved servo has to be low within 10 ms.
 // Exit  0 all is as it has to be, 1 something is not (the last line says what), 77 the kernel has no uhid
 #include <sched.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -22,14 +26,24 @@ namespace {
 // The wiring of this story.
 enum Pin : unsigned { kStopA, kStopB, kPedal, kAmplifier, kEnable, kWatchdog, kLamp };
 
-// Patient: an emulated processor stands still now and then.
-constexpr const char* kConfig = R"([servo]
+// Patient: a busy host's processor stands still now and then.
+constexpr const char* kPatient = R"([servo]
 period_us = 1000.0
 model_us_max = 100000.0
 [safety]
 sample_age_us_max = 1e6
 supervisor_us_max = 5e6
-[lines]
+)";
+constexpr const char* kCounted = R"([servo]
+period_us = 2000.0
+spin_us = 0.0
+model_us_max = 100000.0
+[safety]
+sample_age_us_max = 1e6
+)";
+constexpr double kEnableLowMs = 10.0;  // after a hog began
+constexpr const char* kLines = R"([lines]
+look_us = 2000.0
 driver = "gpio"
 chip = "cp2112_gpio"
 emergency_stop_a = "0"
@@ -52,7 +66,10 @@ void claim(bool good, const std::string& what) {
 
 class Story {
 public:
-    Story(std::string priority, std::string core) : core_(std::stoi(core)) {
+    Story(std::string priority, std::string core, bool counted)
+        : config_(std::string(counted ? kCounted : kPatient) + kLines),
+          core_(std::stoi(core)),
+          counted_(counted) {
         more_ = {"--priority", std::move(priority), "--core", std::move(core)};
         close_contacts();
         adapter_.follow(kAmplifier, kEnable);
@@ -60,7 +77,7 @@ public:
     }
 
     void start() {
-        controller_.emplace(rig_, more_, kConfig);
+        controller_.emplace(rig_, more_, config_);
         claim(watch_.attach(), "a controller comes up; it said: " + controller_->said());
         to_force("at the start");
     }
@@ -118,7 +135,10 @@ public:
 
     // Above and below everything is as ever; only the servo gets no time.
     void hogged() {
-        const Instant begun = Monotonic::now();
+        void* shared =
+            mmap(nullptr, sizeof(std::int64_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        claim(shared != MAP_FAILED, "memory is to be had");
+        auto* begun_ns = new (shared) std::atomic<std::int64_t>(0);
         const pid_t hog = fork();
         if (hog == 0) {
             cpu_set_t set;
@@ -128,11 +148,12 @@ public:
             param.sched_priority = std::stoi(more_[1]);
             if (sched_setaffinity(0, sizeof set, &set) != 0 || sched_setscheduler(0, SCHED_FIFO, &param) != 0)
                 _exit(1);
+            begun_ns->store(to_ns(Monotonic::now()));
             for (;;) {
             }
         }
         const bool low = until([&] { return !adapter_.level(kEnable); });
-        const double ms = to_s(Monotonic::now() - begun) * 1e3;
+        const double ms = static_cast<double>(to_ns(Monotonic::now()) - begun_ns->load()) * 1e-6;
         const std::uint64_t edges = adapter_.edges(kWatchdog);
         const std::uint64_t cycle = watch_.tool().cycle;
         int status = 0;
@@ -142,14 +163,15 @@ public:
         claim(ran, "the hog ran on the servo's core at its priority");
         claim(low, "a servo that gets no time loses its enable line");
         std::printf(
-            "hog at the servo's priority: enable low after %.0f ms (its silence may be 5000 ms here), %llu "
-            "edges of "
-            "the watchdog line, cycle %llu\n",
-            ms, static_cast<unsigned long long>(edges), static_cast<unsigned long long>(cycle));
+            "hog at the servo's priority: enable low after %.1f ms (the servo's silence may be %s ms here), "
+            "%llu edges of the watchdog line, cycle %llu\n",
+            ms, counted_ ? "5" : "5000", static_cast<unsigned long long>(edges),
+            static_cast<unsigned long long>(cycle));
         claim(until([&] { return watch_.state() == RunState::fault; }), "the drop is a fault");
         std::printf("  and then: %s\n", run_reason_text(static_cast<RunReason>(watch_.health().reason)));
         claim(watch_.health().reason == static_cast<int>(RunReason::supervisor),
               "the supervisor is the cause");
+        claim(!counted_ || ms <= kEnableLowMs, "a starved servo's enable line is low within 10 ms");
         stays_off("hog");
         recovers("hog");
     }
@@ -165,7 +187,7 @@ public:
 
     void refusals() {
         const auto says = [&](const std::string& from, const std::string& to, const std::string& wanted) {
-            std::string text = kConfig;
+            std::string text = config_;
             text.replace(text.find(from), from.size(), to);
             const auto config = rig_.file("refused.toml", text);
             const auto said = run_to_end(rig_, rt_program(),
@@ -254,12 +276,14 @@ private:
     Watch watch_{rig_};
     Visual visual_{rig_};
     std::vector<std::string> more_;
+    std::string config_;
     int core_;
+    bool counted_;
     std::optional<Controller> controller_;
 };
 
-int tell(const std::string& priority, const std::string& core) {
-    Story story(priority, core);
+int tell(const std::string& priority, const std::string& core, bool counted) {
+    Story story(priority, core, counted);
     // The chip appears a moment after the adapter.
     claim(until([] { return access("/dev/gpiochip0", F_OK) == 0 || access("/dev/gpiochip1", F_OK) == 0; }),
           "a gpiochip comes");
@@ -294,7 +318,7 @@ int main(int argc, char** argv) {
     }
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
     try {
-        return tact::scenario::tell(argc == 3 ? argv[1] : "0", argc == 3 ? argv[2] : "-2");
+        return tact::scenario::tell(argc >= 3 ? argv[1] : "0", argc >= 3 ? argv[2] : "-2", argc == 4);
     } catch (const std::exception& e) {
         std::printf("%s\n", e.what());
         return 1;

@@ -43,7 +43,8 @@ def main():
         print("hil_lines_story is not built")
         return 77
     emulators_adapter(sys.argv[1])
-    return subprocess.run([story, "80", "1"], check=False).returncode
+    counted = ["counted"] if parts.ACCEL == "tcg" else []
+    return subprocess.run([story, "80", "1", *counted], check=False).returncode
 
 
 if __name__ == "__main__":
