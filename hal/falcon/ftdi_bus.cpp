@@ -2,13 +2,13 @@
 // then or with udev.
 #include <libusb.h>
 #include <poll.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cstring>
 #include <string>
 #include <utility>
 
+#include "hal/api/bus_wait.hpp"
 #include "hal/falcon/ftdi_find.hpp"
 
 namespace tact::falcon {
@@ -25,11 +25,6 @@ constexpr std::size_t kEvents = 64;
 constexpr unsigned kErrorsMax = 20;      // in a row: it is as good as gone
 constexpr unsigned kControlMaxMs = 500;  // the converter answers within a millisecond, or is gone
 constexpr Duration kCloseMax = std::chrono::milliseconds(500);
-
-timespec to_timespec(Duration d) noexcept {
-    const std::int64_t ns = std::max<std::int64_t>(d.count(), 0);
-    return {ns / 1'000'000'000, ns % 1'000'000'000};
-}
 
 class LibusbFtdi final : public FtdiBus {
 public:
@@ -55,6 +50,7 @@ private:
     };
     [[nodiscard]] BusFinding claim(BusFinding found);
     void queue(In& in) noexcept;
+    void handle_now() noexcept;
     void push(BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept;
     void came(const In& in, int size) noexcept;
     static void LIBUSB_CALL received(libusb_transfer* transfer) noexcept;
@@ -197,7 +193,7 @@ void LIBUSB_CALL LibusbFtdi::was_sent(libusb_transfer* transfer) noexcept {
             if (!std::exchange(bus.stall_said_, true)) bus.push(BusEventKind::stalled);
             return;
         default:
-            return bus.push(BusEventKind::send_failed);
+            return bus.push(++bus.errors_ > kErrorsMax ? BusEventKind::gone : BusEventKind::send_failed);
     }
 }
 
@@ -208,7 +204,7 @@ bool LibusbFtdi::send(std::span<const std::byte> packet) noexcept {
                               &LibusbFtdi::was_sent, this, 0);
     const int error = libusb_submit_transfer(out_);
     out_busy_ = error == 0;
-    if (error == LIBUSB_ERROR_NO_DEVICE)
+    if (error == LIBUSB_ERROR_NO_DEVICE || (error != 0 && ++errors_ > kErrorsMax))
         push(BusEventKind::gone);
     else if (error != 0)
         push(BusEventKind::send_failed);
@@ -234,17 +230,20 @@ bool LibusbFtdi::control(const FtdiRequest& request) noexcept {
                                    kControlMaxMs) == 0;
 }
 
+void LibusbFtdi::handle_now() noexcept {
+    timeval none{};
+    static_cast<void>(libusb_handle_events_timeout_completed(context_, &none, nullptr));
+}
+
 // ppoll instead of libusb's own wait, which rounds up to milliseconds.
 std::size_t LibusbFtdi::wait(std::span<BusEvent> events, Duration patience) noexcept {
-    const timespec time = to_timespec(patience);
     if (handle_ == nullptr) {
-        nanosleep(&time, nullptr);
+        nap(patience);
         return 0;
     }
     if (count_ == 0 && !events.empty()) {
-        static_cast<void>(ppoll(polled_.data(), polled_count_, &time, nullptr));
-        timeval none{};
-        static_cast<void>(libusb_handle_events_timeout_completed(context_, &none, nullptr));
+        wait_for(std::span(polled_).first(polled_count_), patience);
+        handle_now();
     }
     const std::size_t n = std::min(count_, events.size());
     for (std::size_t i = 0; i < n; ++i) events[i] = events_[(first_ + i) % kEvents];
@@ -265,8 +264,8 @@ void LibusbFtdi::close() noexcept {
     if (out_busy_) static_cast<void>(libusb_cancel_transfer(out_));
     const Instant end = Monotonic::now() + kCloseMax;
     while (busy() && Monotonic::now() < end) {
-        timeval tick{0, 10'000};
-        static_cast<void>(libusb_handle_events_timeout_completed(context_, &tick, nullptr));
+        handle_now();
+        if (busy()) nap(kBusNap);
     }
     closing_ = false;
     if (busy()) return;  // the kernel still has the memory: it stays, and is tried again with the next open()

@@ -4,12 +4,12 @@
 
 #include <libusb.h>
 #include <poll.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
+#include "hal/api/bus_wait.hpp"
 #include "hal/phantom/libusb_find.hpp"
 
 namespace tact::phantom {
@@ -24,11 +24,6 @@ constexpr std::array<unsigned char, kInBytes + 1> kTooLong{};  // stands for a p
 constexpr std::size_t kEvents = 64;
 constexpr unsigned kErrorsMax = 20;  // in a row: it is as good as gone
 constexpr Duration kCloseMax = std::chrono::milliseconds(500);
-
-timespec to_timespec(Duration d) noexcept {
-    const std::int64_t ns = std::max<std::int64_t>(d.count(), 0);
-    return {ns / 1'000'000'000, ns % 1'000'000'000};
-}
 
 class LibusbBus final : public UsbBus {
 public:
@@ -195,7 +190,7 @@ void LIBUSB_CALL LibusbBus::was_sent(libusb_transfer* transfer) noexcept {
             if (!std::exchange(bus.stall_said_, true)) bus.push(BusEventKind::stalled);
             return;
         default:
-            return bus.push(BusEventKind::send_failed);
+            return bus.push(++bus.errors_ > kErrorsMax ? BusEventKind::gone : BusEventKind::send_failed);
     }
 }
 
@@ -206,7 +201,7 @@ bool LibusbBus::send(std::span<const std::byte> packet) noexcept {
                                    static_cast<int>(packet.size()), &LibusbBus::was_sent, this, 0);
     const int error = libusb_submit_transfer(out_);
     out_busy_ = error == 0;
-    if (error == LIBUSB_ERROR_NO_DEVICE)
+    if (error == LIBUSB_ERROR_NO_DEVICE || (error != 0 && ++errors_ > kErrorsMax))
         push(BusEventKind::gone);
     else if (error != 0)
         push(BusEventKind::send_failed);
@@ -231,13 +226,12 @@ void LibusbBus::handle_now() noexcept {
 
 // ppoll instead of libusb's own wait, which rounds up to milliseconds.
 std::size_t LibusbBus::wait(std::span<BusEvent> events, Duration patience) noexcept {
-    const timespec time = to_timespec(patience);
     if (handle_ == nullptr) {
-        nanosleep(&time, nullptr);
+        nap(patience);
         return 0;
     }
     if (count_ == 0 && !events.empty()) {
-        static_cast<void>(ppoll(polled_.data(), polled_count_, &time, nullptr));
+        wait_for(std::span(polled_).first(polled_count_), patience);
         handle_now();
     }
     const std::size_t n = std::min(count_, events.size());
@@ -259,8 +253,8 @@ void LibusbBus::close() noexcept {
     if (out_busy_) static_cast<void>(libusb_cancel_transfer(out_));
     const Instant end = Monotonic::now() + kCloseMax;
     while (busy() && Monotonic::now() < end) {
-        timeval tick{0, 10'000};
-        static_cast<void>(libusb_handle_events_timeout_completed(context_, &tick, nullptr));
+        handle_now();
+        if (busy()) nap(kBusNap);
     }
     closing_ = false;
     if (busy()) return;  // the kernel still has the memory: it stays, and is tried again with the next open()
