@@ -76,6 +76,7 @@ inline constexpr unsigned kSuccess = 0, kInvalidEnum = 0x100, kInvalidValue = 0x
     X(void, hdUnschedule, (::tact::hd::SchedulerHandle handle))
 
 struct Api {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration takes none
 #define TACT_HD_POINTER(type, name, arguments) type(*name) arguments = nullptr;
     TACT_HD_FUNCTIONS(TACT_HD_POINTER)
 #undef TACT_HD_POINTER

@@ -62,7 +62,8 @@ void fetch_list(const MeshPatches& p, const MeshPatches::List& list) {
     };
     fetch(p.vertex.data() + list.vertex_first, list.vertices);
     fetch(p.parent.data() + list.vertex_first, list.vertices);
-    fetch(p.corner.data() + std::size_t{3} * list.first, std::min<std::size_t>(512, 3U * list.triangles));
+    fetch(p.corner.data() + std::size_t{3} * list.first,
+          std::min<std::size_t>(512, std::size_t{3} * list.triangles));
 }
 
 }  // namespace
