@@ -65,7 +65,7 @@ Person read_person() {
 std::string find_hd_library(const std::filesystem::path& root, const std::string& configured) {
     std::error_code error;
     if (!configured.empty()) return std::filesystem::exists(configured, error) ? configured : "";
-    for (const std::string place : probe::kHdPlaces) {
+    for (std::string place : probe::kHdPlaces) {
         if (!place.starts_with("/")) continue;  // the loader's own search: not repeated here
         if (std::filesystem::exists(root / place.substr(1), error)) return place;
     }

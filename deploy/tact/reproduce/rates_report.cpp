@@ -82,7 +82,7 @@ plot::Plot figure_5(const Rates& r) {
 }
 
 plot::Plot with_load(const Rates& r, const std::string& title,
-                     std::vector<std::pair<const Run*, std::string>> runs, const Run& main) {
+                     const std::vector<std::pair<const Run*, std::string>>& runs, const Run& main) {
     plot::Plot p{.title = title, .remark = remark_of(r), .x_label = "time, s"};
     plot::Panel rates{.y_label = kRateLabel}, triangles{.y_label = kTriangleLabel};
     rates.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), "external load"});
