@@ -1,6 +1,7 @@
 // One function per mesh format, and what they share: building a mesh that is checked as it grows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -16,6 +17,7 @@ struct MeshSource {
     std::string_view bytes;
     std::string name;
     const Progress& progress;
+    const AnnounceMesh& announce;
 
     [[noreturn]] void refuse(const std::string& why,
                              const std::string& mend = "export the mesh again") const {
@@ -31,20 +33,29 @@ class MeshBuilder {
 public:
     explicit MeshBuilder(const MeshSource& source) : source_(source) {}
 
+    // Says what will be needed, then takes it. The counts are such as the file can hold, and may be estimates.
     void reserve(std::size_t vertices, std::size_t triangles) {
+        vertices = std::min<std::size_t>(vertices, kMeshElementsMax);
+        triangles = std::min<std::size_t>(triangles, kMeshElementsMax);
+        if (source_.announce) source_.announce({vertices, triangles, 12 * (vertices + triangles)});
         mesh_.position_m.reserve(3 * vertices);
         mesh_.triangle.reserve(3 * triangles);
     }
     [[nodiscard]] std::size_t vertices() const { return mesh_.vertices(); }
+    [[nodiscard]] const std::vector<float>& position_m() const { return mesh_.position_m; }
     // `where` is called for the words of a complaint: "line 7".
     template <class Where>
     void vertex(const std::array<double, 3>& p, Where&& where) {
         if (mesh_.vertices() >= kMeshElementsMax) source_.refuse("it has more than 2^28 vertices", kSmaller);
+        check(source_, p, where);
+        for (const double x : p) mesh_.position_m.push_back(static_cast<float>(x));
+    }
+    template <class Where>
+    static void check(const MeshSource& source, const std::array<double, 3>& p, Where&& where) {
         for (const double x : p) {
             if (!(std::abs(x) <= 1e6))
-                source_.refuse(where() + ": a coordinate is not a number or beyond 1e6",
-                               "move the mesh near its origin, or repair it");
-            mesh_.position_m.push_back(static_cast<float>(x));
+                source.refuse(where() + ": a coordinate is not a number or beyond 1e6",
+                              "move the mesh near its origin, or repair it");
         }
     }
     template <class Where>
@@ -82,6 +93,7 @@ private:
 
 ImportedMesh read_ply(const MeshSource& source);
 ImportedMesh read_obj(const MeshSource& source);
+ImportedMesh read_off(const MeshSource& source);
 ImportedMesh read_stl(const MeshSource& source);
 
 }  // namespace tact

@@ -172,15 +172,45 @@ private:
     bool big_;
 };
 
+// The fewest bytes that a row can take: lists that are kept have three entries, others may be empty.
+std::uint64_t row_bytes_min(const Element& element, bool text) {
+    std::uint64_t sum = 0;
+    for (const Property& property : element.property) {
+        const std::size_t kept = property.use == Use::corners ? 3 : 0;
+        if (text)
+            sum += 2 * (property.list ? 1 + kept : 1);  // a digit and what ends it
+        else
+            sum += property.list ? size_of(property.count) + kept * size_of(property.type)
+                                 : size_of(property.type);
+    }
+    return std::max<std::uint64_t>(sum, 1);
+}
+
+// Refuses what the rest of the file cannot hold; then memory for it may be taken.
+void reserve_for(const MeshSource& source, const Header& header, MeshBuilder& builder) {
+    std::uint64_t left = source.bytes.size() + 1 - header.bytes, vertices = 0, faces = 0;
+    for (const Element& element : header.element) {
+        if (element.property.empty()) continue;
+        const std::uint64_t row = row_bytes_min(element, header.format == Header::ascii);
+        if (element.count > left / row)
+            source.refuse("it declares " + std::to_string(element.count) + " elements \"" + element.name +
+                              "\" and ends early",
+                          "fetch the file again");
+        left -= element.count * row;
+        if (element.name == "vertex") vertices = element.count;
+        if (element.name == "face") faces += element.count;
+    }
+    builder.reserve(vertices, faces);
+}
+
 template <class Body>
 TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& body) {
     MeshBuilder builder(source);
+    reserve_for(source, header, builder);
     std::vector<std::int64_t> corner;
     for (const Element& element : header.element) {
         if (element.property.empty()) continue;  // nothing of it is in the file
         const bool vertices = element.name == "vertex";
-        // No row of three floats or words is shorter, whatever the header says.
-        if (vertices) builder.reserve(std::min<std::uint64_t>(element.count, source.bytes.size() / 6), 0);
         for (std::uint64_t n = 0; n < element.count; ++n) {
             if (n % 65536 == 0) source.at(header.bytes + body.place());
             const auto where = [&] { return element.name + " " + std::to_string(n); };

@@ -2,44 +2,38 @@
 // declares, whatever the first word is, since binary files that begin with "solid" exist.
 #include <bit>
 #include <cstring>
-#include <unordered_map>
 
 #include "prep/mesh_file/formats.hpp"
 #include "prep/mesh_file/text_scan.hpp"
+#include "prep/mesh_file/vertex_table.hpp"
 
 namespace tact {
 namespace {
 
-using Key = std::array<std::uint32_t, 3>;
-struct KeyHash {
-    std::size_t operator()(const Key& k) const {
-        std::uint64_t h = 0x9E3779B97F4A7C15;
-        for (const std::uint32_t x : k) {
-            h = (h ^ x) * 0xD6E8FEB86659FD93;
-            h ^= h >> 32U;
-        }
-        return static_cast<std::size_t>(h);
-    }
-};
-
 // Gives equal corners one vertex.
 class Welder {
 public:
-    explicit Welder(const MeshSource& source) : builder_(source) {}
+    Welder(const MeshSource& source, std::size_t triangles)
+        : source_(source), builder_(source), number_(triangles / 2) {
+        builder_.reserve(triangles / 2, triangles);
+    }
     template <class Where>
     std::int64_t vertex(const std::array<double, 3>& p, Where&& where) {
-        Key key{};
-        for (std::size_t i = 0; i < 3; ++i)
-            key[i] = std::bit_cast<std::uint32_t>(static_cast<float>(p[i]) + 0.0F);  // -0 is 0
-        const auto [found, fresh] = number_.try_emplace(key, static_cast<std::int64_t>(builder_.vertices()));
-        if (fresh) builder_.vertex(p, where);
-        return found->second;
+        const auto fresh = static_cast<std::int64_t>(builder_.vertices());
+        MeshBuilder::check(source_, p, where);  // the table holds nothing that is not equal to itself
+        const std::uint32_t known =
+            number_.find({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])},
+                         builder_.position_m());
+        if (known != VertexTable::kNone) return known;
+        builder_.vertex(p, where);
+        return fresh;
     }
     MeshBuilder& builder() { return builder_; }
 
 private:
+    const MeshSource& source_;
     MeshBuilder builder_;
-    std::unordered_map<Key, std::int64_t, KeyHash> number_;
+    VertexTable number_;
 };
 
 std::uint32_t little_endian(const char* bytes) {
@@ -51,8 +45,7 @@ std::uint32_t little_endian(const char* bytes) {
 constexpr std::size_t kHead = 84, kStride = 50;
 
 ImportedMesh read_binary(const MeshSource& source, std::uint32_t count) {
-    Welder welder(source);
-    welder.builder().reserve(count / 2, count);
+    Welder welder(source, count);
     for (std::uint32_t t = 0; t < count; ++t) {
         if (t % 65536 == 0) source.at(kHead + kStride * std::size_t{t});
         const auto where = [&] { return "triangle " + std::to_string(t); };
@@ -71,7 +64,8 @@ ImportedMesh read_binary(const MeshSource& source, std::uint32_t count) {
 }
 
 ImportedMesh read_text(const MeshSource& source) {
-    Welder welder(source);
+    constexpr std::size_t kFacetBytes = 240;  // with six digits a number
+    Welder welder(source, source.bytes.size() / kFacetBytes);
     TextScan scan(source.bytes);
     const auto where = [&] { return "line " + std::to_string(scan.line_number()); };
     std::vector<std::int64_t> corner;

@@ -10,7 +10,7 @@
 namespace tact::fuzz {
 namespace {
 
-constexpr const char* kEnding[] = {".ply", ".obj", ".stl"};
+constexpr const char* kEnding[] = {".ply", ".obj", ".stl", ".off"};
 
 void use(const TriangleMesh& mesh) {
     require(mesh.triangles() > 0 && mesh.position_m.size() % 3 == 0 && mesh.triangle.size() % 3 == 0);
@@ -31,7 +31,7 @@ void put(std::string& to, T value) {
 
 bool run(std::span<const std::byte> input) {
     return run_formats(input, std::size(kEnding), [](unsigned ending, std::string_view text) {
-        use(import_mesh_bytes({text.begin(), text.end()}, "fuzz", kEnding[ending]).mesh);
+        use(import_mesh_bytes(text, "fuzz", kEnding[ending]).mesh);
     });
 }
 
@@ -39,7 +39,8 @@ std::vector<Input> seeds() {
     const std::string head =
         "element vertex 9\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
         "property list uchar int vertex_indices\nend_header\n";
-    std::string ascii = "ply\nformat ascii 1.0\n" + head, obj, stl = "solid s\n";
+    std::string ascii = "ply\nformat ascii 1.0\n" + head, obj, stl = "solid s\n",
+                off = "COFF # made by hand\n9 4 12\n";
     std::string little = "ply\nformat binary_little_endian 1.0\n" + head, binary(80, ' ');
     const auto z = [](int x, int y) { return static_cast<float>(x * y) * 0.25F; };
     for (int y = 0; y < 3; ++y) {
@@ -48,6 +49,7 @@ std::vector<Input> seeds() {
                 std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z(x, y)) + "\n";
             ascii += p;
             obj += "v " + p;
+            off += p;
             for (const float c : {static_cast<float>(x), static_cast<float>(y), z(x, y)}) put(little, c);
         }
     }
@@ -56,14 +58,17 @@ std::vector<Input> seeds() {
         for (int x = 0; x < 2; ++x) {
             const int corner[4] = {3 * y + x, 3 * y + x + 1, 3 * y + x + 4, 3 * y + x + 3};
             ascii += "4";
+            off += "4";
             obj += "f";
             put(little, std::uint8_t{4});
             for (const int c : corner) {
                 ascii += " " + std::to_string(c);
+                off += " " + std::to_string(c);
                 obj += " " + std::to_string(c + 1) + "//1";
                 put(little, c);
             }
             ascii += "\n";
+            off += " 255 0 0\n";
             obj += "\n";
             stl += "facet normal 0 0 1\nouter loop\n";
             binary.append(12, '\0');
@@ -78,7 +83,8 @@ std::vector<Input> seeds() {
             stl += "endloop\nendfacet\n";
         }
     }
-    return {seed(0, ascii), seed(0, little), seed(1, obj), seed(2, stl + "endsolid\n"), seed(2, binary)};
+    return {seed(0, ascii),  seed(0, little), seed(1, obj), seed(2, stl + "endsolid\n"),
+            seed(2, binary), seed(3, off)};
 }
 
 }  // namespace tact::fuzz

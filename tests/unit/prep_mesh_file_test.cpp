@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 ImportedMesh read(const std::string& text, const std::string& ending) {
-    return import_mesh_bytes({text.begin(), text.end()}, "test" + ending, ending);
+    return import_mesh_bytes(text, "test" + ending, ending);
 }
 
 // The words of the refusal; empty when it is accepted.
@@ -105,6 +105,16 @@ std::string obj() {
            "f 1 3 2\nf 1/1 2/1 4/1\nf 2//1 3//1 4//1\nf -4 -1 \\\n -2\n";
 }
 
+std::string off(const std::string& head = "OFF\n") {
+    std::string s = head + "# made by hand\n\n4 4 0\n";
+    for (const auto& p : kAt)
+        s += std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + " 0 0 1\r\n";
+    for (const auto& f : kFace)
+        s += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) +
+             " 1.0 0.5 0.5 # red\n";
+    return s;
+}
+
 double volume(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (std::size_t t = 0; t < mesh.triangles(); ++t) {
@@ -121,9 +131,16 @@ double volume(const TriangleMesh& mesh) {
 }
 
 TEST(MeshFile, EveryFormatGivesTheSameTetrahedron) {
-    const std::pair<std::string, std::string> files[] = {
-        {ply_ascii(), ".ply"},  {ply_binary(false), ".ply"}, {ply_binary(true), ".ply"},
-        {stl_binary(), ".stl"}, {stl_ascii(), ".stl"},       {obj(), ".obj"}};
+    const std::pair<std::string, std::string> files[] = {{ply_ascii(), ".ply"},
+                                                         {ply_binary(false), ".ply"},
+                                                         {ply_binary(true), ".ply"},
+                                                         {stl_binary(), ".stl"},
+                                                         {stl_ascii(), ".stl"},
+                                                         {obj(), ".obj"},
+                                                         {off(), ".off"},
+                                                         {off("NOFF # with normals\n"), ".off"},
+                                                         {off("COFF "), ".off"},
+                                                         {off(""), ".off"}};
     for (const auto& [text, ending] : files) {
         const ImportedMesh in = read(text, ending);
         EXPECT_EQ(in.mesh.vertices(), 4U) << in.format;
@@ -173,6 +190,16 @@ TEST(MeshFile, WhatCannotBeTrueIsRefusedWithThePlaceAndAMend) {
         {replaced(obj(), "f 1 3 2", "f -5 3 2"), ".obj", "line 8"},
         {replaced(obj(), "v 1 0 0", "v 1e9 0 0"), ".obj", "line 4"},
         {replaced(obj(), "v 1 0 0", "v 1 0"), ".obj", ""},
+        {off("OFF BINARY\n"), ".off", "binary OFF"},
+        {off("4OFF\n"), ".off", "three dimensions"},
+        {off("BALL\n"), ".off", "no keyword"},
+        {off("OOFF\n"), ".off", "unknown keyword"},
+        {replaced(off(), "4 4 0", "4 4000000 0"), ".off", "declares"},
+        {replaced(off(), "4 4 0", "4 5 0"), ".off", "ends early"},
+        {replaced(off(), "4 4 0", "3 4 0"), ".off", "line 8"},
+        {replaced(off(), "3 0 2 1", "3 0 2 4"), ".off", "names vertex 4"},
+        {replaced(off(), "1.000000 0", "inf 0"), ".off", "line 6"},
+        {replaced(ply_binary(false), "element face 4", "element face 9"), ".ply", "ends early"},
         {obj(), ".fbx", "none of .ply"},
     };
     for (const Case& c : cases) {
@@ -193,6 +220,23 @@ TEST(MeshFile, WhatIsWrittenIsReadAgain) {
     EXPECT_EQ(back.format, "PLY binary little endian");
     fs::remove(path);
     EXPECT_THROW(write_ply(path / "no" / "folder.ply", mesh), StartupError);
+}
+
+TEST(MeshFile, MemoryIsToldBeforeItIsTakenAndAPackedFileIsTheSameMesh) {
+    const fs::path path = fs::temp_directory_path() / ("tact-mesh-" + std::to_string(::getpid()) + ".off.gz");
+    const gzFile packed = ::gzopen(path.c_str(), "wb");
+    const std::string text = off();
+    ASSERT_EQ(::gzwrite(packed, text.data(), static_cast<unsigned>(text.size())),
+              static_cast<int>(text.size()));
+    ::gzclose(packed);
+    std::vector<MeshNeeds> told;
+    const ImportedMesh in = import_mesh(path, {}, [&](const MeshNeeds& needs) { told.push_back(needs); });
+    fs::remove(path);
+    EXPECT_EQ(in.mesh.triangle, read(text, ".off").mesh.triangle);
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].vertices, 4U);
+    EXPECT_EQ(told[0].triangles, 4U);
+    EXPECT_EQ(told[0].bytes, 96U);
 }
 
 TEST(MeshFile, RealMeshesAreReadAndSimplifiedWithoutNewFolds) {
