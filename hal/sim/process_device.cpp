@@ -180,6 +180,7 @@ void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
     while (shared_->leave.load(std::memory_order_relaxed) == 0) {
         clock.wait_until(pacer.planned());
         const Instant now = clock.now();
+        const Duration silence = now - heard_at;  // where this process stood still too, up to a late command
         CommandWords c{};
         if (shared_->command.read(c) && c.heartbeat != heartbeat) {
             heartbeat = c.heartbeat;
@@ -199,7 +200,7 @@ void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
             char line[128];
             const int n = std::snprintf(line, sizeof line, "%lld %s %.4f N silence %.2f ms\n",
                                         static_cast<long long>(to_ns(now)), state_name(said),
-                                        device.shown_dev().force_n.norm(), to_us(now - heard_at) * 1e-3);
+                                        device.shown_dev().force_n.norm(), to_us(silence) * 1e-3);
             static_cast<void>(!::write(kept, line, static_cast<std::size_t>(n)));
         }
         if (getppid() != parent) {
