@@ -16,12 +16,12 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kSide = 1024, kBaseSide = 8;
+constexpr std::uint32_t kTorusSide = 1024, kBaseSide = 8;
 
 // Grid numbers in the order in which they go, and where each goes.
 struct Contractions {
     std::vector<std::uint32_t> gone;
-    std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kSide} * kSide);
+    std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kTorusSide} * kTorusSide);
 };
 
 Contractions contractions() {
@@ -33,18 +33,18 @@ Contractions contractions() {
         c.gone.insert(c.gone.end(), round.begin(), round.end());
         round.clear();
     };
-    for (std::uint32_t s = 1; s < kSide / kBaseSide; s *= 2) {
-        for (std::uint32_t i = s; i < kSide; i += 2 * s) {
-            for (std::uint32_t j = 0; j < kSide; j += s) {
-                round.push_back(i * kSide + j);
-                c.into[i * kSide + j] = (i - s) * kSide + j;
+    for (std::uint32_t s = 1; s < kTorusSide / kBaseSide; s *= 2) {
+        for (std::uint32_t i = s; i < kTorusSide; i += 2 * s) {
+            for (std::uint32_t j = 0; j < kTorusSide; j += s) {
+                round.push_back(i * kTorusSide + j);
+                c.into[i * kTorusSide + j] = (i - s) * kTorusSide + j;
             }
         }
         finish();
-        for (std::uint32_t i = 0; i < kSide; i += 2 * s) {
-            for (std::uint32_t j = s; j < kSide; j += 2 * s) {
-                round.push_back(i * kSide + j);
-                c.into[i * kSide + j] = i * kSide + j - s;
+        for (std::uint32_t i = 0; i < kTorusSide; i += 2 * s) {
+            for (std::uint32_t j = s; j < kTorusSide; j += 2 * s) {
+                round.push_back(i * kTorusSide + j);
+                c.into[i * kTorusSide + j] = i * kTorusSide + j - s;
             }
         }
         finish();
@@ -53,9 +53,9 @@ Contractions contractions() {
 }
 
 MeshVertex torus_vertex(std::uint32_t at) {
-    const std::uint32_t row = at / kSide;
-    const double u = 2.0 * std::numbers::pi * row / kSide;
-    const double v = 2.0 * std::numbers::pi * (at % kSide) / kSide;
+    const std::uint32_t row = at / kTorusSide;
+    const double u = 2.0 * std::numbers::pi * row / kTorusSide;
+    const double v = 2.0 * std::numbers::pi * (at % kTorusSide) / kTorusSide;
     const double ring = 1.0 + 0.3 * std::cos(v);
     const auto pack = [](double x) { return static_cast<std::int16_t>(std::lround(32767.0 * x)); };
     return {{static_cast<float>(ring * std::cos(u)), static_cast<float>(ring * std::sin(u)),
@@ -64,7 +64,7 @@ MeshVertex torus_vertex(std::uint32_t at) {
 }
 
 ProgressiveMeshData torus() {
-    constexpr std::uint32_t kVertices = kSide * kSide;
+    constexpr std::uint32_t kVertices = kTorusSide * kTorusSide;
     const Contractions c = contractions();
     const auto steps = static_cast<std::uint32_t>(c.gone.size());
     ProgressiveMeshData data;
@@ -90,10 +90,10 @@ ProgressiveMeshData torus() {
     std::vector<std::array<std::uint32_t, 3>> triangle;
     std::vector<std::uint32_t> level;
     data.triangle_count.assign(steps + 1, 0);
-    for (std::uint32_t i = 0; i < kSide; ++i) {
-        for (std::uint32_t j = 0; j < kSide; ++j) {
+    for (std::uint32_t i = 0; i < kTorusSide; ++i) {
+        for (std::uint32_t j = 0; j < kTorusSide; ++j) {
             const auto at = [&](std::uint32_t di, std::uint32_t dj) {
-                return number[(i + di) % kSide * kSide + (j + dj) % kSide];
+                return number[(i + di) % kTorusSide * kTorusSide + (j + dj) % kTorusSide];
             };
             for (const auto& t :
                  {std::array{at(0, 0), at(1, 0), at(1, 1)}, std::array{at(0, 0), at(1, 1), at(0, 1)}}) {

@@ -38,9 +38,9 @@ std::string advice(const std::string& name, const Ending& e) {
     return "see what it said above";
 }
 
-class Run {
+class OneRun {
 public:
-    Run(const std::filesystem::path& scene, RunOptions options)
+    OneRun(const std::filesystem::path& scene, RunOptions options)
         : options_(std::move(options)),
           file_(SceneFile::open(scene)),
           places_(file_),
@@ -263,7 +263,7 @@ private:
 
 int run_scene(const std::filesystem::path& scene, RunOptions options) {
     options.settle();
-    return Run(scene, std::move(options)).go();
+    return OneRun(scene, std::move(options)).go();
 }
 
 }  // namespace tact::launch

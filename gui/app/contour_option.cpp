@@ -15,7 +15,7 @@ std::optional<double> number(const std::string& text) {
     return value;
 }
 
-std::optional<Eigen::Vector3f> colour(const std::string& text) {
+std::optional<Eigen::Vector3f> colour_of(const std::string& text) {
     if (text.size() != 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         return std::nullopt;
     const unsigned long c = std::strtoul(text.c_str(), nullptr, 16);
@@ -49,7 +49,7 @@ ContourOption read_contour_option(const std::string& text) {
         refuse(parts.front());
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const std::string& p = parts[i];
-        if (const auto c = colour(p)) {
+        if (const auto c = colour_of(p)) {
             option.colour = c;
         } else if (const auto o = number(p); o && *o >= 0.0 && *o <= 1.0) {
             option.opacity = static_cast<float>(*o);

@@ -23,7 +23,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
         throw StartupError(attempt, why, mend);
     };
     std::FILE* const opened = std::fopen(partial.c_str(), "wb");
-    if (opened == nullptr) fail(std::system_category().message(errno));
+    if (opened == nullptr) fail(last_error());
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(opened, &std::fclose);
     png_image header{};
     header.version = PNG_IMAGE_VERSION;

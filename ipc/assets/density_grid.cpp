@@ -6,8 +6,8 @@
 namespace tact {
 namespace {
 
-constexpr SectionTag kTag{'G', 'R', 'I', 'D'};
-constexpr std::uint32_t kVersion = 1;
+constexpr SectionTag kGridTag{'G', 'R', 'I', 'D'};
+constexpr std::uint32_t kGridVersion = 1;
 constexpr std::uint32_t kSizeMax = 8192;
 
 // 64 bytes, so that the values lie aligned in the mapped file.
@@ -31,11 +31,12 @@ void write_grid(SceneWriter& out, const DensityGrid& grid, std::uint32_t index) 
     BytesOut bytes;
     bytes.put(header);
     bytes.put_all(grid.values);
-    out.add(kTag, kVersion, index, bytes.take());
+    out.add(kGridTag, kGridVersion, index, bytes.take());
 }
 
 DensityGrid read_grid(const SceneFile& file, std::uint32_t index) {
-    BytesIn in(file.section(kTag, kVersion, index), file.name() + ", section GRID " + std::to_string(index));
+    BytesIn in(file.section(kGridTag, kGridVersion, index),
+               file.name() + ", section GRID " + std::to_string(index));
     const auto header = in.get<GridHeader>("header");
     if (header.reserved != 0) in.fail("a reserved field is not zero");
     DensityGrid grid;
@@ -62,7 +63,7 @@ DensityGrid read_grid(const SceneFile& file, std::uint32_t index) {
 }
 
 DensityGrid read_felt_grid(const SceneFile& file) {
-    return read_grid(file, file.count(kTag) > kFeltGrid ? kFeltGrid : kMapGrid);
+    return read_grid(file, file.count(kGridTag) > kFeltGrid ? kFeltGrid : kMapGrid);
 }
 
 }  // namespace tact

@@ -14,8 +14,8 @@
 namespace tact {
 namespace {
 
-constexpr SectionTag kTag{'M', 'E', 'S', 'H'};
-constexpr std::uint32_t kVersion = 1;
+constexpr SectionTag kMeshTag{'M', 'E', 'S', 'H'};
+constexpr std::uint32_t kMeshVersion = 1;
 constexpr std::uint32_t kCountMax = 1U << 29;  // of vertices or triangles; 3 T fits 32 bits with room
 constexpr std::uint64_t kChangesPerItem = 24;  // measured 2.5 to 4 per contraction
 constexpr double kPositionMax = 1e6;           // metres
@@ -232,11 +232,12 @@ void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData
     bytes.put_all(data.error_m);
     bytes.put_all(data.triangle);
     bytes.put_all(data.triangle_count);
-    out.add(kTag, kVersion, index, bytes.take());
+    out.add(kMeshTag, kMeshVersion, index, bytes.take());
 }
 
 ProgressiveMeshData read_mesh_data(const SceneFile& file, std::uint32_t index) {
-    BytesIn in(file.section(kTag, kVersion, index), file.name() + ", section MESH " + std::to_string(index));
+    BytesIn in(file.section(kMeshTag, kMeshVersion, index),
+               file.name() + ", section MESH " + std::to_string(index));
     const auto header = in.get<MeshHeader>("header");
     if (header.reserved != 0) in.fail("a reserved field is not zero");
     if (header.base_vertices < 1 || header.base_vertices > header.vertices)

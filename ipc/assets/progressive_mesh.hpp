@@ -20,6 +20,9 @@
 
 namespace tact {
 
+// Where an index of a vertex or triangle says that there is none.
+inline constexpr std::uint32_t kNoIndex = UINT32_MAX;
+
 struct TriangleMesh {
     std::vector<float> position_m;        // 3 per vertex
     std::vector<std::uint32_t> triangle;  // 3 per triangle, counter-clockwise seen from outside

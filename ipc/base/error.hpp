@@ -6,10 +6,15 @@
 // Caught  once, in main(), which prints what() and exits with 1.
 #pragma once
 
+#include <cerrno>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 namespace tact {
+
+// What errno says, in words.
+inline std::string last_error() { return std::system_category().message(errno); }
 
 class StartupError : public std::runtime_error {
 public:

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/shm/hello.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/shm/session_path.hpp"
@@ -51,7 +52,7 @@ struct LinkClient::State {
         if (!socket.valid() ||
             connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
             if (errno == ENOENT || errno == ECONNREFUSED) return wait("none is running");
-            return wait(std::system_category().message(errno));
+            return wait(last_error());
         }
         const Peer peer = peer_of(socket.get());
         if (!peer.trusted)
@@ -61,7 +62,7 @@ struct LinkClient::State {
         hello.version = kLinkVersion;
         hello.role = static_cast<std::uint32_t>(own_region_fd >= 0 ? LinkRole::gui : LinkRole::observer);
         if (!send_packet(socket.get(), std::as_bytes(std::span(&hello, 1)), own_region_fd))
-            return wait(std::system_category().message(errno));
+            return wait(last_error());
         controller_pid = peer.pid;
         asked_at = Monotonic::now();
         step = Step::asked;

@@ -34,8 +34,6 @@ constexpr std::size_t kClientsMax = 16;  // visual process and observers togethe
 constexpr std::size_t kSilentMax = 8;    // connected, but have not said hello
 constexpr Duration kHelloPatience = std::chrono::seconds(2);
 
-std::string last_error() { return std::system_category().message(errno); }
-
 struct Client {
     FileDescriptor socket;
     FileDescriptor region;  // of a visual process that is not, or not yet, the attached one

@@ -30,8 +30,6 @@ constexpr unsigned MFD_NOEXEC_SEAL = 0x0008U;  // Linux 6.3
 
 constexpr int kSealsWanted = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL;
 
-std::string last_error() { return std::system_category().message(errno); }
-
 int open_memory(const char* name) {
     const unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
     const int fd = memfd_create(name, flags | MFD_NOEXEC_SEAL);

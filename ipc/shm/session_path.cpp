@@ -57,14 +57,14 @@ std::string session_socket_path(const std::string& session) { return session_pat
 void make_runtime_folder(const std::string& folder) {
     const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
     if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
-        throw StartupError("make folder " + folder, std::system_category().message(errno), mend);
+        throw StartupError("make folder " + folder, last_error(), mend);
     const std::string why = distrust_runtime_folder(folder);
     if (!why.empty()) throw StartupError("use folder " + folder, why, mend);
 }
 
 std::string distrust_runtime_folder(const std::string& folder) {
     struct stat status {};
-    if (lstat(folder.c_str(), &status) != 0) return std::system_category().message(errno);
+    if (lstat(folder.c_str(), &status) != 0) return last_error();
     if (!S_ISDIR(status.st_mode)) return "it is not a folder (links are not followed)";
     if (status.st_uid != geteuid() && status.st_uid != 0)
         return "it belongs to user " + std::to_string(status.st_uid) + ", not to user " +

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct BakeOptions {
     std::string map, scene, source;
     std::vector<std::string> models;
     std::optional<double> contour, resolution_a, felt_resolution_a;
@@ -63,7 +63,7 @@ std::string listed(const DensityGrid& grid) {
     return text;
 }
 
-DockingInput from_files(const Options& o, const Progress& progress) {
+DockingInput from_files(const BakeOptions& o, const Progress& progress) {
     DockingInput input;
     report(progress, 0.0, "reading the map");
     ImportedMap map = import_map(o.map);
@@ -102,7 +102,7 @@ DockingInput from_ring(const Progress& progress) {
     return input;
 }
 
-void bake(const Options& o, bool demo) {
+void bake(const BakeOptions& o, bool demo) {
     std::vector<std::string> inputs = o.models;
     inputs.push_back(o.map);
     check_target("write scene", o.scene, inputs);
@@ -135,7 +135,7 @@ void bake(const Options& o, bool demo) {
     }
 }
 
-void contour(const Options& o) {
+void contour(const BakeOptions& o) {
     check_target("write contour", o.scene, {o.source});
     Console console;
     if (o.ends_with != 0 && !end_with_parent(o.ends_with, SIGTERM)) throw Cancelled{};
@@ -148,7 +148,7 @@ void contour(const Options& o) {
                 o.level, baked.vertices_found, baked.vertices, baked.vertices_min, baked.triangles);
 }
 
-void info(const Options& o) {
+void info(const BakeOptions& o) {
     const SceneFile file = SceneFile::open(o.scene);
     const std::string text =
         o.json ? scene_json(file).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
@@ -157,7 +157,7 @@ void info(const Options& o) {
 }
 
 int run(int argc, char** argv) {
-    Options o;
+    BakeOptions o;
     CLI::App app(
         "Bakes maps and structures into a scene that tact-rt and tact-gui map at once, and simplifies "
         "meshes.\n"

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SimplifyOptions {
     std::string in, out;
     KeepSettings settings;
     bool json = false;
@@ -28,7 +28,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void simplify_file(const Options& o) {
+void simplify_file(const SimplifyOptions& o) {
     check_target("write mesh", o.out, {o.in});
     Console console;
     const Progress progress = console.progress();
@@ -76,7 +76,7 @@ void simplify_file(const Options& o) {
 }  // namespace
 
 std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<SimplifyOptions>();
     command = app.add_subcommand("simplify", "a triangle mesh with fewer vertices, by pair contraction");
     command->add_option("mesh", o->in, "PLY, OBJ or STL, also .gz")->required();
     command->add_option("-o,--output", o->out, "the PLY file to write")->required();

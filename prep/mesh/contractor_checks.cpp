@@ -8,13 +8,12 @@
 #include <cmath>
 
 #include "prep/mesh/contractor.hpp"
+#include "prep/mesh/turn_limits.hpp"
 
 namespace tact {
 namespace {
 
-constexpr float kTurnCosine = 0.5F;   // a triangle may turn by 60 degrees in one contraction
-constexpr float kFoldCosine = -0.9F;  // and not come nearer than 26 degrees to lying on its neighbour
-constexpr float kFoldChord = 1.94F;   // |n - m| there, and a little less
+constexpr float kFoldChord = 1.94F;  // |n - m| at kFoldCosine, and a little less
 constexpr float kThin = 1e-3F;
 constexpr float kBendUnit = 2.0F / 255.0F;
 
@@ -69,7 +68,7 @@ bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::
         const Eigen::Vector3f after = (wing.p_next - to).cross(wing.p_last - to);
         const float area = after.norm(), was = before.norm();
         const float cosine = before.dot(after) * (1.0F / (was * area));
-        const bool turns = !(cosine > kTurnCosine);
+        const bool turns = !(cosine > kTurnCosine<float>);
         // The direction of a triangle that was a needle already means nothing.
         if (turns || roundness(wing.p_next - to, wing.p_last - to, area) < kThin) {
             if (roundness(wing.p_next - from, wing.p_last - from, was) > kThin) return true;
@@ -93,8 +92,8 @@ bool Contractor::folds(std::uint32_t u, std::uint32_t v, bool joining) {
         for (const Leaf& b : leaf_) {
             if (a.last != b.next || (joining && a.next == b.last)) continue;
             const float cosine = a.normal.dot(b.normal);
-            const bool was_folded = a.other == b.other && a.before.dot(b.before) < kFoldCosine;
-            if (cosine < kFoldCosine && !was_folded) return true;
+            const bool was_folded = a.other == b.other && a.before.dot(b.before) < kFoldCosine<float>;
+            if (cosine < kFoldCosine<float> && !was_folded) return true;
             joint_.push_back({a.last, chord(cosine), std::max(a.turn, b.turn)});
         }
     }
@@ -114,7 +113,7 @@ bool Contractor::folds_outward(const Leaf& leaf, std::uint32_t u, std::uint32_t 
             if (c[(k + 1) % 3] != leaf.last || c[(k + 2) % 3] != leaf.next || c[k] == u || c[k] == v)
                 continue;
             const Eigen::Vector3f n = double_area(c);
-            const float limit = kFoldCosine * n.norm();
+            const float limit = kFoldCosine<float> * n.norm();
             if (leaf.normal.dot(n) < limit && !(leaf.before.dot(n) < limit)) return true;
         }
     }

@@ -19,7 +19,7 @@ public:
         list_.resize(corner_.size());
         std::vector<std::uint32_t> place(first_.begin(), first_.end() - 1);
         for (std::uint32_t i = 0; i < corner_.size(); ++i) list_[place[corner_[i]]++] = i / 3;
-        border_.assign(mesh.vertices(), UINT32_MAX);
+        border_.assign(mesh.vertices(), kNoIndex);
         for (std::uint32_t i = 0; i < corner_.size(); ++i) {
             const std::uint32_t v = corner_[i], w = corner_[i % 3 == 2 ? i - 2 : i + 1];
             if (count(v, w) == 1) border_[v] = w;
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> triangles(std::uint32_t v) const {
         return std::span(list_).subspan(first_[v], first_[v + 1] - first_[v]);
     }
-    // Of each vertex: where a border edge that begins there leads, or UINT32_MAX.
+    // Of each vertex: where a border edge that begins there leads, or kNoIndex.
     [[nodiscard]] std::span<const std::uint32_t> border() const { return border_; }
     [[nodiscard]] bool has(std::uint32_t t, std::uint32_t v) const {
         return corner_[3 * std::size_t{t}] == v || corner_[3 * std::size_t{t} + 1] == v ||

@@ -9,8 +9,6 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
-
 std::vector<Eigen::Vector3d> area_normals(const TriangleMesh& mesh) {
     std::vector<Eigen::Vector3d> normal(mesh.vertices(), Eigen::Vector3d::Zero());
     const auto at = [&](std::uint32_t v) {
@@ -60,12 +58,12 @@ ProgressiveMeshData make_progressive(const TriangleMesh& raw, const SimplifySett
     data.base_vertices = n - static_cast<std::uint32_t>(steps.size());
 
     // New numbers: the base first, then in the reverse order of contraction.
-    std::vector<std::uint32_t> number(n, kNone);
+    std::vector<std::uint32_t> number(n, kNoIndex);
     for (std::size_t s = 0; s < steps.size(); ++s)
         number[steps[s].gone] = n - 1 - static_cast<std::uint32_t>(s);
     std::uint32_t next = 0;
     for (std::uint32_t& place : number) {
-        if (place == kNone) place = next++;
+        if (place == kNoIndex) place = next++;
     }
 
     std::vector<Eigen::Vector3d> normal = area_normals(mesh);

@@ -20,11 +20,11 @@
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/mesh_stars.hpp"
 #include "prep/mesh/nearest_point.hpp"
+#include "prep/mesh/turn_limits.hpp"
 
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
 constexpr std::uint32_t kSamplesPerVertex = 20;
 constexpr int kSolverSteps = 12;
 constexpr double kStay = 0.02;  // mu
@@ -34,8 +34,6 @@ constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees 
 constexpr std::uint32_t kRoundsMost = 40;  // by default
 constexpr std::size_t kPullsMost = 60000;
 constexpr std::size_t kHeldMost = 200000;  // triangles of the original
-constexpr double kTurnCosine = 0.5;        // as in contractor_checks.cpp
-constexpr double kFoldCosine = -0.9;
 
 using Vec = Eigen::Vector3d;
 using Corners = std::array<std::uint32_t, 3>;
@@ -73,7 +71,7 @@ private:
     void limit_stray();
     [[nodiscard]] double from_border(const Vec& p) const;
     [[nodiscard]] double from_original(std::uint32_t v, const Vec& p) const {
-        return star_.border()[v] != kNone ? from_border(p) : grid_->squared(p);
+        return star_.border()[v] != kNoIndex ? from_border(p) : grid_->squared(p);
     }
     bool move(std::uint32_t v, const Vec& to);
     [[nodiscard]] Vec double_area(const Corners& c) const {
@@ -108,7 +106,7 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
       simplified_(simplified),
       triangle_(corners(simplified.mesh)),
       star_(simplified.mesh) {
-    went_.assign(original.vertices(), kNone);
+    went_.assign(original.vertices(), kNoIndex);
     for (std::uint32_t v = 0; v < simplified.origin.size(); ++v) went_[simplified.origin[v]] = v;
     for (std::size_t i = simplified.contraction.size(); i-- > 0;)
         went_[simplified.contraction[i].gone] = went_[simplified.contraction[i].kept];
@@ -131,7 +129,7 @@ void Relaxer::take_samples() {
         std::max<std::size_t>(1, original_.triangles() / std::max<std::size_t>(most, 1));
     for (std::size_t t = 0; t < original_.triangles(); t += stride) {
         const std::uint32_t* c = &original_.triangle[3 * t];
-        if (went_[c[0]] == kNone) continue;
+        if (went_[c[0]] == kNoIndex) continue;
         const Vec a = original(c[0]), b = original(c[1]), d = original(c[2]);
         const Vec normal = (b - a).cross(d - a);
         const double area = normal.norm();
@@ -140,11 +138,12 @@ void Relaxer::take_samples() {
 }
 
 void Relaxer::take_border_samples() {
-    if (std::none_of(star_.border().begin(), star_.border().end(), [](auto n) { return n != kNone; })) return;
+    if (std::none_of(star_.border().begin(), star_.border().end(), [](auto n) { return n != kNoIndex; }))
+        return;
     const MeshStars star(original_);
     for (std::uint32_t v = 0; v < original_.vertices(); ++v) {
         const std::uint32_t w = star.border()[v];
-        if (w == kNone || went_[v] == kNone) continue;
+        if (w == kNoIndex || went_[v] == kNoIndex) continue;
         const Vec along = original(w) - original(v);
         const double length = along.norm();
         if (!(length > 0.0)) continue;
@@ -158,7 +157,7 @@ void Relaxer::take_border_samples() {
 // gets nearer.
 void Relaxer::pull(Sample& sample) {
     NearestPoint best;
-    std::uint32_t triangle = kNone;
+    std::uint32_t triangle = kNoIndex;
     const auto around = [&](std::uint32_t v) {
         for (const std::uint32_t t : star_.triangles(v)) {
             if (t == triangle) continue;
@@ -170,14 +169,14 @@ void Relaxer::pull(Sample& sample) {
         }
     };
     around(sample.near);
-    for (int step = 0; step < 4 && triangle != kNone; ++step) {
+    for (int step = 0; step < 4 && triangle != kNoIndex; ++step) {
         const std::uint32_t from = triangle;
         for (const std::uint32_t v : triangle_[from]) {
             if (v != sample.near) around(v);
         }
         if (triangle == from) break;
     }
-    if (triangle == kNone) return;
+    if (triangle == kNoIndex) return;
     const Corners& c = triangle_[triangle];
     const std::size_t largest =
         static_cast<std::size_t>(std::max_element(best.part.begin(), best.part.end()) - best.part.begin());
@@ -192,10 +191,10 @@ void Relaxer::pull(Sample& sample) {
 
 void Relaxer::pull_border(Sample& sample) {
     double best = 1e300, part = 0.0;
-    std::uint32_t from = kNone;
+    std::uint32_t from = kNoIndex;
     const auto look = [&](std::uint32_t v) {
         const std::uint32_t w = star_.border()[v];
-        if (w == kNone) return;
+        if (w == kNoIndex) return;
         const Vec along = at_[w] - at_[v];
         const double square = along.squaredNorm();
         if (!(square > 0.0)) return;
@@ -210,7 +209,7 @@ void Relaxer::pull_border(Sample& sample) {
     for (const std::uint32_t t : star_.triangles(sample.near)) {
         for (const std::uint32_t v : triangle_[t]) look(v);
     }
-    if (from == kNone) return;
+    if (from == kNoIndex) return;
     const std::uint32_t to = star_.border()[from];
     const Vec e = sample.at - (1.0 - part) * at_[from] - part * at_[to];
     const Vec side = sample.normal.unitOrthogonal(), up = sample.normal.cross(side);
@@ -286,7 +285,8 @@ void Relaxer::limit_stray() {
     surface *= kStray / std::max(surface_weight, 1e-300);
     border *= kStray / std::max(border_weight, 1e-300);
     for (std::uint32_t v = 0; v < at_.size(); ++v)
-        stray_.push_back(std::max(from_original(v, at_[v]), star_.border()[v] != kNone ? border : surface));
+        stray_.push_back(
+            std::max(from_original(v, at_[v]), star_.border()[v] != kNoIndex ? border : surface));
 }
 
 // False, and nothing done, where a triangle would turn over or two would come to lie on each other.
@@ -302,7 +302,7 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
     };
     for (const auto& [was, t] : before) {
         const Vec now = double_area(triangle_[t]);
-        if (!(was.dot(now) > kTurnCosine * was.norm() * now.norm()) || now.norm() < 0.1 * was.norm())
+        if (!(was.dot(now) > kTurnCosine<double> * was.norm() * now.norm()) || now.norm() < 0.1 * was.norm())
             return refuse();
         if (now.dot(start_[t]) < kStartCosine * now.norm() * start_[t].norm()) return refuse();
         const Corners& c = triangle_[t];
@@ -316,7 +316,7 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
             for (const std::uint32_t other : star_.triangles(w)) {
                 if (other == t || !star_.share_edge(t, other)) continue;
                 const Vec n = double_area(triangle_[other]);
-                if (now.dot(n) < kFoldCosine * now.norm() * n.norm()) return refuse();
+                if (now.dot(n) < kFoldCosine<double> * now.norm() * n.norm()) return refuse();
             }
         }
     }
@@ -352,7 +352,7 @@ void Relaxer::store() {
 std::uint32_t relax_rounds(const TriangleMesh& original, const Simplified& simplified) {
     const MeshStars star(simplified.mesh);
     const auto border = static_cast<std::size_t>(
-        std::count_if(star.border().begin(), star.border().end(), [](auto n) { return n != kNone; }));
+        std::count_if(star.border().begin(), star.border().end(), [](auto n) { return n != kNoIndex; }));
     if (border == 0 || original.triangles() > kHeldMost) return 1;
     const std::size_t pulls =
         std::min(original.triangles(), kSamplesPerVertex * simplified.mesh.vertices()) + border * border / 16;

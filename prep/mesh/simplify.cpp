@@ -10,14 +10,12 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
-
 void check(const TriangleMesh& mesh) {
     const auto refuse = [](const std::string& why) {
         throw StartupError("simplify a mesh", why, "repair the mesh or extract it again");
     };
     const std::size_t n = mesh.vertices();
-    if (n >= kNone / 4 || mesh.triangles() >= kNone / 4)
+    if (n >= kNoIndex / 4 || mesh.triangles() >= kNoIndex / 4)
         refuse("it has more than 2^30 vertices or triangles");
     for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
         if (mesh.triangle[i] >= n)
@@ -53,13 +51,13 @@ TriangleMesh cleaned(const TriangleMesh& mesh) {
                 order.end());
     std::sort(order.begin(), order.end());
     TriangleMesh out;
-    std::vector<std::uint32_t> place(mesh.vertices(), kNone);
+    std::vector<std::uint32_t> place(mesh.vertices(), kNoIndex);
     for (const std::uint32_t t : order) {
         for (std::size_t c = 3 * std::size_t{t}; c < 3 * std::size_t{t} + 3; ++c) place[mesh.triangle[c]] = 0;
     }
     std::uint32_t next = 0;
     for (std::size_t v = 0; v < place.size(); ++v) {
-        if (place[v] == kNone) continue;
+        if (place[v] == kNoIndex) continue;
         place[v] = next++;
         out.position_m.insert(out.position_m.end(), &mesh.position_m[3 * v], &mesh.position_m[3 * v] + 3);
     }

@@ -121,12 +121,6 @@ std::vector<Key> keys_of(RtConfig& c) {
     };
 }
 
-std::string number_text(double v) {
-    std::ostringstream out;
-    out << v;
-    return out.str();
-}
-
 // Empty: fine. Else what is wrong with the value that the key has now.
 std::string complaint(const Key& key) {
     const auto range = [&](double v, const std::string& text) {
@@ -365,6 +359,12 @@ HeadSettings head_settings_from(const RtConfig& c) {
     h.T_screen_tracker.p_m = Vec3(c.tracker.position_screen_m.data());
     h.T_screen_tracker.q = Quat(c.tracker.quat_screen_tracker_xyzw.data()).normalized();
     return h;
+}
+
+std::string number_text(double v) {
+    std::ostringstream out;
+    out << v;
+    return out.str();
 }
 
 }  // namespace tact

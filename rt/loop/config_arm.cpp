@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "ipc/base/error.hpp"
 
@@ -14,12 +13,6 @@ namespace tact {
 namespace {
 
 constexpr const char* kMend = "hal/arm/README.md says what each key means";
-
-std::string number_text(double v) {
-    std::ostringstream out;
-    out << v;
-    return out.str();
-}
 
 std::string word_of(const toml::node& node, const std::string& where) {
     if (!node.is_string()) throw StartupError(where, "this is not a text in quotes", kMend);

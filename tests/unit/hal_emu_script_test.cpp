@@ -74,9 +74,9 @@ TEST(Orders, OfEveryRowOfTheTableAreReadBack) {
         std::string line = row.words;
         for (std::size_t i = 0; i < row.numbers.size(); ++i) {
             wanted.numbers.at(i) = row.numbers[i].high;
-            line += " " + std::to_string(row.numbers[i].high);
+            line.append(" ").append(std::to_string(row.numbers[i].high));
         }
-        if (row.part == Part::arm) line += " " + (wanted.arm = "A_b-9");
+        if (row.part == Part::arm) line.append(" ").append(wanted.arm = "A_b-9");
         EXPECT_EQ(parse_order(line, "here"), wanted) << line;
         EXPECT_EQ(row_of(row.deed).words, row.words);
     }

@@ -57,7 +57,7 @@ TEST(StartBodies, refuse_every_file_that_cannot_be_meant_and_say_which_body) {
          })
         EXPECT_THROW(parse(text), StartupError) << text;
     std::string many = body();
-    for (int i = 0; i < 16; ++i) many += "," + body();
+    for (int i = 0; i < 16; ++i) many.append(",").append(body());
     EXPECT_THROW(parse(list(many)), StartupError);
     try {
         parse(list(body() + ",{}"));

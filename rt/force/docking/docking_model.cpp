@@ -14,12 +14,6 @@
 
 namespace tact {
 
-namespace {
-
-constexpr double kErrorMargin = 1.25;
-
-}  // namespace
-
 DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
                            const std::vector<Structure>& structures, const std::vector<Codebook>& codebooks,
                            const DockingSettings& settings)

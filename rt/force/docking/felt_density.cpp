@@ -13,7 +13,6 @@ namespace tact {
 namespace {
 
 constexpr int kCalibrationPoses = 128;
-constexpr double kErrorMargin = 1.25;
 
 // Of eight places drawn in the map the densest, turned at random.
 Pose dense_pose(const DensityMap& map, SeededRandom& random) {

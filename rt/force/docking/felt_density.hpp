@@ -37,6 +37,8 @@ struct FeltDensity {
     std::vector<std::vector<LevelFigures>> figures;  // by structure and level
 };
 
+// On what a sample of poses showed.
+inline constexpr double kErrorMargin = 1.25;
 inline constexpr std::uint32_t kFeltOptions = kOptionSubtraction | kOptionLaplacian;
 // The contours of finer maps are felt at this resolution: theirs are too narrow to be found (README.md).
 inline constexpr double kContourResolutionM = 20e-10;

@@ -1,0 +1,1 @@
+// The headers that most tests begin with; see tact_test_headers.
