@@ -9,8 +9,10 @@
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/error.hpp"
 #include "prep/mesh/progressive.hpp"
+#include "prep/surface/build_surface.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/unit/assets_samples.hpp"
 
@@ -18,7 +20,8 @@ namespace tact::fuzz {
 namespace {
 
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
-                                {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'}};
+                                {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
+                                {'S', 'U', 'R', 'F'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -39,6 +42,7 @@ const std::vector<Input>& good_sections() {
         octahedron.position_m = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
         octahedron.triangle = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
         write_progressive_mesh(scene, 0, octahedron);
+        write_surface(scene, build_surface(octahedron));
         const Input bytes = scene.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
         std::vector<Input> good;
@@ -85,13 +89,27 @@ void use_mesh(const SceneFile& file) {
     }
 }
 
+void use_surface(const SceneFile& file) {
+    const SurfaceMesh mesh = read_surface(file);
+    const Vec3 centre = 0.5 * (mesh.low_m() + mesh.high_m());
+    std::array<std::uint32_t, 16> leaves;
+    for (const Vec3& p : {centre, mesh.high_m(), Vec3(1e300, -1e300, 0.0)}) {
+        const SurfacePoint found = mesh.nearest(p, 1e7, 0);
+        if (found.triangle != SurfacePoint::kNone) (void)mesh.normal_at(found);
+        std::size_t count = 0;
+        (void)mesh.leaves_near(p, 1.0, leaves, count);
+        LeafLook seen;
+        for (std::size_t i = 0; i < count; ++i) mesh.look(leaves[i], p, seen);
+    }
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
     if (input.empty()) return false;
     const auto kind = static_cast<std::size_t>(input[0]) % (1 + std::size(kTags));
     const auto rest = input.subspan(1);
-    Input made;
+    Input made(rest.begin(), rest.end());  // at an address as a mapped file has it
     if (kind > 0) {
         SceneWriter out;
         for (std::size_t i = 0; i < std::size(kTags); ++i)
@@ -100,14 +118,14 @@ bool run(std::span<const std::byte> input) {
     }
     std::size_t sections = 0;
     accepted([&] {
-        const SceneFile file =
-            SceneFile::from_bytes(kind == 0 ? rest : std::span<const std::byte>(made), "fuzz.tact");
+        const SceneFile file = SceneFile::from_bytes(made, "fuzz.tact");
         sections += accepted([&] { (void)read_meta(file); });
         sections += accepted([&] { (void)read_note(file); });
         sections += accepted([&] { use_grid(file); });
         sections += accepted([&] { use_structure(file); });
         sections += accepted([&] { use_codebook(file); });
         sections += accepted([&] { use_mesh(file); });
+        sections += accepted([&] { use_surface(file); });
     });
     return sections == std::size(kTags);
 }
