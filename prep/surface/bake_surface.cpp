@@ -1,0 +1,76 @@
+#include "prep/surface/bake_surface.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "ipc/base/error.hpp"
+#include "prep/mesh/progressive.hpp"
+#include "prep/surface/build_surface.hpp"
+
+namespace tact {
+namespace {
+
+void place(const SurfaceInput& input, SceneMeta& meta) {
+    Vec3 low = Vec3::Constant(1e300), high = -low;
+    for (std::size_t i = 0; i < input.mesh.position_m.size(); ++i) {
+        const auto axis = static_cast<Eigen::Index>(i % 3);
+        const auto x = static_cast<double>(input.mesh.position_m[i]);
+        low[axis] = std::min(low[axis], x);
+        high[axis] = std::max(high[axis], x);
+    }
+    const double diagonal_m = (high - low).norm();
+    if (!(diagonal_m > 1e-12) || !std::isfinite(diagonal_m))
+        throw StartupError("bake a surface", "its diagonal is " + std::to_string(diagonal_m) + " m",
+                           "check the mesh, and --unit");
+    meta.world_per_model = input.size_m / diagonal_m;
+    meta.centre_model_m[0] = 0.5 * (low.x() + high.x());
+    meta.centre_model_m[1] = high.y() + SurfaceInput::kBelowM / meta.world_per_model;
+    meta.centre_model_m[2] = 0.5 * (low.z() + high.z());
+}
+
+}  // namespace
+
+BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress& progress) {
+    BakedSurface baked;
+    baked.meta.kind = SceneKind::surface;
+    place(input, baked.meta);
+    input.title.copy(baked.meta.title, sizeof baked.meta.title - 1);
+    for (const std::string& line : input.note) baked.note += line + '\n';
+
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const SurfaceData data = build_surface(input.mesh, progress);
+    baked.build_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    baked.vertices = data.position_m.size() / 3;
+    baked.triangles = data.triangle.size() / 3;
+    baked.closed = data.closed;
+    const std::size_t bytes =
+        data.position_m.size() * sizeof(float) + data.normal.size() * sizeof(OctNormal) +
+        data.triangle.size() * sizeof(std::uint32_t) + data.node.size() * sizeof(SurfaceNode);
+    baked.bytes_per_triangle = static_cast<double>(bytes) / static_cast<double>(baked.triangles);
+    char line[200];
+    std::snprintf(line, sizeof line, "surface: %zu vertices, %zu triangles, %s, %.1f bytes a triangle\n",
+                  baked.vertices, baked.triangles, baked.closed ? "closed" : "open",
+                  baked.bytes_per_triangle);
+    baked.note += line;
+    std::snprintf(line, sizeof line, "hand: 1 mm is %.6g m of the model; the diagonal is %.0f mm wide\n",
+                  1e-3 / baked.meta.world_per_model, 1e3 * input.size_m);
+    baked.note += line;
+    write_meta(out, baked.meta, baked.note);
+    write_surface(out, data);
+    if (!input.picture) return baked;
+    TriangleMesh drawn = std::move(input.mesh);
+    if (input.vertices_max > 0 && drawn.vertices() > input.vertices_max) {
+        SimplifySettings settings;
+        settings.vertices_min = input.vertices_max;
+        drawn = simplify(drawn, settings, progress).mesh;
+    }
+    const ProgressiveMeshData picture = make_progressive(drawn, {}, progress);
+    baked.picture_vertices = static_cast<std::uint32_t>(picture.vertex.size());
+    write_mesh(out, 0, picture);
+    return baked;
+}
+
+}  // namespace tact

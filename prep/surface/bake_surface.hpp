@@ -1,0 +1,42 @@
+// Puts a scene to touch together: the surface at full resolution, its picture, and how the hand's world maps
+// onto it.
+//
+// Place     the mesh's diagonal is size_m wide in the hand's world, and its top (the largest y) lies kBelowM
+//           below the middle of the hand's space, so that a hand at rest is outside.
+// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
+// Repeats   the same input gives the same sections.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/progress.hpp"
+
+namespace tact {
+
+struct SurfaceInput {
+    static constexpr double kBelowM = 0.01;
+    std::string title;
+    TriangleMesh mesh;              // metres, y up, counter-clockwise seen from outside
+    std::vector<std::string> note;  // lines "key: value"
+    double size_m = 0.15;
+    bool picture = true;                   // false: nothing to look at, for measurements
+    std::uint32_t vertices_max = 500'000;  // of the picture; 0: all
+};
+
+struct BakedSurface {
+    SceneMeta meta{};
+    std::string note;
+    std::size_t vertices = 0, triangles = 0;
+    std::uint32_t picture_vertices = 0;
+    bool closed = false;
+    double build_s = 0.0;  // of surface and tree
+    double bytes_per_triangle = 0.0;
+};
+
+BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress& progress = {});
+
+}  // namespace tact

@@ -1,0 +1,99 @@
+// A ball that follows a point as far as a surface lets it: the proxy of a point or spherical tool.
+//
+// Model     The centre of the ball stays where the ball is free of every triangle, and goes to the place there
+//           that is nearest to the goal, along moves that are free all along (guards.hpp). A point is a ball of
+//           a few micrometres. Both sides of every triangle hold it off, so an open surface is felt on the side
+//           where the proxy is, and a sheet without thickness holds.
+// Rest      Over the inside of a triangle the centre rests at radius_m, over an edge or a corner at radius_m
+//           less margin_m: were both the same, a ball at rest on one facet could not leave it, as the next
+//           one's edge already touches it.
+// Friction  With p the depth of the goal behind the frictionless place x, the proxy stays where it is nearer to
+//           x than friction * p along the surface, else it follows until it is that near. So the force stays
+//           in the cone of half angle atan(friction).
+// Work      Leaves of the tree are collected in a ball that is somewhat wider than needed and kept while the
+//           proxy is inside; a move looks at their triangles, at most moves_max moves a step. Where triangles
+//           are so dense that they do not fit, the move is made shorter instead.
+// Glide     In one step the proxy gets at most 1.5 times as far as the goal did and glide_m more. Where it
+//           leaves a hollow, or a sheet ends, it slides to its new place within some steps instead of leaping,
+//           so the force has no steps there and a step has not more work than others.
+// Lag       a step that used up its moves or its time leaves the proxy where it is free, nearer to the goal
+//           than before, and says so; the next step goes on from there. It cannot jam.
+// Unit      metres of the model.  Thread  made anywhere (it allocates); then servo, TACT_RT.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/pose.hpp"
+#include "rt/force/surface/guards.hpp"
+
+namespace tact {
+
+struct ContactSettings {
+    double radius_m = 0.0;  // of the ball, > 0
+    double margin_m = 0.0;  // > 0, less than the radius
+    double friction = 0.0;  // coefficient
+    double glide_m = 0.0;   // see Glide, > 0
+};
+
+enum class ContactState : std::uint8_t {
+    settled,  // as near to the goal as it can be
+    gliding,  // on its way, and as far as one step may take it
+    lagging,  // the moves or the time were used up before
+};
+
+struct ContactPlane {
+    Vec3 normal = Vec3::Zero();  // towards the proxy, unit
+    double weight_m = 0.0;       // see Contact
+    std::uint32_t triangle = 0;
+};
+
+struct Contact {
+    Vec3 proxy_m = Vec3::Zero();
+    // Where the goal would be felt without friction: the sum of weight times normal leads from the goal there.
+    std::array<ContactPlane, 3> plane;
+    std::uint32_t planes = 0;  // 0: free
+    std::uint32_t moves = 0;
+    std::uint32_t triangles = 0;  // looked at
+    ContactState state = ContactState::settled;
+    bool late = false;  // the deadline ended it
+};
+
+class SurfaceContact {
+public:
+    static constexpr std::size_t kLeavesMax = 4096;
+    // A step begins no further move once it has looked at so many: some 200 us.
+    static constexpr std::uint32_t kTrianglesMost = 8192;
+
+    // The bytes behind `mesh` must outlive the object.
+    SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& settings);
+
+    [[nodiscard]] const SurfaceMesh& mesh() const noexcept { return mesh_; }
+    [[nodiscard]] const ContactSettings& settings() const noexcept { return settings_; }
+    [[nodiscard]] const Vec3& proxy_m() const noexcept TACT_RT { return proxy_m_; }
+    // The proxy is at the goal, or where that is inside a closed surface, outside at the nearest place.
+    void seat(const Vec3& goal_m) noexcept TACT_RT;
+    Contact follow(const Vec3& goal_m, std::uint32_t moves_max,
+                   Instant deadline = Instant::max()) noexcept TACT_RT;
+
+private:
+    bool collect(double& reach_m) noexcept TACT_RT;
+    void look(double& reach_m, std::uint32_t& triangles) noexcept TACT_RT;
+    [[nodiscard]] Vec3 held_back(const Guards::Solution& free, const Vec3& goal_m,
+                                 double tolerance_m) const noexcept TACT_RT;
+    [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
+
+    SurfaceMesh mesh_;  // a view
+    ContactSettings settings_;
+    Guards guards_;
+    std::vector<std::uint32_t> leaf_;
+    std::size_t leaves_ = 0;
+    Vec3 collected_at_m_ = Vec3::Zero();
+    double collected_m_ = -1.0;  // how far the ball may go from there; < 0: nothing is collected
+    Vec3 proxy_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();
+};
+
+}  // namespace tact

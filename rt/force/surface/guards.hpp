@@ -1,0 +1,79 @@
+// What keeps a proxy off a surface for one move: half-spaces, and the nearest place to a goal inside them.
+//
+// Sound    Let a ball of radius r about c be free of a triangle. A half-space n·x + s >= 0 (x from c, n unit)
+//          in which all places of the centre are free suffices against that triangle, and so does any other
+//          one. Each triangle brings two: away from its nearest point (its distance is a convex function of x,
+//          and n its slope), and over its own plane. A move whose end is, for every triangle, inside one of its
+//          two is free all along, as its beginning is inside both. No sweep is needed.
+// Solve    the point nearest to the goal under the half-spaces found necessary: an active set of at most
+//          three, to which the most violated triangle is added, by the one of its two that asks less, until
+//          none is violated. The distance to the goal rises with each, so it ends; kRoundsMax is the net. Then
+//          guards that hold by the wrong one of their two are turned round, as long as that leads nearer.
+// Unit     metres of the model; single precision about the proxy.
+// Thread   made anywhere (it allocates); then servo, TACT_RT.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+class Guards {
+public:
+    static constexpr std::size_t kMax = 8192;
+    static constexpr int kRoundsMax = 48;
+    static constexpr std::size_t kTurnsMax = 8;
+
+    struct Active {
+        Vec3 normal = Vec3::Zero();
+        double slack_m = 0.0;   // how far the proxy may go against the normal
+        double weight_m = 0.0;  // >= 0; the sum of weight times normal leads from the goal to the solution
+        std::uint32_t guard = 0;
+        bool facet = false;  // which of its two
+    };
+    struct Solution {
+        Vec3 move_m = Vec3::Zero();  // from the proxy
+        std::array<Active, 3> active;
+        std::size_t active_count = 0;
+        bool exact = true;  // false: numbers or rounds ran out, and the move was shortened until it is free
+    };
+
+    Guards() : float_(std::size_t{8} * kMax), triangle_(kMax) {}
+
+    void clear() noexcept TACT_RT { count_ = 0; }
+    [[nodiscard]] std::size_t size() const noexcept TACT_RT { return count_; }
+    [[nodiscard]] std::uint32_t triangle(std::size_t guard) const noexcept TACT_RT {
+        return triangle_[guard];
+    }
+    // near_slack_m may be negative: then the proxy is to be pushed out. False: there is no room.
+    bool add(std::uint32_t triangle, const LeafLook& look, std::size_t lane, float near_slack_m,
+             float facet_slack_m, bool facet_holds) noexcept TACT_RT;
+    // Nothing is pushed out any more: staying is allowed by every guard.
+    void allow_staying() noexcept TACT_RT;
+    // goal_m: from the proxy. tolerance_m: of a guard that counts as kept.
+    [[nodiscard]] Solution solve(const Vec3& goal_m, double tolerance_m) const noexcept TACT_RT;
+
+private:
+    enum Row : std::size_t { near_x, near_y, near_z, near_s, facet_x, facet_y, facet_z, facet_s };
+    [[nodiscard]] float* row(Row r) noexcept { return float_.data() + r * kMax; }
+    [[nodiscard]] const float* row(Row r) const noexcept { return float_.data() + r * kMax; }
+    [[nodiscard]] std::size_t most_violated(const Vec3& move_m, double& value) const noexcept TACT_RT;
+    [[nodiscard]] Active half_space(std::size_t guard, bool facet) const noexcept TACT_RT;
+    [[nodiscard]] Active asked_least(std::size_t guard, const Vec3& move_m,
+                                     std::span<const Active> turned) const noexcept TACT_RT;
+    [[nodiscard]] Solution solve_with(const Vec3& goal_m, double tolerance_m,
+                                      std::span<const Active> turned) const noexcept TACT_RT;
+    [[nodiscard]] double free_share(const Vec3& move_m) const noexcept TACT_RT;
+
+    std::vector<float> float_;
+    std::vector<std::uint32_t> triangle_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace tact

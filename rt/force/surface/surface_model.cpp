@@ -1,0 +1,175 @@
+#include "rt/force/surface/surface_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kFarM = 1e3;  // no hand is there
+// Cosines between the normal of a triangle and the interpolated one: shaded wholly from the first (20 degrees),
+// not at all below the second (40 degrees).
+constexpr double kShadedFrom = 0.940, kShadedTo = 0.766;
+
+bool tool_is_there(const Pose& pose) noexcept {
+    const double turn = pose.q.squaredNorm();
+    return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kFarM && turn > 0.25 && turn < 4.0;
+}
+
+double shaded_share(double cosine) noexcept {
+    return std::clamp((cosine - kShadedTo) / (kShadedFrom - kShadedTo), 0.0, 1.0);
+}
+
+ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s) {
+    const auto within = [](const char* what, double value, double low, double high) {
+        if (!(value >= low && value <= high))
+            throw StartupError(
+                std::string("setting the ") + what + " of the tool",
+                std::to_string(value) + " is outside " + std::to_string(low) + " to " + std::to_string(high),
+                "give one inside");
+    };
+    within("radius in m", s.radius_m, 0.0, 0.1);
+    within("stiffness in N/m", s.stiffness_n_m, 1.0, 20000.0);
+    within("damping in N s/m", s.damping_n_s_m, 0.0, 10.0);
+    within("friction", s.friction, 0.0, 2.0);
+    within("force limit in N", s.force_n_max, 0.1, 100.0);
+    const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
+    // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
+    const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
+    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
+    return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
+            glide / meta.world_per_model};
+}
+
+}  // namespace
+
+SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings)
+    : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)) {}
+
+KnobSpec SurfaceModel::knob() const noexcept {
+    return {.path = kKnobPath, .floor = 0.0F, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
+}
+
+std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
+    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
+    return kMovesLeast +
+           static_cast<std::uint32_t>(std::lround(level * static_cast<float>(kMovesMost - kMovesLeast)));
+}
+
+void SurfaceModel::reset(const ToolState& tool) noexcept {
+    asked_ = true;
+    fade_.cut();
+    contact_ = {};
+    turn_m_.setZero();
+    ++grips_;
+    seated_ = tool_is_there(tool.T_world_tool);
+    if (seated_) solver_.seat(meta_.to_model(tool.T_world_tool.p_m));
+}
+
+ModelBodies SurfaceModel::bodies() const noexcept {
+    ModelBodies list;
+    list.count = 1;
+    list.T_model_body[0].p_m = solver_.proxy_m();
+    list.id[0] = 1;
+    list.grips = grips_;
+    return list;
+}
+
+// What shading adds to the way from the tool to the proxy, model.
+Vec3 SurfaceModel::shaded_turn_m(const ContactPlane& plane) const noexcept {
+    const SurfaceMesh& mesh = solver_.mesh();
+    Vec3 smooth = mesh.normal_at(mesh.point_of(plane.triangle, solver_.proxy_m()));
+    Vec3 facet = mesh.facet_normal(plane.triangle);
+    if (facet.dot(plane.normal) < 0.0) {  // felt from behind
+        smooth = -smooth;
+        facet = -facet;
+    }
+    const double share = shaded_share(smooth.dot(facet)) * shaded_share(smooth.dot(plane.normal));
+    return plane.weight_m * share * (smooth - plane.normal);
+}
+
+Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept {
+    Vec3 turn_m = Vec3::Zero();
+    if (settings_.shading) {
+        for (std::uint32_t i = 0; i < contact_.planes; ++i) turn_m += shaded_turn_m(contact_.plane[i]);
+    }
+    // Other triangles may be touched in the next step: no step in the force there either.
+    const Vec3 change_m = turn_m - turn_m_;
+    const double change = change_m.norm(), most = solver_.settings().glide_m;
+    turn_m_ += (change > most ? most / change : 1.0) * change_m;
+    const Vec3 way_m = meta_.world_per_model * (contact_.proxy_m - goal_model_m + turn_m_);
+    const double depth_m = way_m.norm();
+    if (!(depth_m > 0.0)) return Vec3::Zero();
+    const Vec3 normal = way_m / depth_m;
+    const Vec3& v = tool.twist_world.linear_m_s;
+    const double into_m_s = v.allFinite() ? -normal.dot(v) : 0.0;
+    const double damped = settings_.damping_n_s_m * into_m_s * std::min(1.0, depth_m / kDampedDepthM);
+    return std::clamp(settings_.stiffness_n_m * depth_m + damped, 0.0, settings_.force_n_max) * normal;
+}
+
+StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexcept {
+    const Instant begin = Monotonic::now();
+    StepResult result;
+    const std::uint32_t moves = items(budget.fidelity);
+    result.load.items = moves;
+    fade_.begin_step();
+    const bool there = tool_is_there(tool.T_world_tool);
+    const bool clutch = (tool.buttons & 1U) != 0;
+    if (!there) {
+        fade_.cut();
+        contact_ = {};
+        seated_ = false;
+        result.status = StepStatus::out_of_range;
+    } else if (asked_) {
+        const Vec3 goal_m = meta_.to_model(tool.T_world_tool.p_m);
+        if (clutch && fade_.gain() <= 0.0) seated_ = false;
+        if (!seated_ && !clutch) {
+            solver_.seat(goal_m);
+            seated_ = true;
+            turn_m_.setZero();
+            ++grips_;
+        }
+        if (seated_) {
+            if (clutch)
+                fade_.fall();
+            else
+                fade_.rise();
+            const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+            contact_ = solver_.follow(goal_m, hurried ? 1 : moves, budget.deadline);
+            const bool on_time = !hurried && !contact_.late;
+            if (on_time && contact_.state == ContactState::lagging) ++lagging_;
+            if (!on_time || contact_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
+            const double newton = settings_.stiffness_n_m * meta_.world_per_model;
+            const double pulled_n = newton * (contact_.proxy_m - goal_m).norm();
+            result.load.error = contact_.state == ContactState::settled
+                                    ? 2.0 * newton * solver_.settings().margin_m
+                                    : 2.0 * std::min(pulled_n, settings_.force_n_max);
+            result.wrench_world = fade_.show({fade_.gain() * felt_n(tool, goal_m), Vec3::Zero()});
+            if (pulled_n > kLostLimits * settings_.force_n_max) {
+                fade_.follow(fade_);
+                solver_.seat(goal_m);
+                turn_m_.setZero();
+                ++grips_;
+                ++released_;
+            }
+        } else {
+            contact_ = {};
+            fade_.rest();
+        }
+    }
+    result.load.cost = std::max(Monotonic::now() - begin, Duration(1));
+    return result;
+}
+
+std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const SurfaceSettings& settings) {
+    const SceneMeta meta = read_meta(scene);
+    if (meta.kind != SceneKind::surface)
+        throw StartupError("loading '" + scene.name() + "'", "it is not a surface",
+                           "bake one with tact-prep touch MESH -o SCENE");
+    return std::make_unique<SurfaceModel>(meta, read_surface(scene), settings);
+}
+
+}  // namespace tact

@@ -1,0 +1,89 @@
+// Touching a triangle mesh with a point or a ball.
+//
+// Force    k times the way from the tool to the proxy (contact.hpp), which no triangle lets through. Without
+//          friction that is the slope of the energy k/2 way^2, so a closed path gains nothing; friction and
+//          damping only take. Force shading turns the part of each touched triangle to the normal that is
+//          interpolated between its corners, where that is within some 30 degrees of the triangle's own: a
+//          smooth surface feels smooth, an edge stays one.
+// Damping  along the force, in proportion to the depth up to kDampedDepthM; it never pulls. A spring of k held
+//          in steps of T asks the hand for a damping of k T/2 (Colgate 1997), and this one takes its own on
+//          top: k T/2 + b has to stay below what hand and arm have. By default 0.75 N s/m at 1 kHz.
+// Limit    force_n_max. Where the proxy cannot keep up the force is k times the way as far as it got, so
+//          limited; that is out_of_time, counted, with twice that force as its error bound. Where it is left
+//          behind by more than kLostLimits times the way at that limit, it is released: that force fades out,
+//          the proxy is seated as after a reset, and the force fades in.
+// Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags.
+// Bodies   one, the proxy, in the hand; orders are refused.
+// Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
+// Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.
+// Frames   tool and wrench in world, the surface in model; SceneMeta maps one to the other.
+// Thread   constructed anywhere (may throw StartupError); then servo. No allocation.
+#pragma once
+
+#include <memory>
+
+#include "ipc/assets/scene_file.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/assets/surface_mesh.hpp"
+#include "rt/force/docking/force_fade.hpp"
+#include "rt/force/force_model.hpp"
+#include "rt/force/surface/contact.hpp"
+
+namespace tact {
+
+// In the hand's world.
+struct SurfaceSettings {
+    double radius_m = 0.0;  // of the tool; a point is felt as a ball of kPointM
+    double stiffness_n_m = 500.0;
+    double damping_n_s_m = 0.5;
+    double friction = 0.2;
+    bool shading = true;
+    double force_n_max = 12.0;
+};
+
+class SurfaceModel final : public ForceModel {
+public:
+    static constexpr const char* kKnobPath = "surface.force";
+    static constexpr double kPointM = 4e-6;
+    static constexpr double kDampedDepthM = 5e-4;
+    static constexpr double kGlideN = 0.05;  // what a step may change the force by, besides what the hand did
+    static constexpr double kLostLimits = 2.0;
+    static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
+
+    // The bytes behind `mesh` must outlive the model.
+    SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings);
+
+    [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
+    void reset(const ToolState& tool) noexcept TACT_RT override;
+    StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
+    [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
+
+    [[nodiscard]] const SceneMeta& meta() const { return meta_; }
+    [[nodiscard]] const Contact& contact() const { return contact_; }       // of the last step
+    [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }  // since it was made
+
+    [[nodiscard]] std::uint64_t released() const { return released_; }
+
+private:
+    [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept TACT_RT;
+    [[nodiscard]] Vec3 shaded_turn_m(const ContactPlane& plane) const noexcept TACT_RT;
+
+    SceneMeta meta_;
+    SurfaceSettings settings_;
+    SurfaceContact solver_;
+    Contact contact_;
+    ForceFade fade_;
+    Vec3 turn_m_ = Vec3::Zero();  // by shading, of the way from the tool to the proxy; model
+    bool asked_ = false;          // reset() was called
+    bool seated_ = false;         // the proxy is where a tool was
+    std::uint64_t grips_ = 0;
+    std::uint64_t lagging_ = 0, released_ = 0;
+};
+
+// Fails by StartupError where the scene is no surface or a setting is out of range. The scene must outlive the
+// model.
+std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const SurfaceSettings& settings);
+
+}  // namespace tact

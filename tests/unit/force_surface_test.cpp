@@ -1,0 +1,458 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/random.hpp"
+#include "prep/surface/bake_surface.hpp"
+#include "prep/surface/build_surface.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/surface_model.hpp"
+#include "tests/contract/force_model_contract.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kStiffness = 500.0;
+
+// A scene in memory; models point into it. The hand's world is a hundred times the model's.
+struct Scene {
+    std::vector<std::byte> bytes;
+    std::unique_ptr<SceneFile> file;
+    SurfaceMesh mesh;
+    SceneMeta meta{};
+    std::unique_ptr<SurfaceModel> model(const SurfaceSettings& settings) const {
+        return std::make_unique<SurfaceModel>(meta, mesh, settings);
+    }
+};
+
+constexpr double kWorldPerModel = 100.0;
+
+std::unique_ptr<Scene> scene(TriangleMesh mesh) {  // metres of the hand
+    for (float& x : mesh.position_m) x /= static_cast<float>(kWorldPerModel);
+    auto s = std::make_unique<Scene>();
+    SceneWriter out;
+    write_surface(out, build_surface(mesh));
+    s->bytes = out.to_bytes();
+    s->file = std::make_unique<SceneFile>(SceneFile::from_bytes(s->bytes, "test.tact"));
+    s->mesh = read_surface(*s->file);
+    s->meta.kind = SceneKind::surface;
+    s->meta.world_per_model = kWorldPerModel;
+    return s;
+}
+
+// An open square of 0.1 m with its normal along `up`, through the origin, of many triangles.
+void add_square(TriangleMesh& mesh, const Vec3& right, const Vec3& up, std::uint32_t parts = 20) {
+    const Vec3 back = right.cross(up);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices());
+    for (std::uint32_t i = 0; i <= parts; ++i) {
+        for (std::uint32_t k = 0; k <= parts; ++k) {
+            const Vec3 p = 0.1 * ((static_cast<double>(i) / parts - 0.5) * right +
+                                  (static_cast<double>(k) / parts - 0.5) * back);
+            for (const double x : {p.x(), p.y(), p.z()}) mesh.position_m.push_back(static_cast<float>(x));
+        }
+    }
+    for (std::uint32_t i = 0; i < parts; ++i) {
+        for (std::uint32_t k = 0; k < parts; ++k) {
+            const std::uint32_t a = first + i * (parts + 1) + k, b = a + parts + 1;
+            mesh.triangle.insert(mesh.triangle.end(), {a, b, b + 1, a, b + 1, a + 1});
+        }
+    }
+}
+
+const Scene& plane() {
+    static const auto made = [] {
+        TriangleMesh mesh;
+        add_square(mesh, Vec3::UnitX(), Vec3::UnitY());
+        return scene(std::move(mesh));
+    }();
+    return *made;
+}
+
+// Three squares that cross in the origin: eight corners.
+const Scene& crossing() {
+    static const auto made = [] {
+        TriangleMesh mesh;
+        add_square(mesh, Vec3::UnitX(), Vec3::UnitY(), 7);
+        add_square(mesh, Vec3::UnitY(), Vec3::UnitZ(), 7);
+        add_square(mesh, Vec3::UnitZ(), Vec3::UnitX(), 7);
+        return scene(std::move(mesh));
+    }();
+    return *made;
+}
+
+const Scene& box() {  // of 0.04 m, two triangles a side
+    static const auto made = [] {
+        TriangleMesh mesh;
+        for (int i = 0; i < 8; ++i)
+            for (int axis = 0; axis < 3; ++axis)
+                mesh.position_m.push_back((i >> axis & 1) != 0 ? 0.02F : -0.02F);
+        mesh.triangle = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+        return scene(std::move(mesh));
+    }();
+    return *made;
+}
+
+const Scene& rough() {
+    static const auto made = scene(rough_sphere(40));
+    return *made;
+}
+
+const Scene& smooth() {
+    static const auto made = [] {
+        TriangleMesh mesh = rough_sphere(40);
+        for (std::size_t v = 0; v < mesh.vertices(); ++v) {
+            float* const p = mesh.position_m.data() + 3 * v;
+            const float size = std::hypot(p[0], p[1], p[2]);
+            for (int axis = 0; axis < 3; ++axis) p[axis] *= 0.05F / size;
+        }
+        return scene(std::move(mesh));
+    }();
+    return *made;
+}
+
+SurfaceSettings plain(double radius_m = 0.0, double friction = 0.0) {
+    return {.radius_m = radius_m,
+            .stiffness_n_m = kStiffness,
+            .damping_n_s_m = 0.0,
+            .friction = friction,
+            .shading = false};
+}
+
+ToolState at(const Vec3& p) {
+    ToolState tool;
+    tool.T_world_tool.p_m = p;
+    return tool;
+}
+
+// A tool that was put somewhere free and whose force has faded in.
+struct Hand {
+    std::unique_ptr<SurfaceModel> model;
+    Vec3 place;
+    Hand(const Scene& s, const SurfaceSettings& settings, const Vec3& start)
+        : model(s.model(settings)), place(start) {
+        model->reset(at(start));
+        for (int i = 0; i < ForceFade::kRampSteps; ++i) (void)model->step(at(start), {});
+    }
+    // In a straight line by steps of a tenth of a millimetre, then at rest.
+    Vec3 lead(const Vec3& to) {
+        const Vec3 from = place;
+        const int steps = 1 + static_cast<int>((to - from).norm() / 1e-4);
+        for (int i = 1; i <= steps; ++i) (void)step(from + (to - from) * i / steps);
+        Vec3 force;
+        for (int i = 0; i < 200; ++i) force = step(to);
+        return force;
+    }
+    Vec3 step(const Vec3& p) {
+        place = p;
+        return model->step(at(p), {}).wrench_world.force_n;
+    }
+    [[nodiscard]] Vec3 proxy() const { return kWorldPerModel * model->contact().proxy_m; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Surface, ForceModelContract,
+                         testing::Values(ForceModelCase{"point",
+                                                        [] { return smooth().model({}); },
+                                                        {Vec3(0.0, 0.056, 0.0), Quat::Identity()},
+                                                        {Vec3(0.004, 0.048, 0.003), Quat::Identity()}},
+                                         ForceModelCase{"ball",
+                                                        [] { return rough().model({.radius_m = 0.003}); },
+                                                        {Vec3(0.0, 0.066, 0.0), Quat::Identity()},
+                                                        {Vec3(0.004, 0.05, 0.003), Quat::Identity()}}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(Surface, APlanePushesBackByStiffnessTimesDepth) {
+    for (const double radius_m : {0.0, 0.001, 0.003}) {
+        Hand hand(plane(), plain(radius_m), Vec3(0.003, 0.01, 0.002));
+        const Vec3 force = hand.lead(Vec3(0.013, -0.002, -0.004));
+        EXPECT_LT((force - Vec3(0.0, kStiffness * (0.002 + radius_m), 0.0)).norm(), 0.006);
+        EXPECT_NEAR(hand.lead(Vec3(0.013, 0.02, -0.004)).norm(), 0.0, 1e-9);
+    }
+}
+
+TEST(Surface, ASheetWithoutThicknessIsFeltFromTheSideWhereTheToolCameFrom) {
+    for (const double side : {1.0, -1.0}) {
+        for (const double radius_m : {0.0, 0.002}) {
+            Hand hand(plane(), plain(radius_m), Vec3(0.0, 0.01 * side, 0.0));
+            const Vec3 force = hand.lead(Vec3(0.01, -0.015 * side, 0.01));
+            EXPECT_NEAR(side * force.y(), kStiffness * (0.015 + radius_m), 0.01);
+            EXPECT_GT(side * hand.proxy().y(), 0.0);
+        }
+    }
+}
+
+TEST(Surface, AroundTheBorderOfASheetTheToolComesFree) {
+    Hand hand(plane(), plain(0.001), Vec3(0.0, 0.01, 0.0));
+    (void)hand.lead(Vec3(0.0, -0.002, 0.0));
+    EXPECT_NEAR(hand.lead(Vec3(0.056, -0.002, 0.0)).norm(), 0.0, 1e-6);
+}
+
+TEST(Surface, AConcaveCornerHoldsByAllOfItsPlanes) {
+    for (const double radius_m : {0.0, 0.002}) {
+        Hand hand(crossing(), plain(radius_m), Vec3(0.01, 0.012, 0.014));
+        const Vec3 force = hand.lead(Vec3(-0.002, -0.003, -0.001));
+        const Vec3 depth = Vec3(0.002, 0.003, 0.001) + Vec3::Constant(radius_m);
+        EXPECT_LT((force - kStiffness * depth).norm(), 0.01);
+    }
+}
+
+TEST(Surface, ABallOverAConvexEdgeIsPushedAlongTheLineFromTheEdge) {
+    Hand hand(box(), plain(0.003), Vec3(0.025, 0.025, 0.003));
+    // Beside the edge, so that neither side's plane is below the centre.
+    const Vec3 tool(0.0205, 0.021, 0.003), edge(0.02, 0.02, 0.003);
+    const Vec3 expected = kStiffness * (0.003 - (tool - edge).norm()) * (tool - edge).normalized();
+    EXPECT_LT((hand.lead(tool) - expected).norm(), 0.006);
+    const Vec3 corner_tool(0.0206, 0.0209, 0.0208), corner = Vec3::Constant(0.02);
+    const Vec3 at_corner =
+        kStiffness * (0.003 - (corner_tool - corner).norm()) * (corner_tool - corner).normalized();
+    EXPECT_LT((hand.lead(corner_tool) - at_corner).norm(), 0.01);
+}
+
+TEST(Surface, APointThatIsLedRoundABoxIsFeltOnTheSideThatItIsUnder) {
+    Hand hand(box(), plain(), Vec3(0.01, 0.03, 0.003));
+    EXPECT_LT((hand.lead(Vec3(0.012, 0.019, 0.003)) - Vec3(0, kStiffness * 0.001, 0)).norm(), 0.006);
+    EXPECT_LT((hand.lead(Vec3(0.0190, 0.0185, 0.003)) - Vec3(0, kStiffness * 0.0015, 0)).norm(), 0.006);
+    (void)hand.lead(Vec3(0.024, 0.0185, 0.003));  // off the edge, and against the next side
+    EXPECT_LT((hand.lead(Vec3(0.0190, 0.0100, 0.003)) - Vec3(kStiffness * 0.001, 0, 0)).norm(), 0.006);
+}
+
+TEST(Surface, FrictionKeepsTheForceInItsConeAndSlidingIsAtItsRim) {
+    for (const double friction : {0.1, 0.3, 0.8}) {
+        Hand hand(plane(), plain(0.001, friction), Vec3(0.0, 0.01, 0.0));
+        Vec3 force = hand.lead(Vec3(0.0, -0.001, 0.0));
+        EXPECT_LT(std::hypot(force.x(), force.z()), 0.006);
+        const double depth = 0.002;
+        // Held: the force grows as a spring's.
+        force = hand.lead(Vec3(0.5 * friction * depth, -0.001, 0.0));
+        EXPECT_NEAR(-force.x(), kStiffness * 0.5 * friction * depth, 0.006);
+        force = hand.lead(Vec3(0.01, -0.001, 0.0));
+        EXPECT_NEAR(-force.x(), friction * force.y(), 0.01);
+        EXPECT_NEAR(force.y(), kStiffness * depth, 0.006);
+        // Back again: the force turns round within the width of the cone.
+        force = hand.lead(Vec3(0.01 - 2.5 * friction * depth, -0.001, 0.0));
+        EXPECT_NEAR(force.x(), friction * force.y(), 0.01);
+    }
+}
+
+// On a path at a steady depth over the rough sphere.
+Vec3 slide(double t_s, double depth_m) {
+    const Vec3 d(std::cos(0.9 * std::sin(0.61 * t_s)) * std::cos(1.1 * t_s),
+                 std::cos(0.9 * std::sin(0.61 * t_s)) * std::sin(1.1 * t_s),
+                 std::sin(0.9 * std::sin(0.61 * t_s)));
+    return (rough_radius_m(d) - depth_m) * d;
+}
+
+// The place is free, and none near it is free, on this side of the surface and nearer to the goal.
+void expect_settled(const Hand& hand, double radius_m, SeededRandom& random) {
+    const auto clearance_m = [](const Vec3& world_m) {
+        return kWorldPerModel * rough().mesh.nearest(world_m / kWorldPerModel, 1.0).distance_m;
+    };
+    const double margin_m = std::max(1e-3 * radius_m, 2e-6);
+    EXPECT_GT(clearance_m(hand.proxy()), radius_m - 1.1 * margin_m);
+    const double way_m = (hand.proxy() - hand.place).norm();
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 to = 1e-4 * random.direction();
+        if ((hand.proxy() + to - hand.place).norm() > way_m - 2e-5) continue;
+        double least = 1.0;
+        for (int k = 1; k <= 20; ++k) least = std::min(least, clearance_m(hand.proxy() + 0.05 * k * to));
+        EXPECT_LT(least, std::max(radius_m, 4e-6) + margin_m);
+    }
+}
+
+TEST(Surface, TheProxyNeverJamsOnARoughSurface) {
+    SeededRandom random(7);
+    for (const double radius_m : {0.0, 0.003}) {
+        for (const double speed : {1.0, 4.0}) {
+            Hand hand(rough(), plain(radius_m), slide(0.0, -0.008));
+            (void)hand.lead(slide(0.0, 0.0015 - radius_m));
+            for (int i = 0; i < 2500; ++i) {
+                (void)hand.step(slide(1e-3 * speed * i, 0.0015 - radius_m));
+                // One that stands still is left behind by 60 mm and more a second.
+                ASSERT_LT((hand.proxy() - hand.place).norm(), 0.009) << "sample " << i;
+                if (i % 500 == 499) {
+                    (void)hand.lead(hand.place);
+                    EXPECT_EQ(hand.model->contact().state, ContactState::settled);
+                    expect_settled(hand, radius_m, random);
+                }
+            }
+        }
+    }
+}
+
+TEST(Surface, FromStepToStepTheForceChangesByWhatTheHandDidAndATenthOfANewton) {
+    for (const double friction : {0.0, 0.4}) {
+        for (const double speed : {1.0, 4.0}) {
+            SurfaceSettings settings = plain(0.001, friction);
+            settings.shading = true;
+            Hand hand(rough(), settings, slide(0.0, -0.005));
+            Vec3 before = hand.lead(slide(0.0, 0.001));
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 last = hand.place;
+                const Vec3 force = hand.step(slide(1e-3 * speed * i, 0.001));
+                const double moved = (hand.place - last).norm();
+                ASSERT_LT((force - before).norm(),
+                          2.5 * kStiffness * moved + 2.0 * SurfaceModel::kGlideN + 1e-3);
+                before = force;
+            }
+        }
+    }
+}
+
+TEST(Surface, AClosedPathGainsNoEnergy) {
+    SeededRandom random(3);
+    for (const double friction : {0.0, 0.3}) {
+        for (int path = 0; path < 6; ++path) {
+            const Vec3 centre = slide(1.3 * path, 0.0005), a = 0.002 * random.direction(),
+                       b = 0.002 * random.direction();
+            const auto place = [&](double s) {
+                return Vec3(centre + std::sin(2.0 * std::numbers::pi * s) * a +
+                            std::sin(4.0 * std::numbers::pi * s) * b);
+            };
+            Hand hand(rough(), plain(0.001, friction), 1.2 * centre);
+            (void)hand.lead(place(0.0));
+            constexpr int kSteps = 1500;
+            // The first round finds the hollows that the proxy stays in.
+            for (int i = 0; i < kSteps; ++i) (void)hand.step(place(static_cast<double>(i) / kSteps));
+            const double held_j = 0.5 * kStiffness * (hand.proxy() - hand.place).squaredNorm();
+            double gained_j = 0.0;
+            Vec3 before = hand.step(place(0.0));
+            for (int i = 1; i <= kSteps; ++i) {
+                const Vec3 last = hand.place;
+                const Vec3 force = hand.step(place(static_cast<double>(i) / kSteps));
+                gained_j += 0.5 * (force + before).dot(hand.place - last);
+                before = force;
+            }
+            const double left_j = 0.5 * kStiffness * (hand.proxy() - hand.place).squaredNorm();
+            EXPECT_LT(gained_j, held_j - left_j + 2e-5) << "path " << path << ", friction " << friction;
+        }
+    }
+}
+
+TEST(Surface, ShadingMakesASmoothSurfaceSmoothAndLeavesAnEdgeSharp) {
+    SurfaceSettings settings = plain();
+    const auto worst_degrees = [&](bool shading) {
+        settings.shading = shading;
+        Hand hand(smooth(), settings, Vec3(0.0, 0.06, 0.0));
+        (void)hand.lead(Vec3(0.0, 0.0485, 0.0));
+        double worst = 0.0;
+        for (int i = 0; i < 600; ++i) {
+            const Vec3 n(std::sin(1e-3 * i), std::cos(1e-3 * i), 0.0);
+            const Vec3 force = hand.step(0.0485 * n);
+            if (i > 50) worst = std::max(worst, std::acos(std::min(1.0, force.normalized().dot(n))));
+        }
+        return worst * 180.0 / std::numbers::pi;
+    };
+    const double flat = worst_degrees(false), shaded = worst_degrees(true);
+    EXPECT_LT(shaded, 0.5 * flat);
+    EXPECT_LT(shaded, 1.0);
+    settings.shading = true;
+    Hand hand(box(), settings, Vec3(0.01, 0.03, 0.003));
+    EXPECT_LT((hand.lead(Vec3(0.019, 0.019, 0.003)) - Vec3(0, kStiffness * 0.001, 0)).norm(), 0.006);
+}
+
+TEST(Surface, DampingOpposesTheWayInAndNeverPulls) {
+    SurfaceSettings settings = plain(0.001);
+    settings.damping_n_s_m = 2.0;
+    Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
+    const double at_rest = hand.lead(Vec3(0.0, -0.001, 0.0)).y();
+    ToolState tool = at(Vec3(0.0, -0.001, 0.0));
+    tool.twist_world.linear_m_s = {0.05, -0.1, 0.0};
+    EXPECT_NEAR(hand.model->step(tool, {}).wrench_world.force_n.y(), at_rest + 0.2, 0.001);
+    tool.twist_world.linear_m_s = {0.0, 50.0, 0.0};
+    EXPECT_EQ(hand.model->step(tool, {}).wrench_world.force_n.norm(), 0.0);
+    tool.twist_world.linear_m_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_NEAR(hand.model->step(tool, {}).wrench_world.force_n.y(), at_rest, 0.001);
+}
+
+TEST(Surface, ATooDeepToolIsPushedByTheLimitAndNoMore) {
+    SurfaceSettings settings = plain();
+    settings.force_n_max = 3.0;
+    Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
+    EXPECT_NEAR(hand.lead(Vec3(0.0, -0.01, 0.0)).norm(), 3.0, 1e-9);
+    EXPECT_EQ(hand.model->released(), 0U);
+}
+
+TEST(Surface, AToolThatIsFarBeyondTheLimitIsReleasedWithoutAStep) {
+    SurfaceSettings settings = plain();
+    settings.force_n_max = 3.0;
+    Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
+    Vec3 before = hand.lead(Vec3(0.0, -0.01, 0.0));
+    for (int i = 0; i < 400; ++i) {
+        const Vec3 force = hand.step(Vec3(0.0, -0.01 - 4e-5 * i, 0.0));
+        ASSERT_LT((force - before).norm(), 0.06);
+        before = force;
+    }
+    EXPECT_EQ(hand.model->released(), 1U);
+    EXPECT_EQ(before.norm(), 0.0);
+    EXPECT_LT(hand.lead(Vec3(0.0, 0.002, 0.0)).y(), -0.9);  // from now on it is felt from below
+}
+
+TEST(Surface, AHandThatLeapsAwayIsFollowedAndAStepThatCannotSaysSo) {
+    Hand hand(rough(), plain(0.001), slide(0.0, -0.005));
+    (void)hand.lead(slide(0.0, 0.001));
+    Budget hurried;
+    hurried.deadline = instant_from_ns(0);
+    StepResult result = hand.model->step(at(slide(1.0, 0.001)), hurried);
+    EXPECT_EQ(result.status, StepStatus::out_of_time);
+    EXPECT_GT(result.load.error, 0.0);
+    (void)hand.lead(slide(1.0, -0.02));
+    EXPECT_LT((hand.proxy() - hand.place).norm(), 1e-9);
+}
+
+TEST(Surface, AResetInsideAClosedSurfaceSeatsTheToolOutside) {
+    Hand hand(box(), plain(0.002), Vec3(0.003, 0.016, 0.001));
+    EXPECT_LT((hand.proxy() - Vec3(0.003, 0.022, 0.001)).norm(), 1e-5);
+    EXPECT_NEAR(hand.step(hand.place).y(), kStiffness * 0.006, 0.006);
+    Hand corner(box(), plain(0.002), Vec3(0.0195, 0.0196, 0.0197));
+    (void)corner.lead(corner.place);
+    EXPECT_GT(corner.proxy().maxCoeff(), 0.0219);
+}
+
+TEST(Surface, TheClutchLetsGoAndTakesHoldWhereTheToolIs) {
+    Hand hand(plane(), plain(0.001), Vec3(0.0, 0.01, 0.0));
+    const double felt = hand.lead(Vec3(0.0, -0.002, 0.0)).norm();
+    ToolState tool = at(hand.place);
+    tool.buttons = 1;
+    double before = felt;
+    for (int i = 0; i < 600; ++i) {
+        const double now = hand.model->step(tool, {}).wrench_world.force_n.norm();
+        ASSERT_LT(std::abs(now - before), 0.05);
+        before = now;
+    }
+    EXPECT_EQ(before, 0.0);
+    // Now it is on the other side.
+    for (int i = 0; i < 300; ++i) (void)hand.model->step(at(Vec3(0.0, -0.01, 0.0)), {});
+    EXPECT_LT(hand.lead(Vec3(0.0, 0.002, 0.0)).y(), -1.0);
+}
+
+TEST(Surface, ABakedSceneIsLoadedAndLiesBelowTheHand) {
+    SceneWriter out;
+    SurfaceInput input;
+    input.title = "rough";
+    input.mesh = rough_sphere(10);
+    const BakedSurface baked = bake_surface(std::move(input), out);
+    EXPECT_TRUE(baked.closed);
+    EXPECT_EQ(baked.triangles, 2000U);
+    EXPECT_LT(baked.bytes_per_triangle, 40.0);
+    const std::vector<std::byte> bytes = out.to_bytes();
+    const SceneFile file = SceneFile::from_bytes(bytes, "baked.tact");
+    EXPECT_EQ(file.count({'M', 'E', 'S', 'H'}), 1U);
+    const auto model = load_surface_model(file, {});
+    const SurfaceMesh mesh = read_surface(file);
+    const Vec3 low = model->meta().to_world(mesh.low_m()), high = model->meta().to_world(mesh.high_m());
+    EXPECT_NEAR((high - low).norm(), 0.15, 1e-6);
+    EXPECT_NEAR(high.y(), -SurfaceInput::kBelowM, 1e-6);
+    EXPECT_NEAR((low + high).x(), 0.0, 1e-6);
+}
+
+TEST(Surface, AWrongSceneOrSettingIsRefused) {
+    SceneMeta meta = plane().meta;
+    EXPECT_THROW(SurfaceModel(meta, plane().mesh, {.radius_m = -1.0}), StartupError);
+    EXPECT_THROW(SurfaceModel(meta, plane().mesh, {.stiffness_n_m = 0.0}), StartupError);
+    EXPECT_THROW(SurfaceModel(meta, plane().mesh, {.friction = std::nan("")}), StartupError);
+}
+
+}  // namespace
+}  // namespace tact
