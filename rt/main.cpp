@@ -32,6 +32,7 @@
 #include "ipc/topics/text.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/pointer_model.hpp"
+#include "rt/force/surface/surface_model.hpp"
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
@@ -54,12 +55,14 @@ struct Options {
     std::uint32_t copies = 1;
     std::string poses;
     std::vector<std::string> levels;
+    double tool_radius_mm = 0.0;
+    SurfaceSettings surface;
 };
 
 // The command line goes on top of the file, so it is parsed into these and applied after it.
 struct Overrides {
     std::optional<double> rate_hz, goal_hz, picture_goal_hz, force_scale;
-    std::optional<std::string> law;
+    std::optional<std::string> law, hand;
     std::optional<int> core, priority;
     bool free_run = false;
 };
@@ -101,6 +104,16 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
+    app.add_option("--hand", v.hand, "of the emulated device: passive or wander");
+    app.add_option("--tool-radius-mm", o.tool_radius_mm,
+                   "of the ball that touches a surface, in the hand's space; 0: a point")
+        ->check(CLI::Range(0.0, 50.0));
+    app.add_option("--stiffness", o.surface.stiffness_n_m, "of a surface, N/m")
+        ->check(CLI::Range(1.0, 20000.0))
+        ->capture_default_str();
+    app.add_option("--friction", o.surface.friction, "coefficient of a surface")
+        ->check(CLI::Range(0.0, 2.0))
+        ->capture_default_str();
     app.add_option("--seed", o.seed, "of that direction, and of the emulated hand");
     app.add_option("--force-scale", v.force_scale, "times the scene's own gain")->check(CLI::Range(0.0, 1e6));
     app.add_flag("--check", o.check, "read and check everything, then exit");
@@ -119,6 +132,7 @@ RtConfig configure(const Options& o, const Overrides& v) {
     if (v.priority) c.servo.priority = *v.priority;
     if (v.core) c.servo.core = *v.core;
     if (v.law) c.governor.law = *v.law;
+    if (v.hand) c.device.hand = *v.hand;
     if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
     if (v.picture_goal_hz) c.governor.picture_goal_hz = *v.picture_goal_hz;
     if (v.force_scale) c.shape.force_scale = *v.force_scale;
@@ -140,6 +154,16 @@ DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
     }
     if (o.copies > 1) s.more_bodies = copies_about(read_grid(scene), o.copies);
     return s;
+}
+
+// The one place that knows which model a scene is for.
+std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o) {
+    if (read_meta(scene).kind == SceneKind::surface) {
+        SurfaceSettings settings = o.surface;
+        settings.radius_m = 1e-3 * o.tool_radius_mm;
+        return load_surface_model(scene, settings);
+    }
+    return load_docking_model(scene, docking_settings(o, scene));
 }
 
 struct LevelWish {
@@ -251,7 +275,7 @@ int run(const Options& o, const Overrides& overrides) {
     std::optional<LinkServer> link;
     if (!o.check) link.emplace(o.session, region.fd());
 
-    std::unique_ptr<ForceModel> model = load_docking_model(scene, docking_settings(o, scene));
+    std::unique_ptr<ForceModel> model = load_model(scene, o);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;

@@ -7,6 +7,7 @@
 #include "deploy/tact/bench_mesh.hpp"
 #include "deploy/tact/bench_prep.hpp"
 #include "deploy/tact/bench_servo.hpp"
+#include "deploy/tact/bench_surface.hpp"
 #include "deploy/tact/commands.hpp"
 
 namespace tact::launch {
@@ -79,6 +80,7 @@ constexpr Measure kMeasures[] = {
     {"servo", "how late a cycle of 1 ms begins", &servo},
     {"docking", "one force of the docking model; changing the detail of a surface, and simplifying meshes",
      &docking_and_meshes},
+    {"surface", "one step of touching a surface of 92 480, 2 and 10 million triangles", &bench_surface},
     {"ipc", "publishing and reading the state of a servo cycle", &ipc},
 };
 
@@ -115,7 +117,30 @@ void add_bench(CLI::App& app, int& exit_code) {
     }
     command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
     command->add_flag("--json", *as_json, "for programs");
-    command->callback([=, &exit_code] { exit_code = bench(*wanted, *as_json); });
+    const auto work = std::make_shared<SurfaceWork>();
+    auto* const group = command->add_option_group("Surface", "your own work, printed as CSV");
+    auto* const mesh =
+        group->add_option("--mesh", work->mesh, "PLY, OBJ, STL or OFF, also .gz")->check(CLI::ExistingFile);
+    auto* const path = group
+                           ->add_option("--trajectory", work->trajectory,
+                                        "text: x y z a line, a millisecond apart, in the unit of the mesh")
+                           ->check(CLI::ExistingFile)
+                           ->needs(mesh);
+    mesh->needs(path);
+    group->add_option("--unit", work->unit, "of both: m, cm, mm, um, nm or a")
+        ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
+        ->capture_default_str();
+    group->add_option("--tool-radius-mm", work->radius_mm, "of the ball; 0: a point")
+        ->check(CLI::Range(0.0, 50.0))
+        ->capture_default_str();
+    command->callback([=, &exit_code] {
+        if (work->mesh.empty()) {
+            exit_code = bench(*wanted, *as_json);
+            return;
+        }
+        std::fputs(surface_work_csv(*work).c_str(), stdout);
+        exit_code = 0;
+    });
 }
 
 }  // namespace tact::launch

@@ -1,4 +1,5 @@
 // tact demo dock: a synthetic ring of six, started away from its place, is drawn into its 12 A map.
+// tact demo touch: a hand wanders over a rough terrain or sphere.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"
@@ -23,6 +24,19 @@ void add_demo(CLI::App& app, int& exit_code) {
                 options->controller.insert(options->controller.end(), {name, value});
         const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+    auto* const touch = demo->add_subcommand("touch", "a rough terrain, or a dense rough sphere, is felt");
+    const auto touch_options = std::make_shared<RunOptions>();
+    const auto shape = std::make_shared<std::string>("terrain");
+    touch->add_option("--shape", *shape, "terrain or sphere")
+        ->check(CLI::IsMember({"terrain", "sphere"}))
+        ->capture_default_str();
+    add_run_options(*touch, *touch_options);
+    touch->callback([touch_options, shape, &exit_code] {
+        let_the_hand_wander(*touch_options);
+        const auto scene =
+            baked_scene({.inputs = {}, .words = {"demo", "touch", "--shape", *shape}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *touch_options);
     });
 }
 

@@ -6,6 +6,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_report.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact::launch {
@@ -49,6 +50,9 @@ json vec_a(const Vec3& v) { return vec(v / kAngstromM); }
 
 json info(const std::filesystem::path& path) {
     const SceneFile file = SceneFile::open(path);
+    if (read_meta(file).kind != SceneKind::docking)
+        throw StartupError("tell the force of " + path.string(), "it is no docking scene",
+                           "tact-prep info " + path.string() + " tells what it holds");
     const Places places(file);
     const SceneMeta& m = places.meta();
     const DensityGrid& g = places.grid();

@@ -6,7 +6,8 @@
 
 namespace tact::launch {
 
-Places::Places(const SceneFile& file) : meta_(read_meta(file)), grid_(read_grid(file)) {
+Places::Places(const SceneFile& file) : meta_(read_meta(file)) {
+    if (meta_.kind == SceneKind::docking) grid_ = read_grid(file);
     for (std::uint32_t i = 0; i < meta_.body_count; ++i) structures_.push_back(read_structure(file, i));
 }
 

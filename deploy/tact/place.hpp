@@ -27,7 +27,7 @@ struct BodyAt {
     bool fixed = false, in_hand = false;
 };
 
-// The parts of a docking scene that a run is judged by.
+// The parts of a docking scene that a run is judged by; of another scene there are none.
 class Places {
 public:
     explicit Places(const SceneFile& file);  // throws StartupError

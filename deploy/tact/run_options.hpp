@@ -33,6 +33,9 @@ struct RunOptions {
     void settle();
 };
 
+// A surface moves nobody: without a device and without another wish, the emulated hand wanders over it.
+void let_the_hand_wander(RunOptions& options);
+
 void add_run_options(CLI::App& app, RunOptions& options);
 
 }  // namespace tact::launch

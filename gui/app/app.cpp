@@ -252,6 +252,19 @@ private:
         state_.scene.mesh_error_m = view_->error_m();
     }
 
+    // On a surface the hand is shown as a pen whose tip is the proxy: where the tool would be, were the surface
+    // hard.
+    std::optional<DrawnHand> touching_pen() const {
+        if (content_->meta.kind != SceneKind::surface || !controller_.attached() || !controller_.have_tool ||
+            !controller_.have_bodies || controller_.bodies.count == 0)
+            return std::nullopt;
+        const double *const p = controller_.bodies.body[0].pos_model_m, *const f =
+                                                                            controller_.tool.force_model_n;
+        const Vec3 tip(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
+        if (!tip.allFinite() || !force.allFinite()) return std::nullopt;
+        return DrawnHand{{tip, Quat::Identity()}, force, false};
+    }
+
     void follow_bodies(std::int64_t now_ns) {
         list_.predict(now_ns);
         const BodiesTopic* const topic =
@@ -302,6 +315,7 @@ private:
         }
         if (controller_.attached()) view.second_hand = second_hand_.at(now_ns, content_->meta);
         state_.second_hand = view.second_hand.has_value();
+        if (const auto pen = touching_pen()) view.second_hand = pen;
         state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
         state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
         state_.force_n = view.force_world_n.norm();

@@ -22,6 +22,17 @@ struct Pen {
     }
 };
 
+// Maps are measured in angstrom, meshes may be as large as landscapes.
+std::string length_text(double a) {
+    struct Unit {
+        double a;
+        const char* name;
+    };
+    for (const Unit& u : {Unit{1e10, "m"}, Unit{1e7, "mm"}, Unit{1e4, "µm"}})
+        if (a >= u.a) return format("%g %s", a / u.a, u.name);
+    return format("%g Å", a);
+}
+
 double round_down(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     return most >= 5.0 * power ? 5.0 * power : most >= 2.0 * power ? 2.0 * power : power;
@@ -36,7 +47,7 @@ void scale_bar(const Pen& pen, const DashboardState& state, const PixelRect& v) 
     pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, colour::kText);
     pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, colour::kText);
     pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, colour::kText);
-    const std::string text = format("%g Å", a);
+    const std::string text = length_text(a);
     pen.text(pen.theme.small, {0.5F * (x0 + x1 - pen.width(pen.theme.small, text)), y - pen.theme.px(18.0F)},
              colour::kText, text);
 }
@@ -74,8 +85,8 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
             y += pen.theme.px(18.0F);
         };
         if (state.toggles.force && state.attached)
-            line(colour::kForce,
-                 format("model force %.2f N   (arrow: %g Å per N)", state.force_n, state.arrow_a_per_n));
+            line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
+                                        length_text(state.arrow_a_per_n).c_str()));
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));

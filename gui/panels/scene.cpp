@@ -26,6 +26,19 @@ void facts(const Theme& theme, const DashboardState& state) {
     }
 }
 
+// Of a surface to touch, which has neither a map nor bodies.
+void surface_card(const Theme& theme, DashboardState& state) {
+    row(theme, "Surface", grouped(state.load.vertices_drawn),
+        format("of %s vertices", grouped(state.scene.vertices_max).c_str()));
+    ImGui::Checkbox("Surface", &state.toggles.surface);
+    ImGui::SameLine(theme.px(104.0F));
+    ImGui::Checkbox("Depth cue", &state.toggles.depth_cue);
+    static constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
+    text_coloured(colour::kDim, "Surface as");
+    ImGui::SameLine(theme.px(104.0F));
+    choose(theme, kStyles, state.toggles.style);
+}
+
 void toggles(const Theme& theme, SceneToggles& t) {
     const float second = theme.px(104.0F), third = theme.px(196.0F);
     ImGui::Checkbox("Surface", &t.surface);
@@ -64,7 +77,9 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
         text_coloured(s.loaded ? colour::kDim : colour::kWatch, s.status);
         ImGui::PopTextWrapPos();
     }
-    if (s.loaded) {
+    if (s.loaded && s.bodies == 0 && s.voxels[0] == 0) {  // a surface: nothing to place or to contour
+        surface_card(theme, state);
+    } else if (s.loaded) {
         static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));
         ImGui::SameLine(0.0F, theme.px(14.0F));

@@ -6,7 +6,7 @@
 namespace tact {
 
 void Camera::frame(float radius_a) {
-    radius_a_ = std::isfinite(radius_a) ? std::clamp(radius_a, 1.0F, 1e6F) : 50.0F;
+    radius_a_ = std::isfinite(radius_a) ? std::clamp(radius_a, 1.0F, 1e13F) : 50.0F;
     home();
 }
 

@@ -18,6 +18,7 @@
 #include "prep/cli/scene_report.hpp"
 #include "prep/cli/simplify_command.hpp"
 #include "prep/cli/target.hpp"
+#include "prep/cli/touch_command.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/map/import_map.hpp"
 #include "prep/structure/import_structure.hpp"
@@ -189,6 +190,7 @@ int run(int argc, char** argv) {
     CLI::App* const demo_dock =
         demo->add_subcommand("dock", "a ring of six subunits and its 12 Å map; one subunit is free");
     output(demo_dock);
+    add_touch(app, *demo);
     CLI::App *simplify_parsed = nullptr, *bench_parsed = nullptr;
     const auto simplify_file = add_simplify(app, simplify_parsed);
     const auto bench = add_bench(app, bench_parsed);
@@ -218,8 +220,8 @@ int run(int argc, char** argv) {
         info(o);
     } else if (level->parsed()) {
         contour(o);
-    } else if (dock->parsed() || demo->parsed()) {
-        bake(o, demo->parsed());
+    } else if (dock->parsed() || demo_dock->parsed()) {
+        bake(o, demo_dock->parsed());
     }
     return 0;
 }

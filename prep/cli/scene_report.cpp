@@ -8,6 +8,7 @@
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -50,6 +51,13 @@ nlohmann::ordered_json scene_json(const SceneFile& file) {
         const DensityGrid grid = read_grid(file);
         json["grid"] = {
             {"size", grid.size}, {"origin_m", triple(grid.origin_m)}, {"spacing_m", triple(grid.spacing_m)}};
+    }
+    if (meta.kind == SceneKind::surface) {
+        const SurfaceMesh surface = read_surface(file);
+        json["surface"] = {{"vertices", surface.vertices()},
+                           {"triangles", surface.triangles()},
+                           {"closed", surface.closed()},
+                           {"bytes", surface.bytes()}};
     }
     if (file.count({'M', 'E', 'S', 'H'}) > 0) {
         const ProgressiveMesh mesh = read_mesh(file, 0);

@@ -1,0 +1,152 @@
+#include "prep/cli/touch_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/error.hpp"
+#include "prep/cli/console.hpp"
+#include "prep/cli/target.hpp"
+#include "prep/mesh_file/import_mesh.hpp"
+#include "prep/surface/bake_surface.hpp"
+#include "prep/surface/clean_mesh.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Unit {
+    const char* name;
+    double metres;
+};
+constexpr Unit kUnits[] = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"a", 1e-10}};
+
+struct TouchSettings {
+    std::string mesh, scene, unit = "mm", up = "y", shape = "terrain";
+    double size_mm = 150.0;
+    std::uint32_t parts = 0, vertices_max = 500'000;
+    bool no_picture = false, json = false;
+};
+
+std::string shown_plain(std::string text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    }
+    return text;
+}
+
+SurfaceInput touch_file(const TouchSettings& o, Console& console) {
+    SurfaceInput input;
+    ImportedMesh in = import_mesh(o.mesh, console.progress(), [](const MeshNeeds& needs) {
+        // Mesh, order, surface and the file's bytes lie side by side at the most.
+        std::fprintf(
+            stderr, "%zu triangles; about %.1f GB of memory are needed\n", needs.triangles,
+            (3.0 * static_cast<double>(needs.bytes) + 60.0 * static_cast<double>(needs.triangles)) * 1e-9);
+    });
+    const CleanReport cleaned = clean_mesh(in.mesh, 0.0, console.progress());
+    const auto unit =
+        std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return o.unit == u.name; });
+    const auto scale = static_cast<float>(unit->metres);
+    for (std::size_t v = 0; v < in.mesh.position_m.size(); v += 3) {
+        float* const p = in.mesh.position_m.data() + v;
+        for (int axis = 0; axis < 3; ++axis) p[axis] *= scale;
+        if (o.up == "z") {  // turned about x
+            const float y = p[1];
+            p[1] = p[2];
+            p[2] = -y;
+        }
+    }
+    input.note = {"mesh: " + shown_plain(fs::absolute(o.mesh).string()), "mesh format: " + in.format,
+                  "mesh unit: " + o.unit + ", " + o.up + " up",
+                  "mesh repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none"))};
+    input.title = shown_plain(fs::path(o.mesh).filename().string());
+    input.mesh = std::move(in.mesh);
+    return input;
+}
+
+SurfaceInput touch_made(const TouchSettings& o) {
+    SurfaceInput input;
+    const bool sphere = o.shape == "sphere";
+    const std::uint32_t parts = o.parts > 0 ? o.parts : sphere ? 158 : 300;
+    input.mesh = sphere ? rough_sphere(parts) : rough_terrain(parts);
+    input.title = sphere ? "rough sphere" : "rough terrain";
+    input.note = {"mesh: made by tact-prep demo touch, " + input.title + " of " + std::to_string(parts) +
+                  " parts"};
+    return input;
+}
+
+void touch(const TouchSettings& o, bool made) {
+    check_target("write scene", o.scene,
+                 made ? std::vector<std::string>{} : std::vector<std::string>{o.mesh});
+    const auto started = std::chrono::steady_clock::now();
+    Console console;
+    SurfaceInput input = made ? touch_made(o) : touch_file(o, console);
+    input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
+    input.size_m = 1e-3 * o.size_mm;
+    input.picture = !o.no_picture;
+    input.vertices_max = o.vertices_max;
+    SceneWriter out;
+    const BakedSurface baked = bake_surface(std::move(input), out, console.progress());
+    report(console.progress(), 0.99, "writing the scene");
+    out.write(o.scene);
+    console.clear();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    if (o.json) {
+        const nlohmann::ordered_json json{{"scene", o.scene},
+                                          {"vertices", baked.vertices},
+                                          {"triangles", baked.triangles},
+                                          {"closed", baked.closed},
+                                          {"picture_vertices", baked.picture_vertices},
+                                          {"world_per_model", baked.meta.world_per_model},
+                                          {"bytes_per_triangle", baked.bytes_per_triangle},
+                                          {"build_s", baked.build_s},
+                                          {"seconds", seconds}};
+        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    } else {
+        std::printf("%s%s: %.1f MB in %.1f s\n", baked.note.c_str(), o.scene.c_str(),
+                    static_cast<double>(fs::file_size(o.scene)) * 1e-6, seconds);
+    }
+}
+
+}  // namespace
+
+void add_touch(CLI::App& app, CLI::App& demo) {
+    const auto o = std::make_shared<TouchSettings>();
+    const auto both = [&](CLI::App* sub) {
+        sub->add_option("-o,--output", o->scene, "the scene to write")->required();
+        sub->add_option("--size-mm", o->size_mm, "how wide its diagonal is in the hand's space")
+            ->check(CLI::Range(1.0, 10000.0))
+            ->capture_default_str();
+        sub->add_option("--vertices-max", o->vertices_max, "most vertices of the picture; 0: all")
+            ->capture_default_str();
+        sub->add_flag("--no-picture", o->no_picture, "nothing to look at, for measurements");
+        sub->add_flag("--json", o->json, "print what was baked as JSON");
+    };
+    CLI::App* const from_file = app.add_subcommand("touch", "a surface to touch, from a triangle mesh");
+    from_file->add_option("mesh", o->mesh, "PLY, OBJ, STL or OFF, also .gz")->required();
+    from_file->add_option("--unit", o->unit, "of the file: m, cm, mm, um, nm or a (angstrom)")
+        ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
+        ->capture_default_str();
+    from_file->add_option("--up", o->up, "axis of the file that points up: y or z")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->capture_default_str();
+    both(from_file);
+    from_file->callback([o] { touch(*o, false); });
+    CLI::App* const made = demo.add_subcommand("touch", "a rough terrain, or a rough sphere");
+    made->add_option("--shape", o->shape, "terrain or sphere")
+        ->check(CLI::IsMember({"terrain", "sphere"}))
+        ->capture_default_str();
+    made->add_option("--parts", o->parts,
+                     "of the side of the terrain (2 parts^2 triangles; default 300) or of an edge of the "
+                     "icosahedron (20 parts^2; default 158)")
+        ->check(CLI::Range(1U, 2000U));
+    both(made);
+    made->callback([o] { touch(*o, true); });
+}
+
+}  // namespace tact
