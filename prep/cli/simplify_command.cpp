@@ -78,7 +78,7 @@ void simplify_file(const SimplifyOptions& o) {
 std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     const auto o = std::make_shared<SimplifyOptions>();
     command = app.add_subcommand("simplify", "a triangle mesh with fewer vertices, by pair contraction");
-    command->add_option("mesh", o->in, "PLY, OBJ or STL, also .gz")->required();
+    command->add_option("mesh", o->in, "PLY, OBJ, STL or OFF, also .gz")->required();
     command->add_option("-o,--output", o->out, "the PLY file to write")->required();
     command->add_option("--vertices", o->settings.vertices_min, "how many to leave, at the most")
         ->required()

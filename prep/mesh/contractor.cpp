@@ -81,7 +81,8 @@ void Contractor::record(std::uint32_t kept, std::uint32_t gone, float cost, floa
     vertex_[gone].count = 0;
     vertex_[gone].first = kept;
     --alive_;
-    error_ = std::max(error_, std::sqrt(cost / std::max(weight, 1e-30F)));
+    const float own = std::sqrt(cost / std::max(weight, 1e-30F));
+    error_ = std::max(error_, own);
     const auto model = [&](std::size_t i) {
         return static_cast<float>(centre_[static_cast<Eigen::Index>(i)] +
                                   extent_ * static_cast<double>(vertex_[kept].p[i]));
@@ -89,7 +90,8 @@ void Contractor::record(std::uint32_t kept, std::uint32_t gone, float cost, floa
     result_.contraction.push_back({kept,
                                    gone,
                                    {model(0), model(1), model(2)},
-                                   static_cast<float>(extent_ * static_cast<double>(error_))});
+                                   static_cast<float>(extent_ * static_cast<double>(error_)),
+                                   static_cast<float>(extent_ * static_cast<double>(own))});
 }
 
 void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, const Place& place) {
@@ -111,6 +113,9 @@ void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, 
         touch_.push_back(wing.triangle);
     }
     Vertex &a = vertex_[u], &b = vertex_[v];
+    if (!reach_.empty())
+        reach_[u] =
+            std::max(reach_[u] + place.shift.norm(), reach_[v] + (b.at() - a.at() - place.shift).norm());
     a.q = sum.about(place.shift);
     for (std::size_t i = 0; i < 3; ++i) a.p[i] += place.shift[static_cast<Eigen::Index>(i)];
     a.first = first;

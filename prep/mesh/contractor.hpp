@@ -86,7 +86,12 @@ private:
     }
     [[nodiscard]] float cost(std::uint32_t u, std::uint32_t v) const {
         const Vertex &a = vertex_[u], &b = vertex_[v];
-        return best_place(sum_about_first(a, b), b.at() - a.at()).cost;
+        const Eigen::Vector3f across = b.at() - a.at();
+        const Quadric sum = sum_about_first(a, b);
+        const float error = best_place(sum, across).cost;
+        if (reach_.empty()) return error;
+        const float apart = std::max({0.5F * (across.norm() + reach_[u] + reach_[v]), reach_[u], reach_[v]});
+        return error + locality_ * apart * apart * sum.trace();
     }
     void look(std::uint32_t self, const Eigen::Vector3f& origin, Star& star) const;
     void keep_volume(const Quadric& sum, std::uint32_t u, const Eigen::Vector3f& across, Place& place) const;
@@ -121,6 +126,9 @@ private:
     HugeVector<Corners> triangle_;     // dead: first corner is kNone
     HugeVector<std::uint32_t> touch_;  // triangles of each vertex; a list that grows moves to the end
     std::size_t touch_limit_ = 0;
+    float locality_ = 0.0F;  // the square of the setting
+    HugeVector<float>
+        reach_;  // of each vertex: how far those went that it stands for; empty without locality
     HugeVector<std::uint8_t> bend_;  // of each vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // the triangles that a contraction would leave at the new vertex

@@ -11,6 +11,10 @@ Contractor::Contractor(const TriangleMesh& mesh, const SimplifySettings& setting
     touch();
     add_planes();
     add_borders();
+    if (settings.locality > 0.0) {
+        locality_ = static_cast<float>(settings.locality * settings.locality);
+        reach_.assign(vertex_.size(), 0.0F);
+    }
 }
 
 void Contractor::scale(const TriangleMesh& mesh) {

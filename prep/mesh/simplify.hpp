@@ -33,12 +33,16 @@ struct SimplifySettings {
     // alone.
     double pair_distance = 0.0;
     std::uint32_t pairs_per_vertex_max = 4;  // of those, the nearest
+    // Above 0 the order weighs, beside the error, how far the vertices lie apart that one comes to stand for:
+    // as if their surface had moved by this part of that radius. Keeps the parts of a forest round.
+    double locality = 0.0;
 };
 
 struct Contraction {
     std::uint32_t kept, gone;         // vertices of the original mesh
     std::array<float, 3> position_m;  // of the kept one, from now on
-    float error_m;
+    float error_m;                    // the largest of this and all before
+    float own_error_m;                // of this one
 };
 
 struct Simplified {

@@ -1,0 +1,210 @@
+#include "ipc/assets/vertex_forest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/assets/bytes.hpp"
+
+namespace tact {
+namespace {
+
+constexpr SectionTag kTag{'F', 'R', 'S', 'T'};
+constexpr std::uint32_t kVersion = 1;
+
+struct ForestHeader {
+    std::uint32_t leaves, trees, nodes, triangles;
+    std::uint32_t reserved[12];
+};
+static_assert(sizeof(ForestHeader) == 64);
+
+// Walks the whole forest once and compares it with what it must be.
+class Checker {
+public:
+    Checker(const VertexForest& forest, std::uint32_t always, const std::string& where)
+        : forest_(forest),
+          always_(always),
+          where_(where),
+          number_seen_(forest.nodes() + std::size_t{1}, false),
+          triangle_seen_(forest.triangles(), false) {}
+
+    void run() {
+        for (std::uint32_t r = 0; r < forest_.roots(); ++r) walk(forest_.root(r));
+        for (const std::uint32_t t : forest_.triangles_always()) {
+            const std::array<std::uint32_t, 3> corner = take(t);
+            std::array<std::uint32_t, 3> tree{};
+            std::transform(corner.begin(), corner.end(), tree.begin(),
+                           [&](std::uint32_t v) { return forest_.tree_of(v); });
+            if (tree[0] == tree[1] || tree[1] == tree[2] || tree[2] == tree[0])
+                fail("triangle " + std::to_string(t) + " cannot be there always");
+        }
+    }
+    [[noreturn]] void fail(const std::string& why) const {
+        throw StartupError("read " + where_, why, "bake the scene again with this version of tact-prep");
+    }
+
+private:
+    void walk(const VertexForest::Branch& root) {
+        struct Step {
+            VertexForest::Branch branch;
+            std::uint32_t parent;
+        };
+        std::vector<Step> stack{{root, kNoForestNode}};
+        while (!stack.empty()) {
+            const auto [b, parent] = stack.back();
+            stack.pop_back();
+            if (parent != kNoForestNode) check_nested(b, parent);
+            if (b.is_leaf()) continue;
+            check_node(b, parent);
+            stack.push_back({forest_.child(b, 1), b.node});
+            stack.push_back({forest_.child(b, 0), b.node});
+        }
+    }
+    void check_nested(const VertexForest::Branch& b, std::uint32_t parent) const {
+        const ForestNode& up = forest_.node(parent);
+        const std::array<float, 3> at =
+            b.is_leaf() ? forest_.leaf_position_m(b.first) : forest_.node(b.node).position_m;
+        float distance = 0.0F;
+        for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(at[i] - up.position_m[i]));
+        const float reach = b.is_leaf() ? 0.0F : forest_.node(b.node).reach_m;
+        if (!(distance + reach <= up.reach_m * 1.00001F + 1e-30F))
+            fail("node " + std::to_string(parent) + " does not reach over its children");
+    }
+    void check_node(const VertexForest::Branch& b, std::uint32_t parent) {
+        const ForestNode& node = forest_.node(b.node);
+        const auto bad = [&](const char* what) {
+            fail("node " + std::to_string(b.node) + ": its " + what + " cannot be");
+        };
+        for (const float x : node.position_m)
+            if (!(std::abs(x) <= 1e7F)) bad("position");
+        if (!(node.error_m >= 0.0F && node.error_m <= 1e7F)) bad("error");
+        if (!(node.reach_m >= 0.0F && node.reach_m <= 1e8F)) bad("reach");
+        if (!(node.middle > b.first && node.middle < b.end)) bad("middle");
+        if (node.parent != parent) bad("parent");
+        if (node.number == 0 || node.number > forest_.nodes() || number_seen_[node.number]) bad("number");
+        number_seen_[node.number] = true;
+        if (parent != kNoForestNode) {
+            const ForestNode& up = forest_.node(parent);
+            if (node.number >= up.number) bad("number");
+            if (node.error_m > up.error_m) bad("error");
+        }
+        const std::uint32_t next =
+            b.node + 1 < forest_.nodes() ? forest_.node(b.node + 1).first_triangle : always_;
+        if (node.first_triangle > next || next > always_) bad("list of triangles");
+        for (const std::uint32_t t : forest_.triangles_of(b.node)) {
+            std::uint32_t in_first = 0, in_second = 0;
+            for (const std::uint32_t v : take(t)) {
+                in_first += v >= b.first && v < node.middle ? 1 : 0;
+                in_second += v >= node.middle && v < b.end ? 1 : 0;
+            }
+            if (in_first != 1 || in_second != 1)
+                fail("triangle " + std::to_string(t) + " does not appear where node " +
+                     std::to_string(b.node) + " is split");
+        }
+    }
+    std::array<std::uint32_t, 3> take(std::uint32_t t) {
+        if (t >= forest_.triangles() || triangle_seen_[t])
+            fail("triangle " + std::to_string(t) + " is absent or listed twice");
+        triangle_seen_[t] = true;
+        return forest_.corners(t);
+    }
+
+    const VertexForest& forest_;
+    std::uint32_t always_;
+    const std::string& where_;
+    std::vector<bool> number_seen_, triangle_seen_;
+};
+
+template <class T>
+std::span<const T> view_of(std::span<const std::byte>& bytes, std::uint64_t count) {
+    const std::span<const T> items(reinterpret_cast<const T*>(bytes.data()), static_cast<std::size_t>(count));
+    bytes = bytes.subspan(items.size_bytes());
+    return items;
+}
+
+}  // namespace
+
+VertexForest::VertexForest(std::span<const std::uint32_t> root_first, std::span<const ForestNode> node,
+                           std::span<const std::uint32_t> triangle, std::span<const float> position_m,
+                           std::span<const std::uint32_t> corner, const std::string& where)
+    : root_first_(root_first), node_(node), triangle_(triangle), position_m_(position_m), corner_(corner) {
+    check(where);
+}
+
+void VertexForest::check(const std::string& where) {
+    const auto fail = [&](const std::string& why) {
+        throw StartupError("read " + where, why, "bake the scene again with this version of tact-prep");
+    };
+    if (root_first_.size() < 2 || root_first_.front() != 0) fail("it has no tree that begins at leaf 0");
+    for (std::size_t r = 0; r + 1 < root_first_.size(); ++r)
+        if (root_first_[r] >= root_first_[r + 1]) fail("tree " + std::to_string(r) + " has no leaf");
+    if (position_m_.size() != 3 * std::size_t{leaves()})
+        fail("it has " + std::to_string(leaves()) + " leaves, but the mesh has " +
+             std::to_string(position_m_.size() / 3) + " vertices");
+    if (corner_.size() != 3 * triangle_.size())
+        fail("it has " + std::to_string(triangle_.size()) + " triangles, but the mesh has " +
+             std::to_string(corner_.size() / 3));
+    if (node_.size() != leaves() - roots()) fail("the number of its nodes is not leaves less trees");
+    for (const std::uint32_t v : corner_)
+        if (v >= leaves()) fail("a corner of the mesh is no leaf");
+    // The lists of nodes fill triangle_ from 0 on without gaps; where they end follows from the last triangle
+    // that some tree holds two corners of.
+    std::size_t always = triangle_.size();
+    while (always > 0) {
+        const std::uint32_t t = triangle_[always - 1];
+        if (t >= triangle_.size()) fail("triangle " + std::to_string(t) + " is absent");
+        const std::array<std::uint32_t, 3> v = corners(t);
+        const std::uint32_t a = tree_of(v[0]), b = tree_of(v[1]), c = tree_of(v[2]);
+        if (a == b || b == c || c == a) break;
+        --always;
+    }
+    always_ = static_cast<std::uint32_t>(always);
+    if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not begin at 0");
+    if (node_.empty() && always != 0) fail("a triangle has two corners in one leaf");
+    Checker(*this, always_, where).run();
+}
+
+std::uint32_t VertexForest::tree_of(std::uint32_t leaf) const {
+    return static_cast<std::uint32_t>(std::upper_bound(root_first_.begin(), root_first_.end(), leaf) -
+                                      root_first_.begin()) -
+           1;
+}
+
+VertexForest view_forest(const VertexForestData& data, std::span<const float> position_m,
+                         std::span<const std::uint32_t> corner) {
+    return {data.root_first, data.node, data.triangle, position_m, corner, "the forest of a surface"};
+}
+
+void write_forest(SceneWriter& out, const VertexForestData& data) {
+    BytesOut bytes;
+    bytes.put(ForestHeader{data.leaves,
+                           static_cast<std::uint32_t>(data.root_first.size() - 1),
+                           static_cast<std::uint32_t>(data.node.size()),
+                           static_cast<std::uint32_t>(data.triangle.size()),
+                           {}});
+    bytes.put_all(data.root_first);
+    bytes.put_all(data.node);
+    bytes.put_all(data.triangle);
+    out.add(kTag, kVersion, 0, bytes.take());
+}
+
+VertexForest read_forest(const SceneFile& file, std::span<const float> position_m,
+                         std::span<const std::uint32_t> corner) {
+    const std::string where = file.name() + ", section FRST";
+    std::span<const std::byte> bytes = file.section(kTag, kVersion);
+    BytesIn in(bytes, where);
+    const auto header = in.get<ForestHeader>("header");
+    bytes = bytes.subspan(sizeof header);
+    for (const std::uint32_t word : header.reserved)
+        if (word != 0) in.fail("a reserved field is not zero");
+    const std::uint64_t trees = std::uint64_t{header.trees} + 1;
+    if (bytes.size() !=
+        4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} + 4 * std::uint64_t{header.triangles})
+        in.fail("its length is not that of the nodes and triangles that it declares");
+    const auto root_first = view_of<std::uint32_t>(bytes, trees);
+    const auto node = view_of<ForestNode>(bytes, header.nodes);
+    const auto triangle = view_of<std::uint32_t>(bytes, header.triangles);
+    if (root_first.back() != header.leaves) in.fail("its trees do not hold its leaves");
+    return {root_first, node, triangle, position_m, corner, where};
+}
+
+}  // namespace tact

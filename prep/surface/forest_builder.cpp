@@ -1,0 +1,271 @@
+#include "prep/surface/forest_builder.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/huge_pages.hpp"
+#include "prep/mesh/simplify.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::uint32_t kNone = kNoForestNode;
+constexpr float kWider = 1.000001F;  // against rounding, at each step up
+
+float chebyshev(const float* a, const float* b) {
+    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+// The largest of any run of numbers: a table of powers of two over blocks, and a look through two blocks.
+class RangeMax {
+public:
+    explicit RangeMax(const HugeVector<std::uint32_t>& value) : value_(value) {
+        table_.emplace_back((value.size() + kBlock - 1) / kBlock, 0);
+        for (std::size_t i = 0; i < value.size(); ++i)
+            table_[0][i / kBlock] = std::max(table_[0][i / kBlock], value[i]);
+        for (std::size_t step = 1; 2 * step <= table_[0].size(); step *= 2) {
+            const std::vector<std::uint32_t>& low = table_.back();
+            std::vector<std::uint32_t> high(low.size() - step);
+            for (std::size_t i = 0; i < high.size(); ++i) high[i] = std::max(low[i], low[i + step]);
+            table_.push_back(std::move(high));
+        }
+    }
+    [[nodiscard]] std::uint32_t of(std::size_t first, std::size_t end) const {  // not empty
+        const std::size_t low = first / kBlock + 1, high = end / kBlock;
+        if (low >= high) return plain(first, end);
+        std::uint32_t most = std::max(plain(first, low * kBlock), plain(high * kBlock, end));
+        std::size_t level = 0;
+        while (std::size_t{2} << level <= high - low) ++level;
+        most = std::max({most, table_[level][low], table_[level][high - (std::size_t{1} << level)]});
+        return most;
+    }
+
+private:
+    static constexpr std::size_t kBlock = 64;
+    [[nodiscard]] std::uint32_t plain(std::size_t first, std::size_t end) const {
+        std::uint32_t most = 0;
+        for (; first < end; ++first) most = std::max(most, value_[first]);
+        return most;
+    }
+    const HugeVector<std::uint32_t>& value_;
+    std::vector<std::vector<std::uint32_t>> table_;
+};
+
+class ForestBuilder {
+public:
+    ForestBuilder(TriangleMesh& mesh, std::vector<Contraction> steps)
+        : mesh_(mesh),
+          steps_(std::move(steps)),
+          leaves_(static_cast<std::uint32_t>(mesh.vertices())),
+          nodes_(static_cast<std::uint32_t>(steps_.size())) {}
+
+    BuiltForest build() {
+        link();
+        measure();
+        order();
+        place_triangles();
+        return std::move(out_);
+    }
+
+private:
+    // Places in the arrays below: leaf v of the mesh as it came is v, the node that step s makes is leaves_ + s.
+    void link() {
+        child_.resize(nodes_);
+        parent_.assign(std::size_t{leaves_} + nodes_, kNone);
+        count_.assign(std::size_t{leaves_} + nodes_, 1);
+        std::vector<std::uint32_t> now(leaves_);
+        for (std::uint32_t v = 0; v < leaves_; ++v) now[v] = v;
+        for (std::uint32_t s = 0; s < nodes_; ++s) {
+            child_[s] = {now[steps_[s].kept], now[steps_[s].gone]};
+            const std::uint32_t made = leaves_ + s;
+            for (const std::uint32_t c : child_[s]) parent_[c] = made;
+            count_[made] = count_[child_[s][0]] + count_[child_[s][1]];
+            now[steps_[s].kept] = made;
+        }
+    }
+    [[nodiscard]] const float* at(std::uint32_t place) const {
+        return place < leaves_ ? &mesh_.position_m[3 * std::size_t{place}]
+                               : steps_[place - leaves_].position_m.data();
+    }
+    // Reach and error of every node, from the leaves up.
+    void measure() {
+        reach_.assign(std::size_t{leaves_} + nodes_, 0.0F);
+        for (std::size_t t = 0; t < mesh_.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t v = mesh_.triangle[3 * t + i], w = mesh_.triangle[3 * t + (i + 1) % 3];
+                const float side = chebyshev(at(v), at(w));
+                reach_[v] = std::max(reach_[v], side);
+                reach_[w] = std::max(reach_[w], side);
+            }
+        }
+        float largest = 0.0F;
+        for (const float x : mesh_.position_m) largest = std::max(largest, std::abs(x));
+        error_.assign(nodes_, largest * 1e-9F);  // never 0: where everything is asked for, flat places too
+        for (std::uint32_t s = 0; s < nodes_; ++s) {
+            const std::uint32_t made = leaves_ + s;
+            error_[s] = std::max(error_[s], steps_[s].own_error_m);
+            for (const std::uint32_t c : child_[s]) {
+                reach_[made] = std::max(reach_[made], (chebyshev(at(made), at(c)) + reach_[c]) * kWider);
+                if (c >= leaves_) error_[s] = std::max(error_[s], error_[c - leaves_]);
+            }
+        }
+    }
+    // Gives leaves and nodes their numbers: trees along a space-filling curve, each walked node first.
+    void order() {
+        std::vector<std::uint32_t> roots;
+        for (std::uint32_t p = 0; p < parent_.size(); ++p)
+            if (parent_[p] == kNone) roots.push_back(p);
+        sort_along_curve(roots);
+        out_.data.leaves = leaves_;
+        out_.data.node.resize(nodes_);
+        out_.order.reserve(leaves_);
+        number_.assign(std::size_t{leaves_} + nodes_, kNone);
+        std::uint32_t next_node = 0;
+        std::vector<std::uint32_t> stack;
+        for (const std::uint32_t root : roots) {
+            out_.data.root_first.push_back(static_cast<std::uint32_t>(out_.order.size()));
+            stack.push_back(root);
+            while (!stack.empty()) {
+                const std::uint32_t p = stack.back();
+                stack.pop_back();
+                if (p < leaves_) {
+                    number_[p] = static_cast<std::uint32_t>(out_.order.size());
+                    out_.order.push_back(p);
+                    continue;
+                }
+                const std::uint32_t s = p - leaves_;
+                number_[p] = next_node;
+                out_.data.node[next_node++] = {
+                    steps_[s].position_m,
+                    error_[s],
+                    reach_[p],
+                    static_cast<std::uint32_t>(out_.order.size()) + count_[child_[s][0]],
+                    parent_[p] == kNone ? kNone : number_[parent_[p]],
+                    s + 1,
+                    0};
+                stack.push_back(child_[s][1]);
+                stack.push_back(child_[s][0]);
+            }
+        }
+        out_.data.root_first.push_back(leaves_);
+    }
+    void sort_along_curve(std::vector<std::uint32_t>& roots) const {
+        std::array<float, 3> low{}, high{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = high[i] = mesh_.position_m[i];
+            for (std::size_t v = 0; v < leaves_; ++v) {
+                low[i] = std::min(low[i], mesh_.position_m[3 * v + i]);
+                high[i] = std::max(high[i], mesh_.position_m[3 * v + i]);
+            }
+        }
+        const auto key = [&](std::uint32_t p) {
+            std::uint64_t code = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const float part =
+                    std::clamp((at(p)[i] - low[i]) / std::max(high[i] - low[i], 1e-30F), 0.0F, 1.0F);
+                const auto cell = static_cast<std::uint64_t>(part * 1048575.0F);
+                for (unsigned bit = 0; bit < 20; ++bit) code |= (cell >> bit & 1U) << (3 * bit + i);
+            }
+            return code;
+        };
+        std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
+        keyed.reserve(roots.size());
+        for (const std::uint32_t p : roots) keyed.emplace_back(key(p), p);
+        std::sort(keyed.begin(), keyed.end());
+        std::transform(keyed.begin(), keyed.end(), roots.begin(), [](const auto& k) { return k.second; });
+    }
+    // A triangle appears with the first merge of two of its corners, seen from the leaves. Two leaves meet in
+    // the node with the highest merge between them, as numbers rise to the root; between trees is a wall.
+    void place_triangles() {
+        constexpr std::uint32_t kWall = UINT32_MAX;
+        HugeVector<std::uint32_t> merge(leaves_, kWall);
+        std::vector<std::uint32_t> node_of(nodes_ + std::size_t{1}, nodes_);
+        for (std::uint32_t i = 0; i < nodes_; ++i) {
+            merge[out_.data.node[i].middle] = out_.data.node[i].number;
+            node_of[out_.data.node[i].number] = i;
+        }
+        const RangeMax highest(merge);
+        std::vector<float> position(mesh_.position_m.size());
+        for (std::uint32_t v = 0; v < leaves_; ++v)
+            std::copy_n(&mesh_.position_m[3 * std::size_t{out_.order[v]}], 3, &position[3 * std::size_t{v}]);
+        mesh_.position_m = std::move(position);
+        std::vector<std::uint32_t> node(mesh_.triangles());
+        std::vector<std::uint32_t> first(nodes_ + std::size_t{2}, 0);
+        for (std::size_t t = 0; t < mesh_.triangles(); ++t) {
+            std::array<std::uint32_t, 3> v{};
+            for (std::size_t i = 0; i < 3; ++i)
+                v[i] = mesh_.triangle[3 * t + i] = number_[mesh_.triangle[3 * t + i]];
+            std::sort(v.begin(), v.end());
+            const std::uint32_t soonest =
+                std::min(highest.of(v[0] + 1, v[1] + 1), highest.of(v[1] + 1, v[2] + 1));
+            node[t] = soonest == kWall ? nodes_ : node_of[soonest];
+            ++first[node[t] + 1];
+        }
+        for (std::size_t i = 0; i <= nodes_; ++i) first[i + 1] += first[i];
+        for (std::uint32_t i = 0; i < nodes_; ++i) out_.data.node[i].first_triangle = first[i];
+        out_.data.triangle.resize(mesh_.triangles());
+        for (std::uint32_t t = 0; t < node.size(); ++t) out_.data.triangle[first[node[t]]++] = t;
+    }
+
+    TriangleMesh& mesh_;
+    const std::vector<Contraction> steps_;
+    const std::uint32_t leaves_, nodes_;
+    std::vector<std::array<std::uint32_t, 2>> child_;
+    std::vector<std::uint32_t> parent_, count_, number_;
+    std::vector<float> reach_, error_;
+    BuiltForest out_;
+};
+
+}  // namespace
+
+BuiltForest build_forest(TriangleMesh& mesh, const ForestSettings& settings, const Progress& progress) {
+    if (mesh.triangles() == 0)
+        throw StartupError("build the forest of a surface", "the mesh has no triangle", "export it again");
+    std::vector<Contraction> steps = simplify(mesh, {.locality = settings.locality}, progress).contraction;
+    return ForestBuilder(mesh, std::move(steps)).build();
+}
+
+ForestShape shape_of(const VertexForest& forest) {
+    // The area at each leaf: a third of that of its triangles; summed along the leaves.
+    std::vector<double> area(forest.leaves() + std::size_t{1}, 0.0);
+    const auto at = [&](std::uint32_t v) {
+        const std::array<float, 3> p = forest.leaf_position_m(v);
+        return Eigen::Vector3d(p[0], p[1], p[2]);
+    };
+    for (std::uint32_t t = 0; t < forest.triangles(); ++t) {
+        const auto [a, b, c] = forest.corners(t);
+        const double third = (at(b) - at(a)).cross(at(c) - at(a)).norm() / 6.0;
+        for (const std::uint32_t v : {a, b, c}) area[v + std::size_t{1}] += third;
+    }
+    for (std::size_t v = 0; v < forest.leaves(); ++v) area[v + 1] += area[v];
+    struct Step {
+        VertexForest::Branch branch;
+        std::uint32_t depth;
+    };
+    ForestShape shape;
+    std::vector<double> width;
+    std::vector<Step> stack;
+    for (std::uint32_t r = 0; r < forest.roots(); ++r) stack.push_back({forest.root(r), 0});
+    while (!stack.empty()) {
+        const auto [b, depth] = stack.back();
+        stack.pop_back();
+        shape.depth = std::max(shape.depth, depth);
+        if (b.is_leaf()) continue;
+        const double own = area[b.end] - area[b.first];
+        if (b.end - b.first >= 16 && own > 0.0)
+            width.push_back(static_cast<double>(forest.node(b.node).reach_m) / std::sqrt(own));
+        stack.push_back({forest.child(b, 1), depth + 1});
+        stack.push_back({forest.child(b, 0), depth + 1});
+    }
+    shape.trees = forest.roots();
+    if (width.empty()) return shape;
+    for (const double w : width) shape.mean += w / static_cast<double>(width.size());
+    const auto p99 = width.begin() + static_cast<std::ptrdiff_t>(width.size() - 1 - width.size() / 100);
+    std::nth_element(width.begin(), p99, width.end());
+    shape.p99 = *p99;
+    return shape;
+}
+
+}  // namespace tact

@@ -1,0 +1,125 @@
+// The forest of a surface: what is built is what the reader demands, and any cut of it is the surface.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "ipc/base/error.hpp"
+#include "prep/surface/forest_builder.hpp"
+#include "prep/synthetic/rough_torus.hpp"
+#include "tests/unit/prep_mesh_fixtures.hpp"
+
+namespace tact {
+namespace {
+
+TriangleMesh two_spheres_and_a_sheet() {
+    TriangleMesh all = test::sheet(9, [](float x, float y) { return 0.2F * x * y; });
+    for (const float x : {3.0F, -2.0F}) {
+        const TriangleMesh torus = rough_torus(24, 12);
+        const auto first = static_cast<std::uint32_t>(all.vertices());
+        for (std::size_t i = 0; i < torus.position_m.size(); ++i)
+            all.position_m.push_back(torus.position_m[i] + (i % 3 == 0 ? x : 0.0F));
+        for (const std::uint32_t v : torus.triangle) all.triangle.push_back(first + v);
+    }
+    return all;
+}
+
+TEST(VertexForest, EveryTriangleAppearsOnceAndNodesReachOverTheirTriangles) {
+    const TriangleMesh before = two_spheres_and_a_sheet();
+    TriangleMesh mesh = before;
+    const BuiltForest built = build_forest(mesh);
+    const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);  // checks itself
+    EXPECT_GE(forest.roots(), 3U);
+    EXPECT_LT(forest.roots(), 60U);
+    for (std::size_t v = 0; v < mesh.vertices(); ++v)
+        for (std::size_t i = 0; i < 3; ++i)
+            ASSERT_EQ(mesh.position_m[3 * v + i], before.position_m[3 * std::size_t{built.order[v]} + i]);
+    for (std::size_t i = 0; i < mesh.triangle.size(); ++i)
+        ASSERT_EQ(built.order[mesh.triangle[i]], before.triangle[i]);
+    // By brute force: a box of `reach` about a node holds every corner of every triangle at its leaves.
+    std::vector<VertexForest::Branch> stack;
+    for (std::uint32_t r = 0; r < forest.roots(); ++r) stack.push_back(forest.root(r));
+    while (!stack.empty()) {
+        const VertexForest::Branch b = stack.back();
+        stack.pop_back();
+        if (b.is_leaf()) continue;
+        const ForestNode& node = forest.node(b.node);
+        for (std::uint32_t t = 0; t < forest.triangles(); ++t) {
+            const auto corner = forest.corners(t);
+            if (std::none_of(corner.begin(), corner.end(),
+                             [&](std::uint32_t v) { return v >= b.first && v < b.end; }))
+                continue;
+            for (const std::uint32_t v : corner)
+                for (std::size_t i = 0; i < 3; ++i)
+                    ASSERT_LE(std::abs(forest.leaf_position_m(v)[i] - node.position_m[i]), node.reach_m);
+        }
+        stack.push_back(forest.child(b, 0));
+        stack.push_back(forest.child(b, 1));
+    }
+}
+
+TEST(VertexForest, AFlatFanOfManyTrianglesIsBuilt) {  // one vertex that would take part in every merge
+    TriangleMesh fan{{0, 0, 0}, {}};
+    constexpr std::uint32_t kBlades = 20'000;
+    for (std::uint32_t i = 0; i < kBlades; ++i) {
+        const float angle = 6.2831853F * static_cast<float>(i) / kBlades;
+        fan.position_m.insert(fan.position_m.end(), {std::cos(angle), std::sin(angle), 0.0F});
+        fan.triangle.insert(fan.triangle.end(), {0, 1 + i, 1 + (i + 1) % kBlades});
+    }
+    const BuiltForest built = build_forest(fan);
+    const VertexForest forest = view_forest(built.data, fan.position_m, fan.triangle);
+    EXPECT_LT(forest.roots(), 10U);
+}
+
+TEST(VertexForest, IsLocalWhereAskedFor) {
+    const auto shape = [](double locality) {
+        TriangleMesh mesh = test::sheet(60, [](float, float) { return 0.0F; });  // no error to go by
+        const BuiltForest built = build_forest(mesh, {.locality = locality});
+        return shape_of(view_forest(built.data, mesh.position_m, mesh.triangle));
+    };
+    EXPECT_LT(shape(0.03).p99, 0.7 * shape(0.0).p99);
+}
+
+struct Baked {
+    TriangleMesh mesh = test::sheet(4, [](float x, float y) { return x * x - y; });
+    BuiltForest built = build_forest(mesh);
+    [[nodiscard]] VertexForest read(const VertexForestData& data) const {
+        SceneWriter out;
+        write_forest(out, data);
+        const std::vector<std::byte> bytes = out.to_bytes();
+        const SceneFile file = SceneFile::from_bytes(bytes, "test.tact");
+        const VertexForest forest = read_forest(file, mesh.position_m, mesh.triangle);
+        EXPECT_EQ(forest.nodes(), built.data.node.size());  // views, used while the bytes live
+        EXPECT_EQ(std::memcmp(&forest.node(0), built.data.node.data(), sizeof(ForestNode)), 0);
+        return view_forest(built.data, mesh.position_m, mesh.triangle);
+    }
+};
+
+TEST(VertexForest, WhatIsWrittenIsReadAndNothingElseIsBelieved) {
+    const Baked baked;
+    const VertexForestData& good = baked.built.data;
+    EXPECT_NO_THROW((void)baked.read(good));
+    ASSERT_GT(good.node.size(), 6U);
+    const auto refuses = [&](const char* what, auto&& spoil) {
+        VertexForestData bad = good;
+        spoil(bad);
+        EXPECT_THROW((void)baked.read(bad), StartupError) << what;
+    };
+    refuses("a middle outside", [](auto& d) { d.node[0].middle = 0; });
+    refuses("another middle", [](auto& d) { d.node[0].middle += 1; });
+    refuses("a strange parent", [](auto& d) { d.node[1].parent = 5; });
+    refuses("a number twice", [](auto& d) { d.node[1].number = d.node[0].number; });
+    refuses("a number above its parent's", [](auto& d) { std::swap(d.node[0].number, d.node[1].number); });
+    refuses("an error above its parent's", [](auto& d) { d.node[1].error_m = 9.0F; });
+    refuses("no position", [](auto& d) { d.node[2].position_m[1] = NAN; });
+    refuses("a short reach", [](auto& d) { d.node[0].reach_m *= 0.5F; });
+    refuses("triangles out of order", [](auto& d) { d.node[3].first_triangle = 1000; });
+    refuses("a triangle elsewhere", [](auto& d) { std::swap(d.triangle.front(), d.triangle.back()); });
+    refuses("a triangle twice", [](auto& d) { d.triangle[1] = d.triangle[0]; });
+    refuses("a triangle that is none", [](auto& d) { d.triangle[2] = 4000; });
+    refuses("trees out of order", [](auto& d) { d.root_first[0] = 1; });
+    refuses("fewer nodes", [](auto& d) { d.node.pop_back(); });
+    refuses("fewer triangles", [](auto& d) { d.triangle.pop_back(); });
+}
+
+}  // namespace
+}  // namespace tact
