@@ -20,8 +20,10 @@ static_assert(sizeof(ForestHeader) == 64);
 // Walks the whole forest once and compares it with what it must be.
 class Checker {
 public:
-    Checker(const VertexForest& forest, std::uint32_t always, const std::string& where)
+    Checker(const VertexForest& forest, std::uint32_t always, std::span<const std::uint32_t> corner,
+            const std::string& where)
         : forest_(forest),
+          corner_(corner),
           always_(always),
           where_(where),
           number_seen_(forest.nodes() + std::size_t{1}, false),
@@ -29,14 +31,8 @@ public:
 
     void run() {
         for (std::uint32_t r = 0; r < forest_.roots(); ++r) walk(forest_.root(r));
-        for (const std::uint32_t t : forest_.triangles_always()) {
-            const std::array<std::uint32_t, 3> corner = take(t);
-            std::array<std::uint32_t, 3> tree{};
-            std::transform(corner.begin(), corner.end(), tree.begin(),
-                           [&](std::uint32_t v) { return forest_.tree_of(v); });
-            if (tree[0] == tree[1] || tree[1] == tree[2] || tree[2] == tree[0])
-                fail("triangle " + std::to_string(t) + " cannot be there always");
-        }
+        // That these have their corners in three trees is how they were told apart.
+        for (const ForestTriangle& t : forest_.triangles_always()) take(t);
     }
     [[noreturn]] void fail(const std::string& why) const {
         throw StartupError("read " + where_, why, "bake the scene again with this version of tact-prep");
@@ -90,25 +86,28 @@ private:
         const std::uint32_t next =
             b.node + 1 < forest_.nodes() ? forest_.node(b.node + 1).first_triangle : always_;
         if (node.first_triangle > next || next > always_) bad("list of triangles");
-        for (const std::uint32_t t : forest_.triangles_of(b.node)) {
+        for (const ForestTriangle& t : forest_.triangles_of(b.node)) {
+            take(t);
             std::uint32_t in_first = 0, in_second = 0;
-            for (const std::uint32_t v : take(t)) {
+            for (const std::uint32_t v : t.leaf) {
                 in_first += v >= b.first && v < node.middle ? 1 : 0;
                 in_second += v >= node.middle && v < b.end ? 1 : 0;
             }
             if (in_first != 1 || in_second != 1)
-                fail("triangle " + std::to_string(t) + " does not appear where node " +
+                fail("triangle " + std::to_string(t.number) + " does not appear where node " +
                      std::to_string(b.node) + " is split");
         }
     }
-    std::array<std::uint32_t, 3> take(std::uint32_t t) {
-        if (t >= forest_.triangles() || triangle_seen_[t])
-            fail("triangle " + std::to_string(t) + " is absent or listed twice");
-        triangle_seen_[t] = true;
-        return forest_.corners(t);
+    void take(const ForestTriangle& t) {
+        if (t.number >= forest_.triangles() || triangle_seen_[t.number])
+            fail("triangle " + std::to_string(t.number) + " is absent or listed twice");
+        triangle_seen_[t.number] = true;
+        if (!std::equal(t.leaf.begin(), t.leaf.end(), corner_.begin() + 3 * std::ptrdiff_t{t.number}))
+            fail("triangle " + std::to_string(t.number) + " has other corners than in the mesh");
     }
 
     const VertexForest& forest_;
+    std::span<const std::uint32_t> corner_;
     std::uint32_t always_;
     const std::string& where_;
     std::vector<bool> number_seen_, triangle_seen_;
@@ -124,13 +123,13 @@ std::span<const T> view_of(std::span<const std::byte>& bytes, std::uint64_t coun
 }  // namespace
 
 VertexForest::VertexForest(std::span<const std::uint32_t> root_first, std::span<const ForestNode> node,
-                           std::span<const std::uint32_t> triangle, std::span<const float> position_m,
+                           std::span<const ForestTriangle> triangle, std::span<const float> position_m,
                            std::span<const std::uint32_t> corner, const std::string& where)
-    : root_first_(root_first), node_(node), triangle_(triangle), position_m_(position_m), corner_(corner) {
-    check(where);
+    : root_first_(root_first), node_(node), triangle_(triangle), position_m_(position_m) {
+    check(corner, where);
 }
 
-void VertexForest::check(const std::string& where) {
+void VertexForest::check(std::span<const std::uint32_t> corner, const std::string& where) {
     const auto fail = [&](const std::string& why) {
         throw StartupError("read " + where, why, "bake the scene again with this version of tact-prep");
     };
@@ -140,19 +139,18 @@ void VertexForest::check(const std::string& where) {
     if (position_m_.size() != 3 * std::size_t{leaves()})
         fail("it has " + std::to_string(leaves()) + " leaves, but the mesh has " +
              std::to_string(position_m_.size() / 3) + " vertices");
-    if (corner_.size() != 3 * triangle_.size())
+    if (corner.size() != 3 * triangle_.size())
         fail("it has " + std::to_string(triangle_.size()) + " triangles, but the mesh has " +
-             std::to_string(corner_.size() / 3));
+             std::to_string(corner.size() / 3));
     if (node_.size() != leaves() - roots()) fail("the number of its nodes is not leaves less trees");
-    for (const std::uint32_t v : corner_)
-        if (v >= leaves()) fail("a corner of the mesh is no leaf");
+    for (const ForestTriangle& t : triangle_)
+        for (const std::uint32_t v : t.leaf)
+            if (v >= leaves()) fail("a corner of triangle " + std::to_string(t.number) + " is no leaf");
     // The lists of nodes fill triangle_ from 0 on without gaps; where they end follows from the last triangle
     // that some tree holds two corners of.
     std::size_t always = triangle_.size();
     while (always > 0) {
-        const std::uint32_t t = triangle_[always - 1];
-        if (t >= triangle_.size()) fail("triangle " + std::to_string(t) + " is absent");
-        const std::array<std::uint32_t, 3> v = corners(t);
+        const std::array<std::uint32_t, 3>& v = triangle_[always - 1].leaf;
         const std::uint32_t a = tree_of(v[0]), b = tree_of(v[1]), c = tree_of(v[2]);
         if (a == b || b == c || c == a) break;
         --always;
@@ -160,7 +158,7 @@ void VertexForest::check(const std::string& where) {
     always_ = static_cast<std::uint32_t>(always);
     if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not begin at 0");
     if (node_.empty() && always != 0) fail("a triangle has two corners in one leaf");
-    Checker(*this, always_, where).run();
+    Checker(*this, always_, corner, where).run();
 }
 
 std::uint32_t VertexForest::tree_of(std::uint32_t leaf) const {
@@ -197,12 +195,12 @@ VertexForest read_forest(const SceneFile& file, std::span<const float> position_
     for (const std::uint32_t word : header.reserved)
         if (word != 0) in.fail("a reserved field is not zero");
     const std::uint64_t trees = std::uint64_t{header.trees} + 1;
-    if (bytes.size() !=
-        4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} + 4 * std::uint64_t{header.triangles})
+    if (bytes.size() != 4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} +
+                            sizeof(ForestTriangle) * std::uint64_t{header.triangles})
         in.fail("its length is not that of the nodes and triangles that it declares");
     const auto root_first = view_of<std::uint32_t>(bytes, trees);
     const auto node = view_of<ForestNode>(bytes, header.nodes);
-    const auto triangle = view_of<std::uint32_t>(bytes, header.triangles);
+    const auto triangle = view_of<ForestTriangle>(bytes, header.triangles);
     if (root_first.back() != header.leaves) in.fail("its trees do not hold its leaves");
     return {root_first, node, triangle, position_m, corner, where};
 }

@@ -15,8 +15,9 @@
 //           folding over stays unfolded.
 // Reach     of a node: Chebyshev distance max(|dx|,|dy|,|dz|) from it within which all triangles at its leaves
 //           lie; a parent's box holds those of its children.
-// Section FRST; read as views on the mapped file, nothing is copied: 36 bytes a node and 4 a triangle, which
-// is 22 bytes a triangle of a closed mesh.
+// Section FRST; read as views on the mapped file, nothing is copied: 36 bytes a node and 16 a triangle, which
+// is 34 bytes a triangle of a closed mesh. Corners lie here once more, in the order in which splits ask for
+// them: a split then finds all that it needs in two places of memory.
 //
 // Frame     model, metres.  Thread  immutable. The mesh and the section outlive it.
 // Fails by  StartupError: order, ranges, numbers, every triangle's place and the nesting of reaches are
@@ -39,9 +40,15 @@ struct ForestNode {
     std::uint32_t middle;          // the first leaf below its second child
     std::uint32_t parent;          // a node, or kNoForestNode
     std::uint32_t number;          // of its merge, from 1
-    std::uint32_t first_triangle;  // in triangle(): those that its split brings; up to the next node's first
+    std::uint32_t first_triangle;  // of those that its split brings; up to the next node's first
 };
 static_assert(sizeof(ForestNode) == 36);
+
+struct ForestTriangle {
+    std::uint32_t number;               // in the full mesh
+    std::array<std::uint32_t, 3> leaf;  // its corners there
+};
+static_assert(sizeof(ForestTriangle) == 16);
 
 inline constexpr std::uint32_t kNoForestNode = UINT32_MAX;
 
@@ -50,14 +57,14 @@ struct VertexForestData {
     std::uint32_t leaves = 0;
     std::vector<std::uint32_t> root_first;  // a tree each: its first leaf; the last entry is `leaves`
     std::vector<ForestNode> node;
-    std::vector<std::uint32_t> triangle;  // numbers of the mesh: by node, then those that are always there
+    std::vector<ForestTriangle> triangle;  // by node, then those that are always there
 };
 
 class VertexForest {
 public:
-    // position_m: 3 a leaf; corner: 3 a triangle. `where` names file and section in messages.
+    // position_m: 3 a leaf; corner: 3 a triangle, only compared with. `where` names file and section.
     VertexForest(std::span<const std::uint32_t> root_first, std::span<const ForestNode> node,
-                 std::span<const std::uint32_t> triangle, std::span<const float> position_m,
+                 std::span<const ForestTriangle> triangle, std::span<const float> position_m,
                  std::span<const std::uint32_t> corner, const std::string& where);
 
     [[nodiscard]] std::uint32_t leaves() const { return root_first_.back(); }
@@ -68,10 +75,6 @@ public:
     [[nodiscard]] std::array<float, 3> leaf_position_m(std::uint32_t v) const {
         return {position_m_[3 * std::size_t{v}], position_m_[3 * std::size_t{v} + 1],
                 position_m_[3 * std::size_t{v} + 2]};
-    }
-    [[nodiscard]] std::array<std::uint32_t, 3> corners(std::uint32_t t) const {
-        return {corner_[3 * std::size_t{t}], corner_[3 * std::size_t{t} + 1],
-                corner_[3 * std::size_t{t} + 2]};
     }
 
     // A place in the forest: the leaves below it, and its node where there is more than one.
@@ -89,13 +92,16 @@ public:
                           : branch(middle, b.end, b.node + (middle - b.first));
     }
     [[nodiscard]] std::uint32_t tree_of(std::uint32_t leaf) const;
-    // Numbers of triangles of the mesh.
-    [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t node) const {
+    [[nodiscard]] std::span<const ForestTriangle> triangles_of(std::uint32_t node) const {
         const std::uint32_t first = node_[node].first_triangle;
         return triangle_.subspan(first,
                                  (node + 1 < nodes() ? node_[node + 1].first_triangle : always_) - first);
     }
-    [[nodiscard]] std::span<const std::uint32_t> triangles_always() const {
+    // For fetching memory ahead of a split.
+    [[nodiscard]] const ForestTriangle* first_triangle_of(std::uint32_t node) const {
+        return triangle_.data() + node_[node].first_triangle;
+    }
+    [[nodiscard]] std::span<const ForestTriangle> triangles_always() const {
         return triangle_.subspan(always_);
     }
 
@@ -103,12 +109,11 @@ private:
     static Branch branch(std::uint32_t first, std::uint32_t end, std::uint32_t node) {
         return {first, end, end - first == 1 ? kNoForestNode : node};
     }
-    void check(const std::string& where);
+    void check(std::span<const std::uint32_t> corner, const std::string& where);
     std::span<const std::uint32_t> root_first_;
     std::span<const ForestNode> node_;
-    std::span<const std::uint32_t> triangle_;
+    std::span<const ForestTriangle> triangle_;
     std::span<const float> position_m_;
-    std::span<const std::uint32_t> corner_;
     std::uint32_t always_ = 0;  // where the triangles that are always there begin in triangle_
 };
 

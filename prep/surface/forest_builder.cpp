@@ -206,7 +206,11 @@ private:
         for (std::size_t i = 0; i <= nodes_; ++i) first[i + 1] += first[i];
         for (std::uint32_t i = 0; i < nodes_; ++i) out_.data.node[i].first_triangle = first[i];
         out_.data.triangle.resize(mesh_.triangles());
-        for (std::uint32_t t = 0; t < node.size(); ++t) out_.data.triangle[first[node[t]]++] = t;
+        for (std::uint32_t t = 0; t < node.size(); ++t)
+            out_.data.triangle[first[node[t]]++] = {
+                t,
+                {mesh_.triangle[3 * std::size_t{t}], mesh_.triangle[3 * std::size_t{t} + 1],
+                 mesh_.triangle[3 * std::size_t{t} + 2]}};
     }
 
     TriangleMesh& mesh_;
@@ -227,15 +231,15 @@ BuiltForest build_forest(TriangleMesh& mesh, const ForestSettings& settings, con
     return ForestBuilder(mesh, std::move(steps)).build();
 }
 
-ForestShape shape_of(const VertexForest& forest) {
+ForestShape shape_of(const VertexForest& forest, std::span<const std::uint32_t> corner) {
     // The area at each leaf: a third of that of its triangles; summed along the leaves.
     std::vector<double> area(forest.leaves() + std::size_t{1}, 0.0);
     const auto at = [&](std::uint32_t v) {
         const std::array<float, 3> p = forest.leaf_position_m(v);
         return Eigen::Vector3d(p[0], p[1], p[2]);
     };
-    for (std::uint32_t t = 0; t < forest.triangles(); ++t) {
-        const auto [a, b, c] = forest.corners(t);
+    for (std::size_t t = 0; t + 2 < corner.size(); t += 3) {
+        const std::uint32_t a = corner[t], b = corner[t + 1], c = corner[t + 2];
         const double third = (at(b) - at(a)).cross(at(c) - at(a)).norm() / 6.0;
         for (const std::uint32_t v : {a, b, c}) area[v + std::size_t{1}] += third;
     }

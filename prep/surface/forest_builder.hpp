@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ipc/assets/progressive_mesh.hpp"
@@ -36,6 +37,6 @@ struct ForestShape {
     double mean = 0.0, p99 = 0.0;
     std::uint32_t trees = 0, depth = 0;  // depth: of the deepest leaf
 };
-ForestShape shape_of(const VertexForest& forest);
+ForestShape shape_of(const VertexForest& forest, std::span<const std::uint32_t> corner);
 
 }  // namespace tact

@@ -13,6 +13,8 @@
 #include "ipc/base/error.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/surface/build_surface.hpp"
+#include "prep/surface/forest_builder.hpp"
+#include "rt/force/surface/refinement.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/unit/assets_samples.hpp"
 
@@ -21,7 +23,7 @@ namespace {
 
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
-                                {'S', 'U', 'R', 'F'}};
+                                {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -34,6 +36,25 @@ std::size_t accepted(Read&& read) {
     return 0;
 }
 
+// The surface that every forest is read for.
+struct Terrain {
+    TriangleMesh mesh = [] {
+        TriangleMesh made;
+        for (std::uint32_t i = 0; i < 36; ++i) {
+            const auto x = static_cast<float>(i % 6), y = static_cast<float>(i / 6);
+            made.position_m.insert(made.position_m.end(), {x, y, 0.2F * x * y - y});
+            if (i % 6 == 5 || i / 6 == 5) continue;
+            made.triangle.insert(made.triangle.end(), {i, i + 1, i + 7, i, i + 7, i + 6});
+        }
+        return made;
+    }();
+    BuiltForest forest = build_forest(mesh);
+};
+const Terrain& terrain() {
+    static const Terrain made;
+    return made;
+}
+
 // One good section per tag.
 const std::vector<Input>& good_sections() {
     static const std::vector<Input> sections = [] {
@@ -43,6 +64,7 @@ const std::vector<Input>& good_sections() {
         octahedron.triangle = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
         write_progressive_mesh(scene, 0, octahedron);
         write_surface(scene, build_surface(octahedron));
+        write_forest(scene, terrain().forest.data);
         const Input bytes = scene.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
         std::vector<Input> good;
@@ -103,6 +125,27 @@ void use_surface(const SceneFile& file) {
     }
 }
 
+void use_forest(const SceneFile& file) {
+    const TriangleMesh& mesh = terrain().mesh;
+    const VertexForest forest = read_forest(file, mesh.position_m, mesh.triangle);
+    RefineSettings settings;
+    settings.filter = RefineFilter::bell(0.5F, 2.0F, 0.3F);
+    settings.near_m = 1.0;
+    settings.near_max = 40;
+    settings.splits_max = 9;
+    settings.nodes_max = std::max(forest.roots(), 30U);
+    Refinement refinement(forest, settings);
+    for (int i = 0; i < 12; ++i) {
+        refinement.step(Vec3(0.5 * i, 5.0 - 0.5 * i, 1.0), Vec3(i % 3, 0.0, 0.0));
+        refinement.each_triangle([&](std::uint32_t t, const std::array<std::uint32_t, 3>& at) {
+            require(t < mesh.triangles());
+            for (std::size_t k = 0; k < 3; ++k)
+                require(at[k] == refinement.place_of(mesh.triangle[3 * std::size_t{t} + k]));
+            require(at[0] != at[1] && at[1] != at[2] && at[2] != at[0]);
+        });
+    }
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
@@ -126,6 +169,7 @@ bool run(std::span<const std::byte> input) {
         sections += accepted([&] { use_codebook(file); });
         sections += accepted([&] { use_mesh(file); });
         sections += accepted([&] { use_surface(file); });
+        sections += accepted([&] { use_forest(file); });
     });
     return sections == std::size(kTags);
 }

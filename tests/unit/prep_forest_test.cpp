@@ -44,7 +44,7 @@ TEST(VertexForest, EveryTriangleAppearsOnceAndNodesReachOverTheirTriangles) {
         if (b.is_leaf()) continue;
         const ForestNode& node = forest.node(b.node);
         for (std::uint32_t t = 0; t < forest.triangles(); ++t) {
-            const auto corner = forest.corners(t);
+            const std::span corner = std::span(mesh.triangle).subspan(3 * std::size_t{t}, 3);
             if (std::none_of(corner.begin(), corner.end(),
                              [&](std::uint32_t v) { return v >= b.first && v < b.end; }))
                 continue;
@@ -74,7 +74,7 @@ TEST(VertexForest, IsLocalWhereAskedFor) {
     const auto shape = [](double locality) {
         TriangleMesh mesh = test::sheet(60, [](float, float) { return 0.0F; });  // no error to go by
         const BuiltForest built = build_forest(mesh, {.locality = locality});
-        return shape_of(view_forest(built.data, mesh.position_m, mesh.triangle));
+        return shape_of(view_forest(built.data, mesh.position_m, mesh.triangle), mesh.triangle);
     };
     EXPECT_LT(shape(0.03).p99, 0.7 * shape(0.0).p99);
 }
@@ -115,7 +115,9 @@ TEST(VertexForest, WhatIsWrittenIsReadAndNothingElseIsBelieved) {
     refuses("triangles out of order", [](auto& d) { d.node[3].first_triangle = 1000; });
     refuses("a triangle elsewhere", [](auto& d) { std::swap(d.triangle.front(), d.triangle.back()); });
     refuses("a triangle twice", [](auto& d) { d.triangle[1] = d.triangle[0]; });
-    refuses("a triangle that is none", [](auto& d) { d.triangle[2] = 4000; });
+    refuses("a triangle that is none", [](auto& d) { d.triangle[2].number = 4000; });
+    refuses("other corners", [](auto& d) { std::swap(d.triangle[2].leaf[0], d.triangle[2].leaf[1]); });
+    refuses("a leaf that is none", [](auto& d) { d.triangle[2].leaf[0] = 1000; });
     refuses("trees out of order", [](auto& d) { d.root_first[0] = 1; });
     refuses("fewer nodes", [](auto& d) { d.node.pop_back(); });
     refuses("fewer triangles", [](auto& d) { d.triangle.pop_back(); });

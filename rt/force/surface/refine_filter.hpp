@@ -1,0 +1,85 @@
+// How much error is allowed at a distance from the probe: what decides where the surface is refined.
+//
+// Distance  Chebyshev, max(|dx|,|dy|,|dz|), in model metres. Up to radius_m nothing is allowed: full detail.
+// Form      from there on piecewise linear and never falling, flat beyond its last point: the seed's frustums, one
+//           in another. A bell is the same with points on 1 - exp(-x²).
+// Thread    any; a value.  Fails by  made_right(), which puts any numbers in order.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace tact {
+
+class RefineFilter {
+public:
+    static constexpr std::size_t kPointsMax = 16;
+    struct Point {
+        float distance_m, error_m;
+    };
+
+    RefineFilter() = default;  // full detail everywhere
+    // Points in any order are sorted; what is not finite or negative is dropped, what falls is raised.
+    static RefineFilter frustums(float radius_m, std::span<const Point> points) {
+        RefineFilter made;
+        made.point_[0] = {std::isfinite(radius_m) && radius_m > 0.0F ? radius_m : 0.0F, 0.0F};
+        made.count_ = 1;
+        for (const Point& p : points) {
+            if (made.count_ == kPointsMax) break;
+            if (!std::isfinite(p.distance_m) || !std::isfinite(p.error_m)) continue;
+            if (p.distance_m < made.point_[0].distance_m || p.error_m < 0.0F) continue;
+            made.point_[made.count_++] = p;
+        }
+        const auto end = made.point_.begin() + static_cast<std::ptrdiff_t>(made.count_);
+        std::stable_sort(made.point_.begin() + 1, end,
+                         [](const Point& a, const Point& b) { return a.distance_m < b.distance_m; });
+        for (std::size_t i = 1; i < made.count_; ++i)
+            made.point_[i].error_m = std::max(made.point_[i].error_m, made.point_[i - 1].error_m);
+        return made;
+    }
+    // error_far_m far away; 1 - 1/e of it at radius_m + width_m.
+    static RefineFilter bell(float radius_m, float width_m, float error_far_m) {
+        std::array<Point, kPointsMax - 1> point{};
+        for (std::size_t i = 0; i < point.size(); ++i) {
+            const float x = 2.5F * static_cast<float>(i + 1) / static_cast<float>(point.size());
+            point[i] = {radius_m + x * width_m, error_far_m * (1.0F - std::exp(-x * x))};
+        }
+        return frustums(radius_m, point);
+    }
+
+    [[nodiscard]] float radius_m() const noexcept { return count_ > 0 ? point_[0].distance_m : kEverywhere; }
+    [[nodiscard]] std::span<const Point> points() const noexcept { return std::span(point_).first(count_); }
+    [[nodiscard]] float allowed_m(float distance_m) const noexcept {
+        if (count_ == 0 || distance_m <= point_[0].distance_m) return 0.0F;
+        for (std::size_t i = 1; i < count_; ++i) {
+            const Point &a = point_[i - 1], &b = point_[i];
+            if (distance_m > b.distance_m) continue;
+            const float run = b.distance_m - a.distance_m;
+            const float part = run > 0.0F ? (distance_m - a.distance_m) / run : 1.0F;
+            return a.error_m + part * (b.error_m - a.error_m);
+        }
+        return point_[count_ - 1].error_m;
+    }
+    // Within this distance an error is not allowed: allowed_m(d) < error_m just where d is below it.
+    [[nodiscard]] float distance_m(float error_m) const noexcept {
+        for (std::size_t i = 1; i < count_; ++i) {
+            const Point &a = point_[i - 1], &b = point_[i];
+            if (error_m > b.error_m) continue;
+            const float rise = b.error_m - a.error_m;
+            const float part = rise > 0.0F ? (error_m - a.error_m) / rise : 0.0F;
+            return a.distance_m + part * (b.distance_m - a.distance_m);
+        }
+        return kEverywhere;
+    }
+
+private:
+    static constexpr float kEverywhere = std::numeric_limits<float>::max();
+    std::array<Point, kPointsMax> point_{};
+    std::size_t count_ = 0;
+};
+
+}  // namespace tact
