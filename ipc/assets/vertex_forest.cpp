@@ -194,6 +194,8 @@ VertexForest read_forest(const SceneFile& file, std::span<const float> position_
     bytes = bytes.subspan(sizeof header);
     for (const std::uint32_t word : header.reserved)
         if (word != 0) in.fail("a reserved field is not zero");
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(ForestNode) != 0)
+        in.fail("it does not lie at a multiple of four bytes");
     const std::uint64_t trees = std::uint64_t{header.trees} + 1;
     if (bytes.size() != 4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} +
                             sizeof(ForestTriangle) * std::uint64_t{header.triangles})

@@ -1,3 +1,4 @@
 # Benches of force.
 tact_bench(bench/docking_bench.cpp USES assets force)
 tact_bench(bench/clash_bench.cpp USES assets force)
+tact_bench(bench/refine_bench.cpp USES assets force prep_surface prep_synthetic)

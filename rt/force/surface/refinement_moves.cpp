@@ -103,18 +103,23 @@ bool Refinement::blocked(Entry& entry) const noexcept {
             return true;
         entry.blocker = kNone;
     }
+    // Of those in the way the one with the highest number is likely to go last: then it is looked at again.
     const std::uint32_t number = key_[entry.record].number, first = record_[entry.record].child;
+    std::uint32_t blocker = kNone, highest = 0;
     for (const std::uint32_t child : {first, first + 1}) {
         for (std::uint32_t c = record_[child].head; c != kNone; c = triangle_[c / 4].next[c % 4]) {
             for (const std::uint32_t w : triangle_[c / 4].at) {
-                if (key_[w].parent_number >= number) continue;
-                entry.blocker = record_[w].parent;
-                entry.blocker_number = key_[w].parent_number;
-                return true;
+                const std::uint32_t up = key_[w].parent_number;
+                if (up >= number || up <= highest) continue;
+                highest = up;
+                blocker = w;
             }
         }
     }
-    return false;
+    if (blocker == kNone) return false;
+    entry.blocker = record_[blocker].parent;
+    entry.blocker_number = highest;
+    return true;
 }
 
 void Refinement::merge(std::uint32_t record) noexcept {
