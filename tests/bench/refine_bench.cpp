@@ -1,7 +1,8 @@
 // Refinement around a moving probe: processor time of one step, on a rough torus.
 //
-// Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond; triangles for the
-//           servo within 1 %. 40,000 vertices; a million where the environment variable TACT_BENCH_LARGE is set.
+// Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond; triangles
+//           for the servo within 1 %. 40,000 vertices; a million where the environment variable
+//           TACT_BENCH_LARGE is set.
 // Figures   step_us: processor time of the thread, percentiles over the steps; ops: splits and merges a step;
 //           active: vertices; late: steps that ended without full detail. Still: the probe stands.
 // Measured  see rt/force/surface/REFINEMENT.md.

@@ -30,6 +30,7 @@ Refinement::Refinement(const VertexForest& forest, const RefineSettings& setting
         forest.triangles_always().size() + 3 * std::uint64_t{settings_.nodes_max}, forest.triangles());
     record_.resize(2 * std::size_t{settings_.nodes_max} + 2);
     key_.resize(record_.size());
+    size_.resize(record_.size());
     triangle_.resize(static_cast<std::size_t>(triangles));
     leaves_.resize(triangle_.size());
     splittable_.reserve(settings_.nodes_max);
@@ -56,10 +57,16 @@ void Refinement::fill(std::uint32_t record, const VertexForest::Branch& branch,
     if (branch.is_leaf()) {
         record_[record] = {forest_.leaf_position_m(branch.first), kNoForestNode, parent, kNone, kNone, kNone};
         key_[record] = {branch.first, branch.end, 0, parent_number};
+        size_[record] = {};
     } else {
         const ForestNode& node = forest_.node(branch.node);
         record_[record] = {node.position_m, branch.node, parent, kNone, kNone, kNone};
         key_[record] = {branch.first, branch.end, node.number, parent_number};
+        size_[record] = {node.reach_m, node.error_m};
+        // If it is split, then soon: call for what that needs.
+        __builtin_prefetch(&node + 1);
+        __builtin_prefetch(&node + (node.middle - branch.first));
+        __builtin_prefetch(forest_.first_triangle_of(branch.node));
     }
 }
 
@@ -112,9 +119,9 @@ void Refinement::unlink(std::uint32_t corner, std::uint32_t record) noexcept {
 }
 
 void Refinement::set_limits(Entry& entry) const noexcept {
-    const ForestNode& node = forest_.node(record_[entry.record].node);
-    entry.limit_m = node.reach_m + settings_.filter.distance_m(node.error_m);
-    entry.full_limit_m = node.reach_m + settings_.filter.radius_m();
+    const Size& size = size_[entry.record];
+    entry.limit_m = size.reach_m + settings_.filter.distance_m(size.error_m);
+    entry.full_limit_m = size.reach_m + settings_.filter.radius_m();
 }
 
 void Refinement::list(List& in, std::uint32_t record) noexcept {
@@ -213,16 +220,17 @@ void Refinement::collect(const Box& box, bool full_detail) noexcept {
     }
     const auto seen = static_cast<std::uint32_t>(steps_);
     // A leaf is taken where its parent reaches the box: that holds its triangles too.
-    const auto reaches = [&](const Record& r) {
-        return r.node == kNoForestNode ||
-               box.distance_m(r.position_m) <= near_m + forest_.node(r.node).reach_m;
+    const auto reaches = [&](std::uint32_t record) {
+        const Record& r = record_[record];
+        return r.node == kNoForestNode || box.distance_m(r.position_m) <= near_m + size_[record].reach_m;
     };
     std::uint32_t top = 0;
     for (std::uint32_t root = 0; root < forest_.roots() && to.complete; ++root) {
         stack_[top++] = root;
         while (top > 0) {
-            const Record& r = record_[stack_[--top]];
-            if (!reaches(r)) continue;
+            const std::uint32_t now = stack_[--top];
+            if (!reaches(now)) continue;
+            const Record& r = record_[now];
             if (!r.at_cut()) {
                 if (top + 2 > stack_.size()) {
                     to.complete = false;
@@ -250,7 +258,7 @@ void Refinement::collect(const Box& box, bool full_detail) noexcept {
 }
 
 std::size_t Refinement::memory_bytes() const {
-    return record_.capacity() * (sizeof(Record) + sizeof(Key)) +
+    return record_.capacity() * (sizeof(Record) + sizeof(Key) + sizeof(Size)) +
            triangle_.capacity() * (sizeof(Triangle) + sizeof(Leaves)) +
            (splittable_.capacity() + mergeable_.capacity()) * sizeof(Entry) + 4 * stack_.capacity() +
            3 * settings_.near_max * sizeof(NearTriangle) + sizeof(*this);

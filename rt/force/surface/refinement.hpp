@@ -92,6 +92,9 @@ private:
         std::uint32_t number, parent_number;  // of merges; 0 for a leaf, kNone above a root
         [[nodiscard]] bool holds(std::uint32_t leaf) const { return leaf >= first && leaf < end; }
     };
+    struct Size {  // of each record; a leaf has none
+        float reach_m, error_m;
+    };
     // Corner k of triangle s is 4 s + k in lists.
     struct alignas(32) Triangle {
         std::array<std::uint32_t, 3> at, next;
@@ -144,6 +147,7 @@ private:
     RefineSettings settings_;
     HugeVector<Record> record_;  // the first ones are the roots, in order
     HugeVector<Key> key_;
+    HugeVector<Size> size_;
     HugeVector<Triangle> triangle_;
     HugeVector<Leaves> leaves_;
     std::uint32_t record_used_ = 0, triangle_used_ = 0;  // from there on never taken yet
