@@ -8,8 +8,8 @@
 namespace tact {
 namespace {
 
-constexpr SectionTag kTag{'F', 'R', 'S', 'T'};
-constexpr std::uint32_t kVersion = 1;
+constexpr SectionTag kForestTag{'F', 'R', 'S', 'T'};
+constexpr std::uint32_t kForestVersion = 1;
 
 struct ForestHeader {
     std::uint32_t leaves, trees, nodes, triangles;
@@ -18,10 +18,10 @@ struct ForestHeader {
 static_assert(sizeof(ForestHeader) == 64);
 
 // Walks the whole forest once and compares it with what it must be.
-class Checker {
+class ForestChecker {
 public:
-    Checker(const VertexForest& forest, std::uint32_t always, std::span<const std::uint32_t> corner,
-            const std::string& where)
+    ForestChecker(const VertexForest& forest, std::uint32_t always, std::span<const std::uint32_t> corner,
+                  const std::string& where)
         : forest_(forest),
           corner_(corner),
           always_(always),
@@ -114,7 +114,7 @@ private:
 };
 
 template <class T>
-std::span<const T> view_of(std::span<const std::byte>& bytes, std::uint64_t count) {
+std::span<const T> forest_view_of(std::span<const std::byte>& bytes, std::uint64_t count) {
     const std::span<const T> items(reinterpret_cast<const T*>(bytes.data()), static_cast<std::size_t>(count));
     bytes = bytes.subspan(items.size_bytes());
     return items;
@@ -158,7 +158,7 @@ void VertexForest::check(std::span<const std::uint32_t> corner, const std::strin
     always_ = static_cast<std::uint32_t>(always);
     if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not begin at 0");
     if (node_.empty() && always != 0) fail("a triangle has two corners in one leaf");
-    Checker(*this, always_, corner, where).run();
+    ForestChecker(*this, always_, corner, where).run();
 }
 
 std::uint32_t VertexForest::tree_of(std::uint32_t leaf) const {
@@ -182,13 +182,13 @@ void write_forest(SceneWriter& out, const VertexForestData& data) {
     bytes.put_all(data.root_first);
     bytes.put_all(data.node);
     bytes.put_all(data.triangle);
-    out.add(kTag, kVersion, 0, bytes.take());
+    out.add(kForestTag, kForestVersion, 0, bytes.take());
 }
 
 VertexForest read_forest(const SceneFile& file, std::span<const float> position_m,
                          std::span<const std::uint32_t> corner) {
     const std::string where = file.name() + ", section FRST";
-    std::span<const std::byte> bytes = file.section(kTag, kVersion);
+    std::span<const std::byte> bytes = file.section(kForestTag, kForestVersion);
     BytesIn in(bytes, where);
     const auto header = in.get<ForestHeader>("header");
     bytes = bytes.subspan(sizeof header);
@@ -200,9 +200,9 @@ VertexForest read_forest(const SceneFile& file, std::span<const float> position_
     if (bytes.size() != 4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} +
                             sizeof(ForestTriangle) * std::uint64_t{header.triangles})
         in.fail("its length is not that of the nodes and triangles that it declares");
-    const auto root_first = view_of<std::uint32_t>(bytes, trees);
-    const auto node = view_of<ForestNode>(bytes, header.nodes);
-    const auto triangle = view_of<ForestTriangle>(bytes, header.triangles);
+    const auto root_first = forest_view_of<std::uint32_t>(bytes, trees);
+    const auto node = forest_view_of<ForestNode>(bytes, header.nodes);
+    const auto triangle = forest_view_of<ForestTriangle>(bytes, header.triangles);
     if (root_first.back() != header.leaves) in.fail("its trees do not hold its leaves");
     return {root_first, node, triangle, position_m, corner, where};
 }

@@ -9,7 +9,7 @@ namespace tact {
 namespace {
 
 // Counts the lines of vertices and faces, so that memory is taken once and can be told.
-void reserve_for(const MeshSource& source, MeshBuilder& builder) {
+void reserve_for_obj(const MeshSource& source, MeshBuilder& builder) {
     const std::string_view text = source.bytes;
     std::size_t vertices = 0, faces = 0;
     for (std::size_t at = 0; at + 1 < text.size();) {
@@ -27,7 +27,7 @@ void reserve_for(const MeshSource& source, MeshBuilder& builder) {
 
 ImportedMesh read_obj(const MeshSource& source) {
     MeshBuilder builder(source);
-    reserve_for(source, builder);
+    reserve_for_obj(source, builder);
     TextScan scan(source.bytes);
     const auto where = [&] { return "line " + std::to_string(scan.line_number()); };
     std::vector<std::int64_t> corner;

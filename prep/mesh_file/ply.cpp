@@ -187,7 +187,7 @@ std::uint64_t row_bytes_min(const Element& element, bool text) {
 }
 
 // Refuses what the rest of the file cannot hold; then memory for it may be taken.
-void reserve_for(const MeshSource& source, const Header& header, MeshBuilder& builder) {
+void reserve_for_ply(const MeshSource& source, const Header& header, MeshBuilder& builder) {
     std::uint64_t left = source.bytes.size() + 1 - header.bytes, vertices = 0, faces = 0;
     for (const Element& element : header.element) {
         if (element.property.empty()) continue;
@@ -206,7 +206,7 @@ void reserve_for(const MeshSource& source, const Header& header, MeshBuilder& bu
 template <class Body>
 TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& body) {
     MeshBuilder builder(source);
-    reserve_for(source, header, builder);
+    reserve_for_ply(source, header, builder);
     std::vector<std::int64_t> corner;
     for (const Element& element : header.element) {
         if (element.property.empty()) continue;  // nothing of it is in the file

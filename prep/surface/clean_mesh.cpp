@@ -13,15 +13,15 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
-constexpr double kFlat = 1e-10;  // floats near 1 tell heights down to 1e-7 of a side
+constexpr std::uint32_t kNoVertex = UINT32_MAX;
+constexpr double kFlatArea = 1e-10;  // floats near 1 tell heights down to 1e-7 of a side
 
 [[noreturn]] void refuse_to_clean(const std::string& why, const char* mend) {
     throw StartupError("clean a mesh", why, mend);
 }
 
 void check_mesh(const TriangleMesh& mesh) {
-    if (mesh.vertices() >= kNone / 4 || mesh.triangles() >= kNone / 4)
+    if (mesh.vertices() >= kNoVertex / 4 || mesh.triangles() >= kNoVertex / 4)
         refuse_to_clean("it has more than 2^30 vertices or triangles", "cut the mesh into parts");
     for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
         if (mesh.triangle[i] >= mesh.vertices())
@@ -40,18 +40,18 @@ void check_mesh(const TriangleMesh& mesh) {
 class NearTable {
 public:
     NearTable(double tolerance, std::size_t vertices)
-        : tolerance_(tolerance), first_(std::bit_ceil(std::max<std::size_t>(vertices, 64)), kNone) {}
+        : tolerance_(tolerance), first_(std::bit_ceil(std::max<std::size_t>(vertices, 64)), kNoVertex) {}
 
-    // The first kept vertex within the tolerance of p, or kNone; then `fresh` is noted as kept at p.
+    // The first kept vertex within the tolerance of p, or kNoVertex; then `fresh` is noted as kept at p.
     std::uint32_t find(const std::array<float, 3>& p, const std::vector<float>& position_m,
                        std::uint32_t fresh) {
         std::array<std::int64_t, 3> cell{};
         for (std::size_t i = 0; i < 3; ++i)
             cell[i] = static_cast<std::int64_t>(std::floor(static_cast<double>(p[i]) / tolerance_));
-        std::uint32_t found = kNone;
+        std::uint32_t found = kNoVertex;
         for (std::int64_t k = 0; k < 27; ++k) {
             const std::size_t at = slot({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1});
-            for (std::uint32_t v = first_[at]; v != kNone; v = next_[v]) {
+            for (std::uint32_t v = first_[at]; v != kNoVertex; v = next_[v]) {
                 double square = 0.0;
                 for (std::size_t i = 0; i < 3; ++i) {
                     const double d = static_cast<double>(p[i]) - position_m[3 * std::size_t{v} + i];
@@ -60,11 +60,11 @@ public:
                 if (square <= tolerance_ * tolerance_) found = std::min(found, v);
             }
         }
-        if (found != kNone) return found;
+        if (found != kNoVertex) return found;
         const std::size_t at = slot(cell);
         next_.push_back(first_[at]);
         first_[at] = fresh;
-        return kNone;
+        return kNoVertex;
     }
 
 private:
@@ -97,8 +97,8 @@ void merge_vertices(TriangleMesh& mesh, double tolerance, const Progress& progre
                                      mesh.position_m[3 * v + 2]};
         const auto fresh = static_cast<std::uint32_t>(kept.size() / 3);
         const std::uint32_t known = tolerance > 0.0 ? near.find(p, kept, fresh) : same.find(p, kept);
-        number[v] = known != kNone ? known : fresh;
-        if (known == kNone) kept.insert(kept.end(), p.begin(), p.end());
+        number[v] = known != kNoVertex ? known : fresh;
+        if (known == kNoVertex) kept.insert(kept.end(), p.begin(), p.end());
     }
     for (std::uint32_t& corner : mesh.triangle) corner = number[corner];
     mesh.position_m = std::move(kept);
@@ -111,26 +111,27 @@ bool without_area(const TriangleMesh& mesh, const std::uint32_t* corner) {
     };
     const Eigen::Vector3d a = at(corner[1]) - at(corner[0]), b = at(corner[2]) - at(corner[0]);
     const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm()});
-    return !(a.cross(b).norm() > kFlat * longest);
+    return !(a.cross(b).norm() > kFlatArea * longest);
 }
 
-using Key = std::array<std::uint32_t, 3>;
+using CornerKey = std::array<std::uint32_t, 3>;
 
-Key key_of(const std::uint32_t* corner) {
-    Key key{corner[0], corner[1], corner[2]};
+CornerKey key_of(const std::uint32_t* corner) {
+    CornerKey key{corner[0], corner[1], corner[2]};
     std::sort(key.begin(), key.end());
     return key;
 }
 
 void drop_triangles(TriangleMesh& mesh, CleanReport& done, const Progress& progress) {
-    HugeVector<std::uint32_t> place(std::bit_ceil(std::max<std::size_t>(2 * mesh.triangles(), 64)), kNone);
+    HugeVector<std::uint32_t> place(std::bit_ceil(std::max<std::size_t>(2 * mesh.triangles(), 64)),
+                                    kNoVertex);
     std::uint32_t kept = 0;
     for (std::size_t t = 0; t < mesh.triangles(); ++t) {
         if (t % 65536 == 0)
             report(progress, 0.5 + 0.5 * static_cast<double>(t) / static_cast<double>(mesh.triangles()),
                    "cleaning: triangles");
-        const Key corner{mesh.triangle[3 * t], mesh.triangle[3 * t + 1], mesh.triangle[3 * t + 2]};
-        const Key key = key_of(corner.data());
+        const CornerKey corner{mesh.triangle[3 * t], mesh.triangle[3 * t + 1], mesh.triangle[3 * t + 2]};
+        const CornerKey key = key_of(corner.data());
         if (key[0] == key[1] || key[1] == key[2]) {
             ++done.repeated_corners;
             continue;
@@ -145,9 +146,9 @@ void drop_triangles(TriangleMesh& mesh, CleanReport& done, const Progress& progr
             h ^= h >> 32U;
         }
         std::size_t at = static_cast<std::size_t>(h) & (place.size() - 1);
-        while (place[at] != kNone && key_of(&mesh.triangle[3 * std::size_t{place[at]}]) != key)
+        while (place[at] != kNoVertex && key_of(&mesh.triangle[3 * std::size_t{place[at]}]) != key)
             at = (at + 1) & (place.size() - 1);
-        if (place[at] != kNone) {
+        if (place[at] != kNoVertex) {
             ++done.repeated_triangles;
             continue;
         }
@@ -159,11 +160,11 @@ void drop_triangles(TriangleMesh& mesh, CleanReport& done, const Progress& progr
 }
 
 void drop_vertices(TriangleMesh& mesh) {
-    std::vector<std::uint32_t> number(mesh.vertices(), kNone);
+    std::vector<std::uint32_t> number(mesh.vertices(), kNoVertex);
     for (const std::uint32_t v : mesh.triangle) number[v] = 0;
     std::uint32_t next = 0;
     for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] == kNone) continue;
+        if (number[v] == kNoVertex) continue;
         number[v] = next;
         for (std::size_t i = 0; i < 3; ++i)
             mesh.position_m[3 * std::size_t{next} + i] = mesh.position_m[3 * v + i];

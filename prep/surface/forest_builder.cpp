@@ -11,7 +11,6 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kNone = kNoForestNode;
 constexpr float kWider = 1.000001F;  // against rounding, at each step up
 
 float chebyshev(const float* a, const float* b) {
@@ -73,7 +72,7 @@ private:
     // Places in the arrays below: leaf v of the mesh as it came is v, the node that step s makes is leaves_ + s.
     void link() {
         child_.resize(nodes_);
-        parent_.assign(std::size_t{leaves_} + nodes_, kNone);
+        parent_.assign(std::size_t{leaves_} + nodes_, kNoForestNode);
         count_.assign(std::size_t{leaves_} + nodes_, 1);
         std::vector<std::uint32_t> now(leaves_);
         for (std::uint32_t v = 0; v < leaves_; ++v) now[v] = v;
@@ -116,12 +115,12 @@ private:
     void order() {
         std::vector<std::uint32_t> roots;
         for (std::uint32_t p = 0; p < parent_.size(); ++p)
-            if (parent_[p] == kNone) roots.push_back(p);
+            if (parent_[p] == kNoForestNode) roots.push_back(p);
         sort_along_curve(roots);
         out_.data.leaves = leaves_;
         out_.data.node.resize(nodes_);
         out_.order.reserve(leaves_);
-        number_.assign(std::size_t{leaves_} + nodes_, kNone);
+        number_.assign(std::size_t{leaves_} + nodes_, kNoForestNode);
         std::uint32_t next_node = 0;
         std::vector<std::uint32_t> stack;
         for (const std::uint32_t root : roots) {
@@ -142,7 +141,7 @@ private:
                     error_[s],
                     reach_[p],
                     static_cast<std::uint32_t>(out_.order.size()) + count_[child_[s][0]],
-                    parent_[p] == kNone ? kNone : number_[parent_[p]],
+                    parent_[p] == kNoForestNode ? kNoForestNode : number_[parent_[p]],
                     s + 1,
                     0};
                 stack.push_back(child_[s][1]);

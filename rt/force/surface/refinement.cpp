@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kStackMax = 1U << 16;  // of places: longer cascades end in the middle
+constexpr std::uint32_t kCascadeMax = 1U << 16;  // of places: longer cascades end in the middle
 
 }  // namespace
 
@@ -35,7 +35,7 @@ Refinement::Refinement(const VertexForest& forest, const RefineSettings& setting
     leaves_.resize(triangle_.size());
     splittable_.reserve(settings_.nodes_max);
     mergeable_.reserve(settings_.nodes_max);
-    stack_.resize(kStackMax);
+    stack_.resize(kCascadeMax);
     begin();
 }
 
