@@ -22,6 +22,9 @@ BELOW = {
     "ipc/assets": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/assets"],
+    # Force models do not know each other.
+    "rt/force/docking": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/surface": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],
     "rt": ["ipc", "hal"],
@@ -195,7 +198,9 @@ def self_test():
         "ipc/shm/CMakeLists.txt": "tact_library(shm SOURCES s.cpp USES base)",
         "ipc/shm/s.hpp": '#include "ipc/base/a.hpp"\n',
         "ipc/shm/s.cpp": '#include "ipc/shm/s.hpp"\n',
-        "rt/force/CMakeLists.txt": "tact_library(force SOURCES f.cpp USES base)",
+        "rt/force/CMakeLists.txt": "tact_library(force SOURCES f.cpp surface/t.cpp USES base)",
+        "rt/force/docking/d.hpp": "#pragma once\n",
+        "rt/force/surface/t.cpp": '#include "ipc/base/a.hpp"\n',
         "rt/force/f.hpp": '#include "ipc/base/a.hpp"\n',
         "rt/force/f.cpp": '#include "rt/force/f.hpp"\n',
         "rt/loop/CMakeLists.txt": "tact_library(loop SOURCES l.cpp USES force base)",
@@ -207,6 +212,7 @@ def self_test():
     violations = {
         "include above": ("rt/force/f.cpp", '#include "rt/loop/l.hpp"\n', "rt/force may not include"),
         "include beside": ("rt/force/f.cpp", '#include "ipc/shm/s.hpp"\n', "rt/force may not include"),
+        "another force model": ("rt/force/surface/t.cpp", '#include "rt/force/docking/d.hpp"\n', "surface may not include"),
         "USES missing": ("tests/unit/x_test.cpp", '#include "rt/force/f.hpp"\n', "needs USES force"),
         "USES missing, allowed folder": ("rt/loop/l.cpp", '#include "ipc/shm/s.hpp"\n', "needs USES shm"),
         "third party": ("rt/force/f.cpp", "#include <gemmi/ccp4.hpp>\n", "belongs to prep"),

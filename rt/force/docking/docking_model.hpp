@@ -37,8 +37,8 @@
 #include "rt/force/docking/docking_start.hpp"
 #include "rt/force/docking/error_audit.hpp"
 #include "rt/force/docking/felt_density.hpp"
-#include "rt/force/docking/force_fade.hpp"
 #include "rt/force/docking/level_blend.hpp"
+#include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 
 namespace tact {
