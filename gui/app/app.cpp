@@ -179,6 +179,9 @@ private:
             view_->contours().set(contours_of(options_.contours, content_->scale));
         view_->approach_vertices(view_->vertices_max(), 1e9);  // at once: nothing is drawn yet
         vertices_share_ = 1.0;
+        // What is touched is hard: only a contour lets one see what is inside.
+        if (content_->meta.kind == SceneKind::surface)
+            state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
         if (window_.software()) view_->molecules().set_shapes_max(kShapesMaxInSoftware);
         state_.toggles.molecule = static_cast<int>(options_.look.style);
         state_.toggles.colouring = static_cast<int>(options_.look.colouring);
