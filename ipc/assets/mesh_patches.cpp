@@ -7,39 +7,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "ipc/assets/hilbert.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/vertex_cache.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {
 namespace {
-
-// Place on a Hilbert curve through a cube of 2^20 cells a side: J. Skilling, "Programming the Hilbert curve",
-// 2004.
-std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
-    constexpr int kBits = 20;
-    for (std::uint32_t q = 1U << (kBits - 1); q > 1; q >>= 1) {
-        const std::uint32_t p = q - 1;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if ((x[i] & q) != 0) {
-                x[0] ^= p;
-            } else {
-                const std::uint32_t t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
-        }
-    }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    std::uint32_t t = 0;
-    for (std::uint32_t q = 1U << (kBits - 1); q > 1; q >>= 1)
-        if ((x[2] & q) != 0) t ^= q - 1;
-    std::uint64_t key = 0;
-    for (int bit = kBits - 1; bit >= 0; --bit)
-        for (const std::uint32_t axis : x) key = key << 1 | (((axis ^ t) >> bit) & 1U);
-    return key;
-}
 
 struct Keyed {
     std::uint64_t key;
@@ -64,7 +38,7 @@ std::vector<Keyed> along_curve(const ProgressiveMeshData& data) {
                 sum += (data.vertex[data.triangle[c]].position_m[i] - low[i]) / side_m;
             cell[i] = static_cast<std::uint32_t>(std::clamp(sum / 3.0F, 0.0F, 1.0F) * 1048575.0F);
         }
-        order[t] = {hilbert(cell), static_cast<std::uint32_t>(t)};
+        order[t] = {hilbert<20>(cell), static_cast<std::uint32_t>(t)};
     }
     std::sort(order.begin(), order.end(), [](const Keyed& a, const Keyed& b) {
         return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;

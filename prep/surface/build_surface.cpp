@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ipc/assets/hilbert.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/huge_pages.hpp"
 
@@ -17,35 +18,6 @@ struct Keyed {
     std::uint64_t key;
     std::uint32_t triangle;
 };
-
-// Place of a cell on Hilbert's curve (Skilling 2004, "Programming the Hilbert curve").
-std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
-    constexpr std::uint32_t kTop = 1U << (kBits - 1);
-    for (std::uint32_t q = kTop; q > 1; q >>= 1U) {
-        const std::uint32_t p = q - 1;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if ((x[i] & q) != 0) {
-                x[0] ^= p;
-            } else {
-                const std::uint32_t t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
-        }
-    }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    std::uint32_t t = 0;
-    for (std::uint32_t q = kTop; q > 1; q >>= 1U) {
-        if ((x[2] & q) != 0) t ^= q - 1;
-    }
-    for (std::uint32_t& value : x) value ^= t;
-    std::uint64_t key = 0;
-    for (std::uint32_t bit = kBits; bit-- > 0;) {
-        for (const std::uint32_t value : x) key = key << 1U | (value >> bit & 1U);
-    }
-    return key;
-}
 
 // By key, least digit first; equal keys stay in order, so runs repeat exactly.
 void sort_by_key(HugeVector<Keyed>& items) {
@@ -132,7 +104,7 @@ private:
                 cell[axis] = std::min(static_cast<std::uint32_t>(std::max(sum[axis] * cells, 0.0F)),
                                       (1U << kBits) - 1);
             }
-            items_[t] = {hilbert(cell), t};
+            items_[t] = {hilbert<kBits>(cell), t};
         }
         sort_by_key(items_);
     }
