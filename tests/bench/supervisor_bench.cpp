@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "tests/support/real_loop.hpp"
 
@@ -14,6 +15,7 @@ namespace tact {
 namespace {
 
 constexpr double kMostS = 10e-3;
+constexpr Duration kLetGo = std::chrono::milliseconds(100);  // many looks of the supervisor
 
 bool may_use_fifo() {
     bool may = false;
@@ -23,17 +25,33 @@ bool may_use_fifo() {
     return may;
 }
 
+// From the last beat to the fall; nothing where the servo had itself let go (a fault, on a busy host) before it was
+// made to stand: then there is nothing to drop.
+std::optional<double> fall_s(RealLoop& loop) {
+    std::uint64_t before = loop.drops();
+    for (; !loop.brought_up(); before = loop.drops()) usleep(1000);
+    loop.stand(Stand::spinning);
+    std::optional<double> took_s;
+    for (Instant down = Instant::max(); !took_s && Monotonic::now() - down < kLetGo; usleep(50)) {
+        if (loop.enabled())
+            down = Instant::max();
+        else if (loop.drops() != before)
+            took_s = to_s(Monotonic::now() - loop.beat());
+        else
+            down = std::min(down, Monotonic::now());
+    }
+    loop.stand(Stand::none);
+    return took_s;
+}
+
 void drop(benchmark::State& state) {
     RealLoop loop(std::chrono::milliseconds(5), kServoPriority);
     const bool fifo = may_use_fifo();
     double worst_s = 0.0, late = 0.0;
     for (auto _ : state) {
-        std::uint64_t before = loop.drops();
-        for (; !loop.brought_up(); before = loop.drops()) usleep(1000);
-        loop.stand(Stand::spinning);
-        while (loop.enabled() || loop.drops() == before) usleep(50);
-        const double took_s = to_s(Monotonic::now() - loop.beat());
-        loop.stand(Stand::none);
+        std::optional<double> fell_s;
+        while (!fell_s) fell_s = fall_s(loop);
+        const double took_s = *fell_s;
         worst_s = std::max(worst_s, took_s);
         late += took_s > kMostS ? 1.0 : 0.0;
         state.SetIterationTime(took_s);
