@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "ipc/assets/scene_file.hpp"
+#include "ipc/assets/triangle_look.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
 
@@ -53,17 +54,6 @@ struct SurfaceData {
     std::vector<SurfaceNode> node;        // the first is the root
 };
 
-// How four triangles of a leaf lie to a point; lanes behind its count are far away.
-struct LeafLook {
-    alignas(16) std::array<float, 4> distance_m;
-    alignas(
-        16) std::array<std::array<float, 4>, 3> away;  // [axis]: unit, from the nearest point to the point
-    // [axis]: unit normal of the triangle's plane, on the point's side; `away` where it has no area.
-    alignas(16) std::array<std::array<float, 4>, 3> facet;
-    alignas(16) std::array<float, 4> height_m;  // over that plane
-    alignas(16) std::array<float, 4> over;      // not 0: the nearest point lies inside the triangle
-};
-
 struct SurfacePoint {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
     std::uint32_t triangle = kNone;  // kNone: nothing is nearer than asked
@@ -92,6 +82,8 @@ public:
         const std::uint32_t* const c = corner_.data() + std::size_t{3} * triangle;
         return {c[0], c[1], c[2]};
     }
+    // Of this mesh and a point; the triangles and the limit are left open.
+    [[nodiscard]] LookJob look_job(const Vec3& point_m) const noexcept TACT_RT;
     [[nodiscard]] Vec3 position_m(std::uint32_t vertex) const noexcept TACT_RT {
         const float* const p = position_m_.data() + std::size_t{3} * vertex;
         return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
@@ -104,8 +96,6 @@ public:
     // out. count is how many there are in `out`.
     bool leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,
                      std::size_t& count) const noexcept TACT_RT;
-    // In single precision about the point: right to some 1e-7 of the size of the triangle.
-    void look(std::uint32_t leaf, const Vec3& point_m, LeafLook& out) const noexcept TACT_RT;
     // The nearest point of one triangle, in double precision.
     [[nodiscard]] SurfacePoint point_of(std::uint32_t triangle, const Vec3& point_m) const noexcept TACT_RT;
     // The nearest point of the surface that is nearer than radius_m. hint: a triangle that is likely near, or

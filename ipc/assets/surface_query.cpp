@@ -1,11 +1,4 @@
-// Method. A leaf's four triangles are looked at together, one a lane: the nearest point of a triangle is that of
-// its three edges, or the foot on its plane where that lies inside; no branch depends on which (a walk through
-// the regions, one triangle after the other, mispredicts half of its branches). GCC's vector extension, so four
-// lanes are two instructions' worth on every x86-64; wider ones did not pay for leaves of four.
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
+// A node's four boxes are looked at together; GCC's vector extension.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,11 +9,6 @@ namespace tact {
 namespace {
 
 using F4 [[gnu::vector_size(16)]] = float;
-using I4 [[gnu::vector_size(16)]] = std::int32_t;
-
-struct F4x3 {
-    F4 x, y, z;
-};
 
 F4 all(float value) { return F4{value, value, value, value}; }
 F4 load(const std::array<float, 4>& values) {
@@ -28,37 +16,7 @@ F4 load(const std::array<float, 4>& values) {
     std::memcpy(&v, values.data(), sizeof v);
     return v;
 }
-void store(const F4& v, std::array<float, 4>& values) { std::memcpy(values.data(), &v, sizeof v); }
-F4 least(const F4& a, const F4& b) { return a < b ? a : b; }
 F4 most(const F4& a, const F4& b) { return a > b ? a : b; }
-F4 root(const F4& v) {
-#if defined(__SSE__)
-    return _mm_sqrt_ps(v);  // g++ makes four calls of the other, for the sake of errno
-#else
-    return F4{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
-#endif
-}
-F4 dot(const F4x3& a, const F4x3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-F4x3 minus(const F4x3& a, const F4x3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-F4x3 plus_times(const F4x3& a, const F4& s, const F4x3& b) {
-    return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-F4x3 times(const F4& s, const F4x3& a) { return {s * a.x, s * a.y, s * a.z}; }
-F4x3 cross(const F4x3& a, const F4x3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-F4x3 choose(const I4& mask, const F4x3& a, const F4x3& b) {
-    return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
-}
-
-constexpr float kTiny = 1e-36F;  // of a square: below it a length is none
-
-// Of the segment from a to a + ab, the point nearest to the origin.
-F4x3 nearest_of_edge(const F4x3& a, const F4x3& ab) {
-    const F4 t = -dot(a, ab) / most(dot(ab, ab), all(kTiny));
-    return plus_times(a, least(most(t, all(0.0F)), all(1.0F)), ab);
-}
-
 // Squares of the distances of the four boxes.
 F4 box_squares(const SurfaceNode& node, const F4& x, const F4& y, const F4& z) {
     const F4 none = all(0.0F);
@@ -101,67 +59,15 @@ bool SurfaceMesh::leaves_near(const Vec3& centre_m, double radius_m, std::span<s
     return true;
 }
 
-void SurfaceMesh::look(std::uint32_t leaf, const Vec3& point_m, LeafLook& out) const noexcept {
-    const std::uint32_t first = SurfaceNode::leaf_first(leaf), count = SurfaceNode::leaf_count(leaf);
-    // The point as a sum of two singles: what is left of a corner near it after the first is exact.
-    std::array<F4, 3> whole, rest;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double p = point_m[static_cast<Eigen::Index>(axis)];
-        const auto high = static_cast<float>(p);
-        whole[axis] = all(high);
-        rest[axis] = all(static_cast<float>(p - static_cast<double>(high)));
+LookJob SurfaceMesh::look_job(const Vec3& point_m) const noexcept {
+    LookJob job{};
+    job.position = position_m_.data();
+    job.corner = corner_.data();
+    for (int axis = 0; axis < 3; ++axis) {
+        job.whole[axis] = static_cast<float>(point_m[axis]);
+        job.rest[axis] = static_cast<float>(point_m[axis] - static_cast<double>(job.whole[axis]));
     }
-    const std::uint32_t* const c0 = corner_.data() + std::size_t{3} * first;
-    const std::uint32_t* const c1 = c0 + (count > 1 ? 3 : 0);
-    const std::uint32_t* const c2 = c1 + (count > 2 ? 3 : 0);
-    const std::uint32_t* const c3 = c2 + (count > 3 ? 3 : 0);
-    const auto at = [&](std::size_t k) -> F4x3 {
-        const float* const p0 = position_m_.data() + std::size_t{3} * c0[k];
-        const float* const p1 = position_m_.data() + std::size_t{3} * c1[k];
-        const float* const p2 = position_m_.data() + std::size_t{3} * c2[k];
-        const float* const p3 = position_m_.data() + std::size_t{3} * c3[k];
-        const auto axis = [&](std::size_t i) {
-            return (F4{p0[i], p1[i], p2[i], p3[i]} - whole[i]) - rest[i];
-        };
-        return {axis(0), axis(1), axis(2)};
-    };
-    const F4x3 a = at(0), b = at(1), c = at(2), ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
-    const F4x3 on_ab = nearest_of_edge(a, ab), on_bc = nearest_of_edge(b, bc), on_ca = nearest_of_edge(c, ca);
-    const F4 d_ab = dot(on_ab, on_ab), d_bc = dot(on_bc, on_bc), d_ca = dot(on_ca, on_ca);
-    F4x3 q = choose(d_bc < d_ab, on_bc, on_ab);
-    F4 square = least(d_ab, d_bc);
-    q = choose(d_ca < square, on_ca, q);
-    square = least(d_ca, square);
-
-    // The foot on the plane is inside where it is to the left of every edge.
-    const F4x3 n = cross(ab, bc);
-    const F4 nn = dot(n, n);
-    const F4 inverse = all(1.0F) / root(most(nn, all(kTiny)));
-    const F4 height = dot(n, a) * inverse;  // of the plane over the origin, along n
-    const I4 flat = nn > all(kTiny);
-    const F4 none = all(0.0F);
-    const I4 inside = flat & (dot(n, cross(a, ab)) >= none) & (dot(n, cross(b, bc)) >= none) &
-                      (dot(n, cross(c, ca)) >= none);
-    const F4x3 unit = times(inverse, n);
-    const F4 side = height > none ? all(-1.0F) : all(1.0F);  // of the origin
-    const F4x3 facet = times(side, unit);
-    const F4 up = -side * height;
-
-    const F4 length = root(square);
-    const F4 per_length = all(-1.0F) / most(length, all(1e-18F));
-    const F4x3 away = choose(inside, facet, times(per_length, q));
-    const F4 distance = inside ? up : length;
-    store(distance, out.distance_m);
-    store(away.x, out.away[0]);
-    store(away.y, out.away[1]);
-    store(away.z, out.away[2]);
-    const F4x3 plane = choose(flat, facet, away);
-    store(plane.x, out.facet[0]);
-    store(plane.y, out.facet[1]);
-    store(plane.z, out.facet[2]);
-    store(flat ? up : distance, out.height_m);
-    store(inside ? all(1.0F) : none, out.over);
-    for (std::uint32_t lane = count; lane < 4; ++lane) out.distance_m[lane] = 1e30F;
+    return job;
 }
 
 // By the region of the triangle's plane (Ericson, Real-Time Collision Detection, 5.1.5).
@@ -222,7 +128,8 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
     std::size_t depth = 0;
     stack[depth++] = {0.0F, 0};
     float square = limit();
-    LeafLook seen;
+    LookJob job = look_job(point_m);
+    TriangleLooks seen;
     while (depth > 0) {
         const Entry entry = stack[--depth];
         if (!(entry.square <= square)) continue;
@@ -231,10 +138,14 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
             break;
         }
         if ((entry.code & SurfaceNode::kLeaf) != 0) {
-            look(entry.code, point_m, seen);
             const std::uint32_t first = SurfaceNode::leaf_first(entry.code);
-            for (std::uint32_t lane = 0; lane < SurfaceNode::leaf_count(entry.code); ++lane) {
-                if (seen.distance_m[lane] * seen.distance_m[lane] <= square) take(first + lane);
+            const std::uint32_t last = SurfaceNode::leaf_count(entry.code) - 1;
+            const std::array<std::uint32_t, 4> triangle{first, first + std::min(1U, last),
+                                                        first + std::min(2U, last), first + last};
+            job.triangle = triangle.data();
+            look_at_four(job, seen);
+            for (std::uint32_t lane = 0; lane <= last; ++lane) {
+                if (seen.distance[lane] * seen.distance[lane] <= square) take(first + lane);
             }
             square = limit();
             continue;

@@ -114,14 +114,18 @@ void use_mesh(const SceneFile& file) {
 void use_surface(const SceneFile& file) {
     const SurfaceMesh mesh = read_surface(file);
     const Vec3 centre = 0.5 * (mesh.low_m() + mesh.high_m());
-    std::array<std::uint32_t, 16> leaves;
+    std::array<std::uint32_t, kLooks> leaves;
     for (const Vec3& p : {centre, mesh.high_m(), Vec3(1e300, -1e300, 0.0)}) {
         const SurfacePoint found = mesh.nearest(p, 1e7, 0);
         if (found.triangle != SurfacePoint::kNone) (void)mesh.normal_at(found);
         std::size_t count = 0;
         (void)mesh.leaves_near(p, 1.0, leaves, count);
-        LeafLook seen;
-        for (std::size_t i = 0; i < count; ++i) mesh.look(leaves[i], p, seen);
+        std::array<std::uint32_t, kLooks> first{};
+        for (std::size_t i = 0; i < count; ++i) first[i] = SurfaceNode::leaf_first(leaves[i]);
+        LookJob job = mesh.look_job(p);
+        job.triangle = first.data();
+        TriangleLooks seen;
+        best_look_kernel().look(job, seen);
     }
 }
 

@@ -71,7 +71,7 @@ RC_GTEST_PROP(SurfaceMesh, TheNearestPointIsThatOfAllTrianglesTried, ()) {
     }
 }
 
-RC_GTEST_PROP(SurfaceMesh, TheLeavesNearHoldEveryTriangleInTheBallAndLookAgreesWithOneAtATime, ()) {
+RC_GTEST_PROP(SurfaceMesh, TheLeavesNearHoldEveryTriangleInTheBall, ()) {
     const auto count = *rc::gen::inRange<std::uint32_t>(1, 300);
     const auto seed = *rc::gen::arbitrary<std::uint32_t>();
     const Held h = held(build_surface(soup(count, seed)));
@@ -84,28 +84,9 @@ RC_GTEST_PROP(SurfaceMesh, TheLeavesNearHoldEveryTriangleInTheBallAndLookAgreesW
         RC_ASSERT(h.mesh.leaves_near(p, radius, leaves, found));
         std::vector<bool> held_by_leaf(count, false);
         for (std::size_t l = 0; l < found; ++l) {
-            LeafLook seen;
-            h.mesh.look(leaves[l], p, seen);
             const std::uint32_t first = SurfaceNode::leaf_first(leaves[l]);
-            for (std::uint32_t lane = 0; lane < SurfaceNode::leaf_count(leaves[l]); ++lane) {
-                held_by_leaf[first + lane] = true;
-                const SurfacePoint one = h.mesh.point_of(first + lane, p);
-                RC_ASSERT(std::abs(static_cast<double>(seen.distance_m[lane]) - one.distance_m) < 2e-6);
-                const Vec3 away(static_cast<double>(seen.away[0][lane]),
-                                static_cast<double>(seen.away[1][lane]),
-                                static_cast<double>(seen.away[2][lane]));
-                if (one.distance_m > 1e-3) {
-                    RC_ASSERT((away - (p - one.point_m) / one.distance_m).norm() < 2e-3);
-                }
-                // A plane with the triangle on its other side.
-                const Vec3 facet(static_cast<double>(seen.facet[0][lane]),
-                                 static_cast<double>(seen.facet[1][lane]),
-                                 static_cast<double>(seen.facet[2][lane]));
-                for (const std::uint32_t v : h.mesh.corners(first + lane)) {
-                    RC_ASSERT(facet.dot(p - h.mesh.position_m(v)) >=
-                              static_cast<double>(seen.height_m[lane]) - 1e-3);
-                }
-            }
+            for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaves[l]); ++k)
+                held_by_leaf[first + k] = true;
         }
         for (std::uint32_t t = 0; t < count; ++t) {
             if (h.mesh.point_of(t, p).distance_m <= radius) RC_ASSERT(held_by_leaf[t]);
@@ -114,6 +95,40 @@ RC_GTEST_PROP(SurfaceMesh, TheLeavesNearHoldEveryTriangleInTheBallAndLookAgreesW
             std::size_t fewer = 0;
             RC_ASSERT(!h.mesh.leaves_near(p, radius, std::span(leaves).first(found - 1), fewer));
             RC_ASSERT(fewer == found - 1);
+        }
+    }
+}
+
+RC_GTEST_PROP(SurfaceMesh, SixteenTrianglesLookedAtTogetherAgreeWithOneAtATime, ()) {
+    const Held h = held(build_surface(soup(kLooks, *rc::gen::arbitrary<std::uint32_t>())));
+    SeededRandom random(*rc::gen::arbitrary<std::uint32_t>());
+    std::array<std::uint32_t, kLooks> triangle;
+    for (std::uint32_t& t : triangle) t = static_cast<std::uint32_t>(random.uniform() * (kLooks - 0.01));
+    const Vec3 p = 1.2 * random.uniform() * random.direction();
+    LookJob job = h.mesh.look_job(p);
+    job.triangle = triangle.data();
+    job.limit = 0.3F;
+    for (std::size_t k = 0; k < kLookKernelCount; ++k) {
+        if (!kLookKernels[k].runs_here()) continue;
+        TriangleLooks seen;
+        kLookKernels[k].look(job, seen);
+        for (std::size_t lane = 0; lane < kLooks; ++lane) {
+            const auto vector = [&](const auto& of) {
+                return Vec3(static_cast<double>(of[0][lane]), static_cast<double>(of[1][lane]),
+                            static_cast<double>(of[2][lane]));
+            };
+            const SurfacePoint one = h.mesh.point_of(triangle[lane], p);
+            RC_ASSERT(std::abs(static_cast<double>(seen.distance[lane]) - one.distance_m) < 2e-6);
+            RC_ASSERT((seen.near >> lane & 1U) == (seen.distance[lane] < job.limit ? 1U : 0U));
+            if (one.distance_m > 1e-3)
+                RC_ASSERT((vector(seen.away) - (p - one.point_m) / one.distance_m).norm() < 2e-3);
+            if ((seen.over >> lane & 1U) != 0) RC_ASSERT(one.part.minCoeff() > -1e-3);
+            if (one.part.minCoeff() > 1e-2 && one.distance_m > 1e-3)
+                RC_ASSERT((seen.over >> lane & 1U) == 1U);
+            // A plane with the triangle on its other side.
+            for (const std::uint32_t v : h.mesh.corners(triangle[lane]))
+                RC_ASSERT(vector(seen.facet).dot(p - h.mesh.position_m(v)) >=
+                          static_cast<double>(seen.height[lane]) - 1e-3);
         }
     }
 }

@@ -1,37 +1,54 @@
 #include "rt/force/surface/contact.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace tact {
 namespace {
 
-constexpr double kCollectedMoves = 1.25;  // the ball of leaves reaches so many moves far
-constexpr double kCollectedTooFar = 2.0;
-constexpr std::size_t kLeavesFew = 32;
+constexpr double kCollectedMoves = 1.25;  // the collected ball reaches so many moves far
+constexpr double kCollectedTooFar = 8.0;
+constexpr std::size_t kCollectedFew = 4096;
+constexpr double kBoundSlack = 1e-5;    // of distances in single precision
 constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther than the goal
 constexpr double kNextMove = 0.3;
+constexpr double kSlidesOn = 1.15;
 constexpr double kRestingMargins = 0.02;
 constexpr std::uint32_t kSeatVisits = 4096;  // of the tree: some 100 us
 
 }  // namespace
 
 SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& settings)
-    : mesh_(mesh), settings_(settings), leaf_(kLeavesMax) {}
+    : mesh_(mesh),
+      settings_(settings),
+      kernel_(&best_look_kernel()),
+      leaf_(kLeavesMax),
+      triangle_(4 * kLeavesMax),
+      bound_m_(4 * kLeavesMax),
+      slot_(4 * kLeavesMax + kLooks),
+      number_(4 * kLeavesMax + kLooks) {}
 
-// Leaves for moves of reach_m. Where they are too many the moves are made shorter; false: even the shortest
+// Triangles for moves of reach_m. Where they are too many the moves are made shorter; false: even the shortest
 // has too many.
 bool SurfaceContact::collect(double& reach_m) noexcept {
     const double moved = (proxy_m_ - collected_at_m_).norm();
-    // Looking at a leaf costs some ten times as much as finding it, so many of them are found anew for a shorter
-    // move.
-    const bool too_many = leaves_ > kLeavesFew && collected_m_ - moved > kCollectedTooFar * reach_m;
+    const bool too_many = collected_ > kCollectedFew && collected_m_ - moved > kCollectedTooFar * reach_m;
     if (collected_m_ >= 0.0 && moved + reach_m <= collected_m_ && !too_many) return true;
     double wide = kCollectedMoves * reach_m;
     for (int attempt = 0; attempt < 12; ++attempt) {
-        if (mesh_.leaves_near(proxy_m_, settings_.radius_m + wide, leaf_, leaves_)) {
+        std::size_t leaves = 0;
+        if (mesh_.leaves_near(proxy_m_, settings_.radius_m + wide, leaf_, leaves)) {
+            collected_ = 0;
+            for (std::size_t l = 0; l < leaves; ++l) {
+                const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]),
+                                    count = SurfaceNode::leaf_count(leaf_[l]);
+                for (std::uint32_t t = first; t < first + count; ++t) triangle_[collected_++] = t;
+            }
+            std::fill_n(bound_m_.begin(), collected_, 0.0F);
             collected_at_m_ = proxy_m_;
             collected_m_ = wide;
+            way_m_ = 0.0;
             reach_m = std::min(reach_m, wide);
             return true;
         }
@@ -43,32 +60,50 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
 
 // The guards of all triangles that a move of reach_m can touch; shorter, where there are too many.
 void SurfaceContact::look(double& reach_m, std::uint32_t& triangles) noexcept {
-    const double radius = settings_.radius_m, edge = radius - settings_.margin_m;
-    LeafLook seen;
+    LookJob job = mesh_.look_job(proxy_m_);
+    TriangleLooks seen;
+    const auto way = static_cast<float>(way_m_ * (1.0 - kBoundSlack));
     for (int attempt = 0; attempt < 8; ++attempt) {
         guards_.clear();
-        const auto limit = static_cast<float>(radius + reach_m);
-        bool room = true;
-        for (std::size_t l = 0; l < leaves_ && room; ++l) {
-            mesh_.look(leaf_[l], proxy_m_, seen);
-            const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
-            for (std::uint32_t lane = 0; lane < 4 && room; ++lane) {
-                const float distance = seen.distance_m[lane];
-                if (!(distance < limit)) continue;
-                const bool over = seen.over[lane] != 0.0F;
-                // Out again by no more than a margin a move: what is inside is so by rounding, or was put
-                // there.
-                const auto slack = static_cast<float>(
-                    std::max(static_cast<double>(distance) - (over ? radius : edge), -settings_.margin_m));
-                const auto height = static_cast<float>(static_cast<double>(seen.height_m[lane]) - radius);
-                room = guards_.add(first + lane, seen, lane, slack, height, !over && height >= 0.0F);
-            }
+        job.limit = static_cast<float>(settings_.radius_m + reach_m);
+        const auto in_reach =
+            static_cast<float>((settings_.radius_m + reach_m + way_m_) * (1.0 + kBoundSlack));
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < collected_; ++i) {
+            slot_[count] = static_cast<std::uint32_t>(i);
+            number_[count] = triangle_[i];
+            count += bound_m_[i] <= in_reach ? 1 : 0;
         }
-        triangles += static_cast<std::uint32_t>(4 * leaves_);
+        triangles += static_cast<std::uint32_t>(count);
+        bool room = true;
+        for (std::size_t first = 0; first < count && room; first += kLooks) {
+            const std::size_t lanes = std::min(kLooks, count - first);
+            for (std::size_t lane = lanes; lane < kLooks; ++lane) number_[first + lane] = number_[first];
+            job.triangle = &number_[first];
+            kernel_->look(job, seen);
+            for (std::size_t lane = 0; lane < lanes; ++lane)
+                bound_m_[slot_[first + lane]] = seen.distance[lane] + way;
+            std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
+            for (; near != 0 && room; near &= near - 1)
+                room = guard(number_[first + static_cast<std::size_t>(std::countr_zero(near))], seen,
+                             static_cast<std::size_t>(std::countr_zero(near)));
+        }
         if (room) return;
         reach_m *= 0.5;
     }
     reach_m = 0.0;
+}
+
+// False: there is no room.
+bool SurfaceContact::guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept {
+    const double radius = settings_.radius_m, margin = settings_.margin_m;
+    const bool over = (seen.over >> lane & 1U) != 0;
+    // Out again by no more than a margin a move: what is inside is so by rounding, or was put there.
+    const double slack =
+        std::max(static_cast<double>(seen.distance[lane]) - (over ? radius : radius - margin), -margin);
+    const double height = static_cast<double>(seen.height[lane]) - radius;
+    return guards_.add(triangle, seen, lane, static_cast<float>(slack), static_cast<float>(height),
+                       !over && height >= 0.0);
 }
 
 // Where friction leaves the proxy that would go to `free` without.
@@ -97,7 +132,8 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
     const double allowed = step + settings_.glide_m;
     double left = allowed;
-    double reach = std::max(step, settings_.margin_m);
+    // A slide goes on as it did: where it does not, a second move makes up for it.
+    double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
     while (contact.moves < moves_max && contact.triangles < kTrianglesMost) {
         if (contact.moves > 0 && deadline != Instant::max() && Monotonic::now() >= deadline) {
@@ -125,7 +161,10 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
         const bool cut = length > reach_now;
         if (cut) move *= reach_now / length;
         // At rest it rests: what is left is rounding.
-        if (cut || length > kRestingMargins * settings_.margin_m) proxy_m_ += move;
+        if (cut || length > kRestingMargins * settings_.margin_m) {
+            proxy_m_ += move;
+            way_m_ += move.norm();
+        }
         left = allowed - (proxy_m_ - begin_m).norm();
         // To and fro between two places: the limits over a facet and over its edge differ by a margin.
         const bool to_and_fro = (proxy_m_ - two_ago_m).norm() <= settings_.margin_m;
@@ -142,6 +181,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
         // A move that was not cut is followed by a much shorter one, as only the curvature is left.
         reach = cut ? 2.0 * reach_now : std::max(kNextMove * length, settings_.margin_m);
     }
+    moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
     return contact;
 }
@@ -152,9 +192,10 @@ bool SurfaceContact::inside(const Vec3& point_m, const SurfacePoint& nearest) no
     const double reach = nearest.distance_m * (1.0 + 1e-5);
     std::uint32_t teller = nearest.triangle;
     collected_m_ = -1.0;
-    if (mesh_.leaves_near(point_m, reach, leaf_, leaves_)) {
+    std::size_t leaves = 0;
+    if (mesh_.leaves_near(point_m, reach, leaf_, leaves)) {
         double highest = -1.0;
-        for (std::size_t l = 0; l < leaves_; ++l) {
+        for (std::size_t l = 0; l < leaves; ++l) {
             const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
             for (std::uint32_t t = first; t < first + SurfaceNode::leaf_count(leaf_[l]); ++t) {
                 const SurfacePoint at = mesh_.point_of(t, point_m);

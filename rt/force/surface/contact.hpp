@@ -10,9 +10,10 @@
 // Friction  With p the depth of the goal behind the frictionless place x, the proxy stays where it is nearer to
 //           x than friction * p along the surface, else it follows until it is that near. So the force stays
 //           in the cone of half angle atan(friction).
-// Work      Leaves of the tree are collected in a ball that is somewhat wider than needed and kept while the
-//           proxy is inside; a move looks at their triangles, at most moves_max moves a step. Where triangles
-//           are so dense that they do not fit, the move is made shorter instead.
+// Work      Triangles are collected from the tree in a ball that is wider than needed and kept while the proxy is
+//           inside. A move looks at those that can be in its reach, by the distance that each had when it was
+//           last looked at and the way since; at most moves_max moves a step. Where triangles are so dense that
+//           they do not fit, the move is made shorter instead.
 // Glide     In one step the proxy gets at most 1.5 times as far as the goal did and glide_m more. Where it
 //           leaves a hollow, or a sheet ends, it slides to its new place within some steps instead of leaping,
 //           so the force has no steps there and a step has not more work than others.
@@ -26,6 +27,7 @@
 #include <vector>
 
 #include "ipc/assets/surface_mesh.hpp"
+#include "ipc/assets/triangle_look.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
 #include "rt/force/surface/guards.hpp"
@@ -65,7 +67,7 @@ struct Contact {
 class SurfaceContact {
 public:
     static constexpr std::size_t kLeavesMax = 4096;
-    // A step begins no further move once it has looked at so many: some 200 us.
+    // A step begins no further move once it has looked at so many: some 100 us.
     static constexpr std::uint32_t kTrianglesMost = 8192;
 
     // The bytes behind `mesh` must outlive the object.
@@ -82,6 +84,7 @@ public:
 private:
     bool collect(double& reach_m) noexcept TACT_RT;
     void look(double& reach_m, std::uint32_t& triangles) noexcept TACT_RT;
+    bool guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept TACT_RT;
     [[nodiscard]] Vec3 held_back(const Guards::Solution& free, const Vec3& goal_m,
                                  double tolerance_m) const noexcept TACT_RT;
     [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
@@ -89,11 +92,19 @@ private:
     SurfaceMesh mesh_;  // a view
     ContactSettings settings_;
     Guards guards_;
-    std::vector<std::uint32_t> leaf_;
-    std::size_t leaves_ = 0;
+    const LookKernel* kernel_;
+    std::vector<std::uint32_t> leaf_;  // scratch
+    // The collected triangles. None is nearer than its bound less the way since they were collected.
+    std::vector<std::uint32_t> triangle_;
+    std::vector<float> bound_m_;
+    std::size_t collected_ = 0;
+    std::vector<std::uint32_t> slot_,
+        number_;  // scratch: those in reach, by their place and by their triangle
     Vec3 collected_at_m_ = Vec3::Zero();
     double collected_m_ = -1.0;  // how far the ball may go from there; < 0: nothing is collected
+    double way_m_ = 0.0;         // since then
     Vec3 proxy_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();
+    double moved_m_ = 0.0;  // by the last step
 };
 
 }  // namespace tact

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 namespace tact {
 namespace {
+
+using F4 [[gnu::vector_size(16)]] = float;
+using I4 [[gnu::vector_size(16)]] = std::int32_t;
 
 // Nearest to the goal on the planes n·x + s = 0 of at most three half-spaces: x = goal + sum of weight n. False
 // where the planes are nearly parallel or a weight is negative.
@@ -40,7 +44,7 @@ bool meet(const Vec3& goal_m, std::span<Guards::Active* const> planes, Vec3& mov
 
 }  // namespace
 
-bool Guards::add(std::uint32_t triangle, const LeafLook& look, std::size_t lane, float near_slack_m,
+bool Guards::add(std::uint32_t triangle, const TriangleLooks& look, std::size_t lane, float near_slack_m,
                  float facet_slack_m, bool facet_holds) noexcept {
     if (count_ == kMax) return false;
     const std::size_t i = count_++;
@@ -67,16 +71,37 @@ void Guards::allow_staying() noexcept {
 std::size_t Guards::most_violated(const Vec3& move_m, double& value) const noexcept {
     const auto x = static_cast<float>(move_m.x()), y = static_cast<float>(move_m.y()),
                z = static_cast<float>(move_m.z());
-    float least = 1e30F;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-        const float near = row(near_x)[i] * x + row(near_y)[i] * y + row(near_z)[i] * z + row(near_s)[i];
-        const float facet = row(facet_x)[i] * x + row(facet_y)[i] * y + row(facet_z)[i] * z + row(facet_s)[i];
-        const float kept = near > facet ? near : facet;
-        if (kept < least) {
-            least = kept;
-            at = i;
-        }
+    const auto kept = [&](auto load) {
+        const auto near = load(near_x) * x + load(near_y) * y + load(near_z) * z + load(near_s);
+        const auto facet = load(facet_x) * x + load(facet_y) * y + load(facet_z) * z + load(facet_s);
+        return near > facet ? near : facet;
+    };
+    // g++ leaves a loop for the least and its place as it is: four lanes by hand.
+    std::size_t i = 0;
+    F4 least4 = F4{} + 1e30F;
+    I4 at4{};
+    for (I4 here{0, 1, 2, 3}; i + 4 <= count_; i += 4, here += 4) {
+        const F4 kept4 = kept([&](Row r) {
+            F4 v;
+            std::memcpy(&v, row(r) + i, sizeof v);
+            return v;
+        });
+        const I4 less = kept4 < least4;
+        least4 = less ? kept4 : least4;
+        at4 = less ? here : at4;
+    }
+    float least = least4[0];
+    auto at = static_cast<std::size_t>(at4[0]);
+    for (int lane = 1; lane < 4; ++lane) {
+        if (least4[lane] >= least) continue;
+        least = least4[lane];
+        at = static_cast<std::size_t>(at4[lane]);
+    }
+    for (; i < count_; ++i) {
+        const float kept1 = kept([&](Row r) { return row(r)[i]; });
+        if (kept1 >= least) continue;
+        least = kept1;
+        at = i;
     }
     value = static_cast<double>(least);
     return at;
@@ -88,7 +113,7 @@ Guards::Active Guards::half_space(std::size_t guard, bool facet) const noexcept 
         return static_cast<double>(row(static_cast<Row>(first + i))[guard]);
     };
     Active active;
-    active.normal = Vec3(value(0), value(1), value(2)).normalized();
+    active.normal = Vec3(value(0), value(1), value(2));
     active.slack_m = value(3);
     active.guard = static_cast<std::uint32_t>(guard);
     active.facet = facet;

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/assets/triangle_look.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
 
@@ -52,7 +52,7 @@ public:
         return triangle_[guard];
     }
     // near_slack_m may be negative: then the proxy is to be pushed out. False: there is no room.
-    bool add(std::uint32_t triangle, const LeafLook& look, std::size_t lane, float near_slack_m,
+    bool add(std::uint32_t triangle, const TriangleLooks& look, std::size_t lane, float near_slack_m,
              float facet_slack_m, bool facet_holds) noexcept TACT_RT;
     // Nothing is pushed out any more: staying is allowed by every guard.
     void allow_staying() noexcept TACT_RT;

@@ -1,0 +1,69 @@
+// Four triangles at a time: two instructions' worth on every x86-64, plain arithmetic elsewhere.
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include <cmath>
+
+#include "ipc/assets/triangle_look.hpp"
+
+#define TACT_LANES 4
+#define TACT_LANE inline
+
+namespace tact {
+namespace {
+
+using F [[gnu::vector_size(16)]] = float;
+using I [[gnu::vector_size(16)]] = std::int32_t;
+
+F root(const F& v) {
+#if defined(__SSE__)
+    return _mm_sqrt_ps(v);  // g++ makes four calls of the other, for the sake of errno
+#else
+    return F{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+#endif
+}
+F gather(const float* from, const I& at) { return F{from[at[0]], from[at[1]], from[at[2]], from[at[3]]}; }
+I gather(const std::uint32_t* from, const I& at) {
+    const auto value = [&](int lane) { return static_cast<std::int32_t>(from[at[lane]]); };
+    return I{value(0), value(1), value(2), value(3)};
+}
+std::uint32_t bits(const I& mask) {
+    return (static_cast<std::uint32_t>(mask[0]) & 1U) | (static_cast<std::uint32_t>(mask[1]) & 2U) |
+           (static_cast<std::uint32_t>(mask[2]) & 4U) | (static_cast<std::uint32_t>(mask[3]) & 8U);
+}
+
+#include "ipc/assets/triangle_look_lanes.hpp"
+
+bool always() { return true; }
+#if defined(__x86_64__)
+bool has_avx2() { return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0; }
+bool has_avx512() { return has_avx2() && __builtin_cpu_supports("avx512f") != 0; }
+#endif
+
+}  // namespace
+
+void look_at_four(const LookJob& job, TriangleLooks& out) {
+    out.over = 0;
+    out.near = 0;
+    look_at(job, 0, out);
+}
+
+void look_generic(const LookJob& job, TriangleLooks& out) { look_at_all(job, out); }
+
+const LookKernel kLookKernels[] = {
+#if defined(__x86_64__)
+    {"avx512", &has_avx512, &look_avx512},
+    {"avx2", &has_avx2, &look_avx2},
+#endif
+    {"generic", &always, &look_generic},
+};
+const std::size_t kLookKernelCount = sizeof(kLookKernels) / sizeof(kLookKernels[0]);
+
+const LookKernel& best_look_kernel() {
+    const LookKernel* kernel = kLookKernels;
+    while (!kernel->runs_here()) ++kernel;  // the last one runs everywhere
+    return *kernel;
+}
+
+}  // namespace tact
