@@ -3,9 +3,7 @@
 // Work     a rough sphere of about 50 mm radius, made by tact-prep, with the number of triangles in the key
 //          (92k: 92 480, 2m: 1 997 120, 10m: 9 996 980); a tool slides over it at about 55 mm/s, 1.5 +- 0.5 mm
 //          deep, 0.5 N/mm, 1000 positions a second for 4 s.
-// Method   whole steps of the servo's model, on one core. The path is gone along kPasses times, and of each
-//          position the least time counts: what other users of the machine take is not the model's.
-// Jammed   cycles, five or more in a row, whose proxy was not where it should be and came no nearer
+// Method   touch_run.hpp; three passes. Jammed are cycles, five or more in a row, whose proxy stands.
 // Memory   some 4 GB for the largest, while it is baked
 // Fails by StartupError: tact-prep does not bake, a mesh or path cannot be read.
 #pragma once
