@@ -3,6 +3,7 @@
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/reproduce/docking.hpp"
+#include "deploy/tact/reproduce/surface.hpp"
 
 namespace tact::launch {
 
@@ -27,6 +28,19 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
     command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
 }
 
+void add_surface(CLI::App& reproduce, int& exit_code) {
+    auto* const command =
+        reproduce.add_subcommand("surface", "the surface seed's table 1, and beyond; minutes and 4 GB");
+    const auto e = std::make_shared<SurfaceExperiment>();
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_option("--mesh", e->meshes, "files to touch, instead of meshes of our own")
+        ->check(CLI::ExistingFile);
+    command->add_option("--unit", e->unit, "of those files")->capture_default_str();
+    command->add_option("--triangles-max", e->triangles_max, "of our own")->capture_default_str();
+    command->add_flag("--quick", e->quick, "seconds instead of minutes; shows that it works");
+    command->callback([e, &exit_code] { exit_code = reproduce_surface(*e); });
+}
+
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit_code) {
@@ -37,6 +51,7 @@ void add_reproduce(CLI::App& app, int& exit_code) {
     add_docking(*reproduce, exit_code, "governor",
                 "of those, the force rate with and without the law, with and without an external load",
                 false);
+    add_surface(*reproduce, exit_code);
 }
 
 }  // namespace tact::launch

@@ -27,9 +27,10 @@ json bake_to_measure(const std::vector<std::string>& words, const std::filesyste
     const std::string said = read_small(log);  // its progress, then the numbers
     json numbers = json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
-        throw StartupError("bake a surface to measure",
-                           "tact-prep " + (ending ? ending->text() : "did not end in ten minutes"),
-                           "see what it said above");
+        throw StartupError(
+            "bake a surface to measure",
+            "tact-prep " + (ending ? ending->text() : "did not end in ten minutes") + ": " + said,
+            "run by hand: tact-prep " + words.front());
     return numbers;
 }
 

@@ -5,6 +5,7 @@
 #include "deploy/tact/reproduce/rate_samples.hpp"
 #include "deploy/tact/reproduce/sample_meshes.hpp"
 #include "deploy/tact/reproduce/summary.hpp"
+#include "deploy/tact/reproduce/surface_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -226,6 +227,31 @@ TEST(Meshes, the_picture_shows_front_and_back_and_paper_where_there_is_nothing) 
     const auto front = middle({0.3, -0.4, 1.0}), back = middle({0.3, -0.4, -1.0});
     EXPECT_GT(front[2], front[0]);
     EXPECT_GT(back[0], back[2]);
+}
+
+std::vector<TouchStep> steps_of(std::size_t count, double us, std::size_t slow, double slow_us) {
+    std::vector<TouchStep> steps(count, {.force_n = Vec3::UnitX(), .us = us});
+    for (std::size_t i = 0; i < slow; ++i) steps[i].us = slow_us;
+    return steps;
+}
+
+TEST(TouchRow, a_rate_is_one_over_the_mean_time_and_quality_follows_its_rule) {
+    TouchRow row = row_of(steps_of(4000, 400.0, 0, 0.0));
+    EXPECT_NEAR(row.rate_hz, 2500.0, 1e-6);
+    EXPECT_EQ(quality(row), "good");
+    EXPECT_EQ(quality(row_of(steps_of(4000, 400.0, 4, 1500.0))), "good");  // one in a thousand
+    EXPECT_EQ(quality(row_of(steps_of(4000, 400.0, 5, 1500.0))), "bad");
+    EXPECT_EQ(quality(row_of(steps_of(4000, 1001.0, 0, 0.0))), "breaks");
+    row.jammed = 5;
+    EXPECT_EQ(quality(row), "bad");
+}
+
+TEST(TouchRow, a_proxy_that_stands_for_five_cycles_is_jammed_from_the_first_of_them) {
+    std::vector<TouchStep> steps = steps_of(100, 1.0, 0, 0.0);
+    for (std::size_t i = 10; i < 14; ++i) steps[i].stands = true;
+    EXPECT_EQ(jammed_cycles(steps), 0U);
+    for (std::size_t i = 14; i < 17; ++i) steps[i].stands = true;
+    EXPECT_EQ(jammed_cycles(steps), 7U);
 }
 
 }  // namespace

@@ -1,0 +1,184 @@
+#include "deploy/tact/reproduce/surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/plot.hpp"
+#include "deploy/tact/reproduce/summary.hpp"
+#include "deploy/tact/reproduce/surface_rows.hpp"
+#include "deploy/tact/reproduce/text.hpp"
+#include "deploy/tact/touch_paths.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "rt/force/surface/refine_filter.hpp"
+
+namespace tact::launch {
+namespace {
+
+// Of our own, with what stands in the seed's table at that size.
+struct Size {
+    const char *name, *shape;
+    int parts;
+    std::size_t triangles;
+    const char *seed_off, *seed_on;
+};
+constexpr Size kSizes[] = {
+    {"2 K", "sphere", 10, 2'000, "1500 Hz, good", "1500 Hz, good"},
+    {"8 K", "sphere", 20, 8'000, "600 Hz, bad", "1200 Hz, good"},
+    {"20 K", "sphere", 32, 20'480, "breaks", "1000 Hz, good"},
+    {"92 K", "terrain", 215, 92'450, "breaks", "1000 Hz, good"},
+    {"0.5 M", "sphere", 158, 499'280, "", ""},
+    {"2 M", "sphere", 316, 1'997'120, "", ""},
+    {"10 M", "sphere", 707, 9'996'980, "", ""},
+};
+struct Tool {
+    const char* name;
+    double radius_m;
+};
+constexpr Tool kTools[] = {{"point", 0.0}, {"1 mm", 1e-3}, {"3 mm", 3e-3}};
+struct Hand {
+    const char* name;
+    double speed_m_s;
+};
+constexpr Hand kHands[] = {{"slow", 0.055}, {"fast", 0.22}};
+constexpr int kPasses = 3;
+
+SurfaceSettings measured(double radius_m) {
+    return {.radius_m = radius_m,
+            .stiffness_n_m = 500.0,
+            .damping_n_s_m = 0.0,
+            .friction = 0.2,
+            .shading = true,
+            .force_n_max = 100.0};
+}
+
+// All tools and hands on one mesh.
+std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path& scene, bool quick) {
+    const SceneFile file = SceneFile::open(scene);
+    const SurfaceMesh surface = read_surface(file);
+    const double world_per_model = read_meta(file).world_per_model;
+    std::vector<TouchRow> rows;
+    for (const Hand& hand : kHands) {
+        const std::vector<Vec3> path = wander_m(
+            surface, {hand.speed_m_s / world_per_model, 1.5e-3 / world_per_model, 7}, quick ? 2000 : 20000);
+        for (const Tool& tool : kTools) {
+            TouchRow row = row_of(
+                touch_along(surface, path, measured(tool.radius_m), quick ? 1 : kPasses, world_per_model));
+            row.mesh = name;
+            row.triangles = surface.triangles();
+            row.tool = tool.name;
+            row.hand = hand.name;
+            row.mode = "off-tree";
+            rows.push_back(row);
+            std::printf("  %-24s %9zu  %-6s %-5s %8.0f Hz, %s\n", name.c_str(), row.triangles, tool.name,
+                        hand.name, row.rate_hz, quality(row).c_str());
+            std::fflush(stdout);
+        }
+    }
+    return rows;
+}
+
+// Rates of the seed's hand, the slow one, by size.
+plot::Plot table_figure(const std::vector<TouchRow>& rows) {
+    plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 2.0};
+    plot::Panel times{.y_label = "99.9 % of steps take less, us", .goals = {{1000.0, "1 ms"}}};
+    for (const Tool& tool : kTools) {
+        for (const Hand& hand : kHands) {
+            plot::Curve rate{.name = std::string(tool.name) + ", " + hand.name}, time = rate;
+            for (const TouchRow& r : rows) {
+                if (r.tool != tool.name || r.hand != hand.name) continue;
+                const double x = std::log10(static_cast<double>(r.triangles));
+                rate.points.push_back({x, std::log10(r.rate_hz)});
+                time.points.push_back({x, r.p999_us});
+            }
+            rates.curves.push_back(rate);
+            times.curves.push_back(time);
+        }
+    }
+    return {.title = "Table 1: force rate by the size of the mesh",
+            .remark = "one core; a point and balls, wandering at 55 mm/s (slow) and 220 mm/s (fast)",
+            .x_label = "log10 of the number of triangles",
+            .panels = {rates, times}};
+}
+
+// The seed's filters: a bell, and the frustums by which it is replaced.
+plot::Plot filter_figure() {
+    constexpr float kRadius = 3e-3F, kWidth = 4e-3F, kFar = 1e-4F;
+    const RefineFilter bell = RefineFilter::bell(kRadius, kWidth, kFar);
+    const std::array<RefineFilter::Point, 4> corner{{{kRadius, 0.1F * kFar},
+                                                     {kRadius + 0.5F * kWidth, 0.4F * kFar},
+                                                     {kRadius + kWidth, 0.7F * kFar},
+                                                     {kRadius + 2.0F * kWidth, kFar}}};
+    const RefineFilter frustums = RefineFilter::frustums(kRadius, corner);
+    plot::Curve exact{.name = "1 - exp(-x^2)", .dashed = true}, by_points{.name = "bell, as it is computed"},
+        pieces{.name = "multiple frustums"};
+    for (int i = 0; i <= 400; ++i) {
+        const float d = 15e-3F * static_cast<float>(i) / 400.0F, x = std::max(d - kRadius, 0.0F) / kWidth;
+        const double mm = 1e3 * static_cast<double>(d);
+        exact.points.push_back({mm, 1e6 * static_cast<double>(kFar * (1.0F - std::exp(-x * x)))});
+        by_points.points.push_back({mm, 1e6 * static_cast<double>(bell.allowed_m(d))});
+        pieces.points.push_back({mm, 1e6 * static_cast<double>(frustums.allowed_m(d))});
+    }
+    return {.title = "Figure 3: how coarse the surface may be, by the distance from the probe",
+            .remark = "full detail within 3 mm; distance: the largest of |dx|, |dy|, |dz|",
+            .x_label = "distance from the probe, mm",
+            .panels = {{.y_label = "allowed error, um", .curves = {exact, by_points, pieces}}}};
+}
+
+std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz, quality(r).c_str()); }
+
+// Ours, beside the seed's where it has that size: the slow hand, as there.
+std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
+    std::vector<SummaryRow> table;
+    for (const TouchRow& r : rows) {
+        if (r.hand != kHands[0].name) continue;
+        if (table.empty() || table.back().quantity != r.mesh) {
+            SummaryRow row{.figure = "T1", .quantity = r.mesh};
+            for (const Size& size : kSizes) {
+                if (r.mesh != size.name || *size.seed_off == '\0') continue;
+                row.seed = std::string(size.seed_off) + " -> " + size.seed_on;
+                row.differs =
+                    "a mesh of ours, as large as there; the seed without -> with adaptation, ours without";
+            }
+            table.push_back(row);
+        }
+        std::string& ours = table.back().ours;
+        ours += (ours.empty() ? "" : "; ") + r.tool + ": " + rate_text(r);
+    }
+    return table;
+}
+
+}  // namespace
+
+int reproduce_surface(const SurfaceExperiment& e) {
+    // Now, and not after some minutes.
+    write_whole(e.out / ".writable", "");
+    std::filesystem::remove(e.out / ".writable");
+    const ScratchFolder scratch;
+    const auto scene = scratch.path() / "surface.tact";
+    std::vector<TouchRow> rows;
+    const auto add = [&](const std::string& name, const std::vector<std::string>& words) {
+        static_cast<void>(bake_to_measure(words, scene));
+        const std::vector<TouchRow> more = touch(name, scene, e.quick);
+        rows.insert(rows.end(), more.begin(), more.end());
+    };
+    for (const auto& mesh : e.meshes)
+        add(mesh.filename().string(), {"touch", std::filesystem::absolute(mesh).string(), "--unit", e.unit});
+    for (const Size& size : kSizes) {
+        if (!e.meshes.empty() || size.triangles > (e.quick ? 100'000 : e.triangles_max)) continue;
+        add(size.name, {"demo", "touch", "--shape", size.shape, "--parts", std::to_string(size.parts)});
+    }
+    write_whole(e.out / "table1.csv", csv_of(rows));
+    save(table_figure(rows), e.out / "table1.png");
+    save(filter_figure(), e.out / "fig3_filters.png");
+    const std::vector<SummaryRow> table = summary_of(rows);
+    const nlohmann::json report{{"rows", json_of(rows)}, {"summary", json_of(table)}};
+    write_whole(e.out / "surface.json", report.dump(2) + "\n");
+    std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
+                (e.out / "surface.json").c_str());
+    return 0;
+}
+
+}  // namespace tact::launch

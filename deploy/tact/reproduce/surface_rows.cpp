@@ -1,0 +1,71 @@
+#include "deploy/tact/reproduce/surface_rows.hpp"
+
+#include <algorithm>
+
+#include "deploy/tact/reproduce/text.hpp"
+
+namespace tact::launch {
+
+TouchRow row_of(const std::vector<TouchStep>& steps) {
+    TouchRow row;
+    row.steps = steps.size();
+    if (steps.empty()) return row;
+    double sum_us = 0.0, over = 0.0, touching = 0.0;
+    for (const TouchStep& s : steps) {
+        sum_us += s.us;
+        over += s.us > 1000.0 ? 1.0 : 0.0;
+        touching += s.force_n.squaredNorm() > 0.0 ? 1.0 : 0.0;
+    }
+    const auto count = static_cast<double>(steps.size());
+    row.rate_hz = 1e6 * count / std::max(sum_us, 1e-9);
+    row.p50_us = percentile_us(steps, 0.5);
+    row.p99_us = percentile_us(steps, 0.99);
+    row.p999_us = percentile_us(steps, 0.999);
+    row.max_us = percentile_us(steps, 1.0);
+    row.over_1ms = over / count;
+    row.touching = touching / count;
+    row.unsettled = static_cast<double>(unsettled_cycles(steps)) / count;
+    row.jammed = jammed_cycles(steps);
+    return row;
+}
+
+std::string quality(const TouchRow& row) {
+    if (row.rate_hz < 1000.0) return "breaks";
+    return row.over_1ms > 1e-3 || row.jammed > 0 ? "bad" : "good";
+}
+
+std::string csv_of(const std::vector<TouchRow>& rows) {
+    std::string csv =
+        "mesh,triangles,tool,mode,hand,steps,rate_hz,p50_us,p99_us,p999_us,max_us,over_1ms_share,"
+        "touching_share,unsettled_share,jammed_cycles,quality\n";
+    for (const TouchRow& r : rows)
+        csv += text("\"%s\",%zu,%s,%s,%s,%zu,%.0f,%.3f,%.3f,%.3f,%.3f,%.5f,%.4f,%.5f,%llu,%s\n",
+                    r.mesh.c_str(), r.triangles, r.tool.c_str(), r.mode.c_str(), r.hand.c_str(), r.steps,
+                    r.rate_hz, r.p50_us, r.p99_us, r.p999_us, r.max_us, r.over_1ms, r.touching, r.unsettled,
+                    static_cast<unsigned long long>(r.jammed), quality(r).c_str());
+    return csv;
+}
+
+nlohmann::json json_of(const std::vector<TouchRow>& rows) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const TouchRow& r : rows)
+        all.push_back({{"mesh", r.mesh},
+                       {"triangles", r.triangles},
+                       {"tool", r.tool},
+                       {"mode", r.mode},
+                       {"hand", r.hand},
+                       {"steps", r.steps},
+                       {"rate_hz", r.rate_hz},
+                       {"us_p50", r.p50_us},
+                       {"us_p99", r.p99_us},
+                       {"us_p999", r.p999_us},
+                       {"us_max", r.max_us},
+                       {"over_1ms_share", r.over_1ms},
+                       {"touching_share", r.touching},
+                       {"unsettled_share", r.unsettled},
+                       {"jammed_cycles", r.jammed},
+                       {"quality", quality(r)}});
+    return all;
+}
+
+}  // namespace tact::launch
