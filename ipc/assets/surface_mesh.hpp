@@ -92,6 +92,10 @@ public:
         return unit_normal(normal_[vertex]);
     }
 
+    // All of them, 3 a vertex and 3 a triangle: for the forest over the same surface.
+    [[nodiscard]] std::span<const float> all_positions_m() const noexcept { return position_m_; }
+    [[nodiscard]] std::span<const std::uint32_t> all_corners() const noexcept { return corner_; }
+
     // Leaves whose boxes reach into the ball, as codes of SurfaceNode. False: `out` is full and some are left
     // out. count is how many there are in `out`.
     bool leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,

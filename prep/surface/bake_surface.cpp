@@ -30,6 +30,26 @@ void place(const SurfaceInput& input, SceneMeta& meta) {
     meta.centre_model_m[2] = 0.5 * (low.z() + high.z());
 }
 
+// Of one forest over the triangles of the surface, whose vertices are renumbered in its order.
+VertexForestData plant(SurfaceData& surface, double locality, ForestShape& shape, const Progress& progress) {
+    TriangleMesh mesh;
+    mesh.position_m = std::move(surface.position_m);
+    mesh.triangle = std::move(surface.triangle);
+    BuiltForest built = build_forest(mesh, {.locality = locality}, progress);
+    std::vector<OctNormal> normal(built.order.size());
+    for (std::size_t v = 0; v < normal.size(); ++v) normal[v] = surface.normal[built.order[v]];
+    surface.normal = std::move(normal);
+    surface.position_m = std::move(mesh.position_m);
+    surface.triangle = std::move(mesh.triangle);
+    shape = shape_of(view_forest(built.data, surface.position_m, surface.triangle), surface.triangle);
+    return std::move(built.data);
+}
+
+std::size_t bytes_of(const VertexForestData& forest) {
+    return forest.root_first.size() * sizeof(std::uint32_t) + forest.node.size() * sizeof(ForestNode) +
+           forest.triangle.size() * sizeof(ForestTriangle);
+}
+
 }  // namespace
 
 BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress& progress) {
@@ -41,25 +61,48 @@ BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress
 
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
-    const SurfaceData data = build_surface(input.mesh, progress);
-    baked.build_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    SurfaceData data = build_surface(input.mesh, progress);
+    const auto built = Clock::now();
+    baked.build_s = std::chrono::duration<double>(built - begin).count();
+    VertexForestData forest;
+    if (input.forest) {
+        if (input.compare_locality) {
+            SurfaceData copy = data;
+            static_cast<void>(plant(copy, 0.0, baked.shape_without_locality.emplace(), progress));
+        }
+        const auto planting = Clock::now();
+        forest = plant(data, ForestSettings().locality, baked.shape.emplace(), progress);
+        baked.forest_s = std::chrono::duration<double>(Clock::now() - planting).count();
+    }
     baked.vertices = data.position_m.size() / 3;
     baked.triangles = data.triangle.size() / 3;
     baked.closed = data.closed;
-    const std::size_t bytes =
-        data.position_m.size() * sizeof(float) + data.normal.size() * sizeof(OctNormal) +
-        data.triangle.size() * sizeof(std::uint32_t) + data.node.size() * sizeof(SurfaceNode);
+    const std::size_t bytes = data.position_m.size() * sizeof(float) +
+                              data.normal.size() * sizeof(OctNormal) +
+                              data.triangle.size() * sizeof(std::uint32_t) +
+                              data.node.size() * sizeof(SurfaceNode) + (input.forest ? bytes_of(forest) : 0);
     baked.bytes_per_triangle = static_cast<double>(bytes) / static_cast<double>(baked.triangles);
     char line[200];
     std::snprintf(line, sizeof line, "surface: %zu vertices, %zu triangles, %s, %.1f bytes a triangle\n",
                   baked.vertices, baked.triangles, baked.closed ? "closed" : "open",
                   baked.bytes_per_triangle);
     baked.note += line;
+    const auto say_shape = [&](const std::optional<ForestShape>& shape, const char* how) {
+        if (!shape) return;
+        std::snprintf(line, sizeof line,
+                      "forest%s: %u trees, %u deep; reach %.2f of the root of the area below, one in a "
+                      "hundred more than %.2f\n",
+                      how, shape->trees, shape->depth, shape->mean, shape->p99);
+        baked.note += line;
+    };
+    say_shape(baked.shape, "");
+    say_shape(baked.shape_without_locality, " without locality");
     std::snprintf(line, sizeof line, "hand: 1 mm is %.6g m of the model; the diagonal is %.0f mm wide\n",
                   1e-3 / baked.meta.world_per_model, 1e3 * input.size_m);
     baked.note += line;
     write_meta(out, baked.meta, baked.note);
     write_surface(out, data);
+    if (input.forest) write_forest(out, forest);
     if (!input.picture) return baked;
     TriangleMesh drawn = std::move(input.mesh);
     if (input.vertices_max > 0 && drawn.vertices() > input.vertices_max) {

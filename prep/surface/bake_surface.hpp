@@ -1,6 +1,8 @@
 // Puts a scene to touch together: the surface at full resolution, its picture, and how the hand's world maps
 // onto it.
 //
+// Forest    with SURF, FRST: the same triangles in the same order, so that how fine the surface is may follow the
+//           tool. Its vertices are then numbered as the leaves of the forest, and are stored once.
 // Place     the mesh's diagonal is size_m wide in the hand's world, and its top (the largest y) lies kBelowM
 //           below the middle of the hand's space, so that a hand at rest is outside.
 // Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
@@ -8,12 +10,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/progress.hpp"
+#include "prep/surface/forest_builder.hpp"
 
 namespace tact {
 
@@ -23,6 +27,8 @@ struct SurfaceInput {
     TriangleMesh mesh;              // metres, y up, counter-clockwise seen from outside
     std::vector<std::string> note;  // lines "key: value"
     double size_m = 0.15;
+    bool forest = true;                    // false: the surface can be touched at full resolution alone
+    bool compare_locality = false;         // the forest is also built without locality, to see what that does
     bool picture = true;                   // false: nothing to look at, for measurements
     std::uint32_t vertices_max = 500'000;  // of the picture; 0: all
 };
@@ -33,8 +39,10 @@ struct BakedSurface {
     std::size_t vertices = 0, triangles = 0;
     std::uint32_t picture_vertices = 0;
     bool closed = false;
-    double build_s = 0.0;  // of surface and tree
-    double bytes_per_triangle = 0.0;
+    double build_s = 0.0;             // of surface and tree
+    double forest_s = 0.0;            // of the forest; 0: none
+    double bytes_per_triangle = 0.0;  // of all that the controller maps
+    std::optional<ForestShape> shape, shape_without_locality;
 };
 
 BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress& progress = {});

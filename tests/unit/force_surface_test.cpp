@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 #include "prep/surface/bake_surface.hpp"
@@ -435,16 +436,36 @@ TEST(Surface, ABakedSceneIsLoadedAndLiesBelowTheHand) {
     const BakedSurface baked = bake_surface(std::move(input), out);
     EXPECT_TRUE(baked.closed);
     EXPECT_EQ(baked.triangles, 2000U);
-    EXPECT_LT(baked.bytes_per_triangle, 40.0);
+    EXPECT_LT(baked.bytes_per_triangle, 100.0);
+    ASSERT_TRUE(baked.shape.has_value());
+    EXPECT_FALSE(baked.shape_without_locality.has_value());
     const std::vector<std::byte> bytes = out.to_bytes();
     const SceneFile file = SceneFile::from_bytes(bytes, "baked.tact");
     EXPECT_EQ(file.count({'M', 'E', 'S', 'H'}), 1U);
+    EXPECT_EQ(file.count({'F', 'R', 'S', 'T'}), 1U);
     const auto model = load_surface_model(file, {});
     const SurfaceMesh mesh = read_surface(file);
     const Vec3 low = model->meta().to_world(mesh.low_m()), high = model->meta().to_world(mesh.high_m());
     EXPECT_NEAR((high - low).norm(), 0.15, 1e-6);
     EXPECT_NEAR(high.y(), -SurfaceInput::kBelowM, 1e-6);
     EXPECT_NEAR((low + high).x(), 0.0, 1e-6);
+    const VertexForest forest = read_forest(file, mesh.all_positions_m(), mesh.all_corners());
+    EXPECT_EQ(forest.triangles(), 2000U);  // and it is the same surface, or the reader would refuse it
+    // Vertices were renumbered: a normal still stands out of the sphere where it belongs.
+    for (std::uint32_t v = 0; v < mesh.vertices(); ++v)
+        ASSERT_GT(mesh.normal(v).dot(mesh.position_m(v).normalized()), 0.5);
+}
+
+TEST(Surface, ASceneWithoutForestIsSmallerAndCanStillBeTouched) {
+    SceneWriter out;
+    SurfaceInput input;
+    input.mesh = rough_sphere(6);
+    input.forest = input.picture = false;
+    EXPECT_LT(bake_surface(std::move(input), out).bytes_per_triangle, 40.0);
+    const std::vector<std::byte> bytes = out.to_bytes();
+    const SceneFile file = SceneFile::from_bytes(bytes, "baked.tact");
+    EXPECT_EQ(file.count({'F', 'R', 'S', 'T'}), 0U);
+    EXPECT_NE(load_surface_model(file, {}), nullptr);
 }
 
 TEST(Surface, AWrongSceneOrSettingIsRefused) {
