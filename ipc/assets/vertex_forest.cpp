@@ -12,8 +12,8 @@ constexpr SectionTag kForestTag{'F', 'R', 'S', 'T'};
 constexpr std::uint32_t kForestVersion = 1;
 
 struct ForestHeader {
-    std::uint32_t leaves, trees, nodes, triangles;
-    std::uint32_t reserved[12];
+    std::uint32_t leaves, trees, nodes, triangles, needs;
+    std::uint32_t reserved[11];  // zero
 };
 static_assert(sizeof(ForestHeader) == 64);
 
@@ -62,7 +62,9 @@ private:
         float distance = 0.0F;
         for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(at[i] - up.position_m[i]));
         const float reach = b.is_leaf() ? 0.0F : forest_.node(b.node).reach_m;
-        if (!(distance + reach <= up.reach_m * 1.00001F + 1e-30F))
+        const bool spans =
+            b.is_leaf() || distance + forest_.node(b.node).span_m <= up.span_m * 1.00001F + 1e-30F;
+        if (!(distance + reach <= up.reach_m * 1.00001F + 1e-30F) || !spans)
             fail("node " + std::to_string(parent) + " does not reach over its children");
     }
     void check_node(const VertexForest::Branch& b, std::uint32_t parent) {
@@ -74,15 +76,21 @@ private:
             if (!(std::abs(x) <= 1e7F)) bad("position");
         if (!(node.error_m >= 0.0F && node.error_m <= 1e7F)) bad("error");
         if (!(node.reach_m >= 0.0F && node.reach_m <= 1e8F)) bad("reach");
+        if (!(node.own_span_m >= 0.0F && node.own_span_m <= node.span_m && node.span_m <= 1e9F)) bad("span");
+        if (!(node.deviation_m >= 0.0F && node.deviation_m <= 1e8F)) bad("deviation");
+        if (node.first != b.first || node.end != b.end) bad("range of leaves");
         if (!(node.middle > b.first && node.middle < b.end)) bad("middle");
         if (node.parent != parent) bad("parent");
+        if (node.reserved != 0) bad("reserved field");
         if (node.number == 0 || node.number > forest_.nodes() || number_seen_[node.number]) bad("number");
         number_seen_[node.number] = true;
         if (parent != kNoForestNode) {
             const ForestNode& up = forest_.node(parent);
             if (node.number >= up.number) bad("number");
             if (node.error_m > up.error_m) bad("error");
+            if (node.deviation_m > up.deviation_m) bad("deviation");
         }
+        check_needs(b.node);
         const std::uint32_t next =
             b.node + 1 < forest_.nodes() ? forest_.node(b.node + 1).first_triangle : always_;
         if (node.first_triangle > next || next > always_) bad("list of triangles");
@@ -97,6 +105,11 @@ private:
                 fail("triangle " + std::to_string(t.number) + " does not appear where node " +
                      std::to_string(b.node) + " is split");
         }
+    }
+    void check_needs(std::uint32_t node) const {
+        for (const std::uint32_t need : forest_.needs_of(node))
+            if (need >= forest_.nodes() || forest_.node(need).number <= forest_.node(node).number)
+                fail("node " + std::to_string(node) + " needs another that was merged before it");
     }
     void take(const ForestTriangle& t) {
         if (t.number >= forest_.triangles() || triangle_seen_[t.number])
@@ -123,9 +136,10 @@ std::span<const T> forest_view_of(std::span<const std::byte>& bytes, std::uint64
 }  // namespace
 
 VertexForest::VertexForest(std::span<const std::uint32_t> root_first, std::span<const ForestNode> node,
-                           std::span<const ForestTriangle> triangle, std::span<const float> position_m,
-                           std::span<const std::uint32_t> corner, const std::string& where)
-    : root_first_(root_first), node_(node), triangle_(triangle), position_m_(position_m) {
+                           std::span<const std::uint32_t> need, std::span<const ForestTriangle> triangle,
+                           std::span<const float> position_m, std::span<const std::uint32_t> corner,
+                           const std::string& where)
+    : root_first_(root_first), node_(node), need_(need), triangle_(triangle), position_m_(position_m) {
     check(corner, where);
 }
 
@@ -156,6 +170,11 @@ void VertexForest::check(std::span<const std::uint32_t> corner, const std::strin
         --always;
     }
     always_ = static_cast<std::uint32_t>(always);
+    for (std::size_t i = 0; i < node_.size(); ++i) {
+        const std::size_t next = i + 1 < node_.size() ? node_[i + 1].first_need : need_.size();
+        if (node_[i].first_need > next || next > need_.size() || (i == 0 && node_[0].first_need != 0))
+            fail("its lists of needs are out of order");
+    }
     if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not begin at 0");
     if (node_.empty() && always != 0) fail("a triangle has two corners in one leaf");
     ForestChecker(*this, always_, corner, where).run();
@@ -169,7 +188,8 @@ std::uint32_t VertexForest::tree_of(std::uint32_t leaf) const {
 
 VertexForest view_forest(const VertexForestData& data, std::span<const float> position_m,
                          std::span<const std::uint32_t> corner) {
-    return {data.root_first, data.node, data.triangle, position_m, corner, "the forest of a surface"};
+    return {data.root_first,          data.node, data.need, data.triangle, position_m, corner,
+            "the forest of a surface"};
 }
 
 void write_forest(SceneWriter& out, const VertexForestData& data) {
@@ -178,10 +198,12 @@ void write_forest(SceneWriter& out, const VertexForestData& data) {
                            static_cast<std::uint32_t>(data.root_first.size() - 1),
                            static_cast<std::uint32_t>(data.node.size()),
                            static_cast<std::uint32_t>(data.triangle.size()),
+                           static_cast<std::uint32_t>(data.need.size()),
                            {}});
-    bytes.put_all(data.root_first);
     bytes.put_all(data.node);
     bytes.put_all(data.triangle);
+    bytes.put_all(data.need);
+    bytes.put_all(data.root_first);
     out.add(kForestTag, kForestVersion, 0, bytes.take());
 }
 
@@ -198,13 +220,15 @@ VertexForest read_forest(const SceneFile& file, std::span<const float> position_
         in.fail("it does not lie at a multiple of four bytes");
     const std::uint64_t trees = std::uint64_t{header.trees} + 1;
     if (bytes.size() != 4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} +
-                            sizeof(ForestTriangle) * std::uint64_t{header.triangles})
+                            sizeof(ForestTriangle) * std::uint64_t{header.triangles} +
+                            4 * std::uint64_t{header.needs})
         in.fail("its length is not that of the nodes and triangles that it declares");
-    const auto root_first = forest_view_of<std::uint32_t>(bytes, trees);
     const auto node = forest_view_of<ForestNode>(bytes, header.nodes);
     const auto triangle = forest_view_of<ForestTriangle>(bytes, header.triangles);
+    const auto need = forest_view_of<std::uint32_t>(bytes, header.needs);
+    const auto root_first = forest_view_of<std::uint32_t>(bytes, trees);
     if (root_first.back() != header.leaves) in.fail("its trees do not hold its leaves");
-    return {root_first, node, triangle, position_m, corner, where};
+    return {root_first, node, need, triangle, position_m, corner, where};
 }
 
 }  // namespace tact

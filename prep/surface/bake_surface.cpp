@@ -46,8 +46,8 @@ VertexForestData plant(SurfaceData& surface, double locality, ForestShape& shape
 }
 
 std::size_t bytes_of(const VertexForestData& forest) {
-    return forest.root_first.size() * sizeof(std::uint32_t) + forest.node.size() * sizeof(ForestNode) +
-           forest.triangle.size() * sizeof(ForestTriangle);
+    return (forest.root_first.size() + forest.need.size()) * sizeof(std::uint32_t) +
+           forest.node.size() * sizeof(ForestNode) + forest.triangle.size() * sizeof(ForestTriangle);
 }
 
 }  // namespace

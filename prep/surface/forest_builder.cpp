@@ -17,6 +17,8 @@ float chebyshev(const float* a, const float* b) {
     return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
+float distance(const float* a, const float* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
 // The largest of any run of numbers: a table of powers of two over blocks, and a look through two blocks.
 class RangeMax {
 public:
@@ -64,6 +66,7 @@ public:
         link();
         measure();
         order();
+        write_needs();
         place_triangles();
         return std::move(out_);
     }
@@ -83,12 +86,34 @@ private:
             count_[made] = count_[child_[s][0]] + count_[child_[s][1]];
             now[steps_[s].kept] = made;
         }
+        find_jumps();
+    }
+    // Of each place its parent, or an ancestor farther up (Myers 1983): any ancestor is then found in a number
+    // of steps that grows with the logarithm of the depth, where a fan's tree is as deep as it is wide.
+    void find_jumps() {
+        std::vector<std::uint32_t> depth(parent_.size(), 0);
+        jump_.resize(parent_.size());
+        for (auto p = static_cast<std::uint32_t>(parent_.size()); p-- > 0;) {  // parents first
+            const std::uint32_t up = parent_[p];
+            if (up == kNoForestNode) {
+                jump_[p] = p;
+                continue;
+            }
+            depth[p] = depth[up] + 1;
+            const std::uint32_t far = jump_[up];
+            jump_[p] = depth[up] - depth[far] == depth[far] - depth[jump_[far]] ? jump_[far] : up;
+        }
+    }
+    // Places of nodes rise in the order of the merges, and above all leaves. The highest ancestor below `limit`.
+    [[nodiscard]] std::uint32_t highest(std::uint32_t p, std::uint32_t limit) const {
+        while (parent_[p] < limit) p = jump_[p] != p && jump_[p] < limit ? jump_[p] : parent_[p];
+        return p;
     }
     [[nodiscard]] const float* at(std::uint32_t place) const {
         return place < leaves_ ? &mesh_.position_m[3 * std::size_t{place}]
                                : steps_[place - leaves_].position_m.data();
     }
-    // Reach and error of every node, from the leaves up.
+    // Reach, error and deviation of every node, from the leaves up.
     void measure() {
         reach_.assign(std::size_t{leaves_} + nodes_, 0.0F);
         for (std::size_t t = 0; t < mesh_.triangles(); ++t) {
@@ -101,14 +126,97 @@ private:
         }
         float largest = 0.0F;
         for (const float x : mesh_.position_m) largest = std::max(largest, std::abs(x));
+        deviation_.assign(nodes_, 0.0F);
         error_.assign(nodes_, largest * 1e-9F);  // never 0: where everything is asked for, flat places too
         for (std::uint32_t s = 0; s < nodes_; ++s) {
             const std::uint32_t made = leaves_ + s;
             error_[s] = std::max(error_[s], steps_[s].own_error_m);
             for (const std::uint32_t c : child_[s]) {
+                deviation_[s] = std::max(
+                    deviation_[s],
+                    (distance(at(made), at(c)) + (c >= leaves_ ? deviation_[c - leaves_] : 0.0F)) * kWider);
                 reach_[made] = std::max(reach_[made], (chebyshev(at(made), at(c)) + reach_[c]) * kWider);
                 if (c >= leaves_) error_[s] = std::max(error_[s], error_[c - leaves_]);
             }
+        }
+    }
+    // What stands between the merges of the two ends of an edge: where a merge on one side is followed by one on
+    // the other, its star holds what the other one took away. Merges in a row on one side are parents and
+    // children, which needs no word.
+    void collect_needs() {
+        need_head_.assign(nodes_, kNoForestNode);
+        for (std::size_t t = 0; t < mesh_.triangle.size(); t += 3)
+            for (std::size_t i = 0; i < 3; ++i)
+                walk_up(mesh_.triangle[t + i], mesh_.triangle[t + (i + 1) % 3]);
+    }
+    void walk_up(std::uint32_t a, std::uint32_t b) {
+        while (parent_[a] != parent_[b]) {
+            if (parent_[a] > parent_[b]) std::swap(a, b);  // the next merge is on the side of a
+            const std::uint32_t other = parent_[b];
+            a = highest(a, other);
+            if (other != kNoForestNode && parent_[a] != other) add_need(a - leaves_, other - leaves_);
+        }
+    }
+    void add_need(std::uint32_t of, std::uint32_t need) {
+        for (std::uint32_t e = need_head_[of]; e != kNoForestNode; e = need_[e][1])
+            if (need_[e][0] == need) return;
+        need_.push_back({need, need_head_[of]});
+        need_head_[of] = static_cast<std::uint32_t>(need_.size() - 1);
+    }
+    // In their order, without those that another one brings as its ancestor.
+    void write_needs() {
+        collect_needs();
+        std::vector<ForestNode>& node = out_.data.node;
+        std::vector<std::uint32_t> place(nodes_);
+        for (std::uint32_t s = 0; s < nodes_; ++s) place[number_[leaves_ + s]] = s;
+        std::vector<std::uint32_t> few;
+        for (std::uint32_t n = 0; n < nodes_; ++n) {
+            node[n].first_need = static_cast<std::uint32_t>(out_.data.need.size());
+            few.clear();
+            for (std::uint32_t e = need_head_[place[n]]; e != kNoForestNode; e = need_[e][1])
+                few.push_back(number_[leaves_ + need_[e][0]]);
+            // Nodes are numbered in the order of a walk: what lies below one follows it.
+            std::sort(few.begin(), few.end());
+            for (std::size_t i = 0; i < few.size(); ++i) {
+                const bool brought = i + 1 < few.size() && node[few[i + 1]].first >= node[few[i]].first &&
+                                     node[few[i + 1]].end <= node[few[i]].end;
+                if (!brought) out_.data.need.push_back(few[i]);
+            }
+        }
+        need_ = {};
+    }
+    // Spans: a triangle has each of its corners at any of the places that stand for it in turn until the triangle
+    // goes; then of what lies below.
+    void measure_spans(const std::vector<std::uint32_t>& node_of_triangle) {
+        constexpr int kWalked = 64;  // of deeper trees the reach tells
+        std::vector<std::uint32_t> place(nodes_);
+        for (std::uint32_t s = 0; s < nodes_; ++s) place[number_[leaves_ + s]] = leaves_ + s;
+        std::vector<float> own(nodes_, 0.0F), span(nodes_, 0.0F);
+        for (std::size_t t = 0; t < node_of_triangle.size(); ++t) {
+            if (node_of_triangle[t] == nodes_) continue;
+            const std::uint32_t of = place[node_of_triangle[t]];
+            float& widest = own[of - leaves_];
+            for (std::size_t i = 0; i < 3; ++i) {
+                std::uint32_t now = mesh_.triangle[3 * t + i];
+                int left = kWalked;
+                for (; now < of && left > 0; --left) {
+                    widest = std::max(widest, chebyshev(at(of), at(now)) * kWider);
+                    now = parent_[now];
+                }
+                if (now < of) {
+                    const std::uint32_t top = highest(now, of);
+                    widest = std::max(widest, (chebyshev(at(of), at(top)) + reach_[top]) * kWider);
+                }
+            }
+        }
+        for (std::uint32_t s = 0; s < nodes_; ++s) {
+            const std::uint32_t made = leaves_ + s;
+            span[s] = std::max(span[s], own[s]);
+            for (const std::uint32_t c : child_[s])
+                if (c >= leaves_)
+                    span[s] = std::max(span[s], (chebyshev(at(made), at(c)) + span[c - leaves_]) * kWider);
+            out_.data.node[number_[made]].span_m = span[s];
+            out_.data.node[number_[made]].own_span_m = own[s];
         }
     }
     // Gives leaves and nodes their numbers: trees along a space-filling curve, each walked node first.
@@ -136,14 +244,22 @@ private:
                 }
                 const std::uint32_t s = p - leaves_;
                 number_[p] = next_node;
+                const auto first = static_cast<std::uint32_t>(out_.order.size());
                 out_.data.node[next_node++] = {
-                    steps_[s].position_m,
-                    error_[s],
-                    reach_[p],
-                    static_cast<std::uint32_t>(out_.order.size()) + count_[child_[s][0]],
-                    parent_[p] == kNoForestNode ? kNoForestNode : number_[parent_[p]],
-                    s + 1,
-                    0};
+                    .position_m = steps_[s].position_m,
+                    .error_m = error_[s],
+                    .deviation_m = deviation_[s],
+                    .reach_m = reach_[p],
+                    .span_m = 0.0F,
+                    .own_span_m = 0.0F,
+                    .first = first,
+                    .middle = first + count_[child_[s][0]],
+                    .end = first + count_[p],
+                    .parent = parent_[p] == kNoForestNode ? kNoForestNode : number_[parent_[p]],
+                    .number = s + 1,
+                    .first_triangle = 0,
+                    .first_need = 0,
+                    .reserved = 0};
                 stack.push_back(child_[s][1]);
                 stack.push_back(child_[s][0]);
             }
@@ -185,23 +301,24 @@ private:
             merge[out_.data.node[i].middle] = out_.data.node[i].number;
             node_of[out_.data.node[i].number] = i;
         }
-        const RangeMax highest(merge);
-        std::vector<float> position(mesh_.position_m.size());
-        for (std::uint32_t v = 0; v < leaves_; ++v)
-            std::copy_n(&mesh_.position_m[3 * std::size_t{out_.order[v]}], 3, &position[3 * std::size_t{v}]);
-        mesh_.position_m = std::move(position);
+        const RangeMax highest_merge(merge);
         std::vector<std::uint32_t> node(mesh_.triangles());
         std::vector<std::uint32_t> first(nodes_ + std::size_t{2}, 0);
         for (std::size_t t = 0; t < mesh_.triangles(); ++t) {
             std::array<std::uint32_t, 3> v{};
-            for (std::size_t i = 0; i < 3; ++i)
-                v[i] = mesh_.triangle[3 * t + i] = number_[mesh_.triangle[3 * t + i]];
+            for (std::size_t i = 0; i < 3; ++i) v[i] = number_[mesh_.triangle[3 * t + i]];
             std::sort(v.begin(), v.end());
             const std::uint32_t soonest =
-                std::min(highest.of(v[0] + 1, v[1] + 1), highest.of(v[1] + 1, v[2] + 1));
+                std::min(highest_merge.of(v[0] + 1, v[1] + 1), highest_merge.of(v[1] + 1, v[2] + 1));
             node[t] = soonest == kWall ? nodes_ : node_of[soonest];
             ++first[node[t] + 1];
         }
+        measure_spans(node);
+        std::vector<float> position(mesh_.position_m.size());
+        for (std::uint32_t v = 0; v < leaves_; ++v)
+            std::copy_n(&mesh_.position_m[3 * std::size_t{out_.order[v]}], 3, &position[3 * std::size_t{v}]);
+        mesh_.position_m = std::move(position);
+        for (std::uint32_t& v : mesh_.triangle) v = number_[v];
         for (std::size_t i = 0; i <= nodes_; ++i) first[i + 1] += first[i];
         for (std::uint32_t i = 0; i < nodes_; ++i) out_.data.node[i].first_triangle = first[i];
         out_.data.triangle.resize(mesh_.triangles());
@@ -216,8 +333,10 @@ private:
     const std::vector<Contraction> steps_;
     const std::uint32_t leaves_, nodes_;
     std::vector<std::array<std::uint32_t, 2>> child_;
-    std::vector<std::uint32_t> parent_, count_, number_;
-    std::vector<float> reach_, error_;
+    std::vector<std::uint32_t> parent_, count_, number_, jump_;
+    std::vector<float> reach_, error_, deviation_;
+    std::vector<std::uint32_t> need_head_;            // of each node, in need_
+    std::vector<std::array<std::uint32_t, 2>> need_;  // node, and the next one of the list
     BuiltForest out_;
 };
 

@@ -112,6 +112,18 @@ TEST(VertexForest, WhatIsWrittenIsReadAndNothingElseIsBelieved) {
     refuses("an error above its parent's", [](auto& d) { d.node[1].error_m = 9.0F; });
     refuses("no position", [](auto& d) { d.node[2].position_m[1] = NAN; });
     refuses("a short reach", [](auto& d) { d.node[0].reach_m *= 0.5F; });
+    refuses("a short span", [](auto& d) { d.node[0].span_m = 0.0F; });
+    refuses("a deviation above its parent's", [](auto& d) { d.node[1].deviation_m = 9e3F; });
+    refuses("another first leaf", [](auto& d) { d.node[1].first += 1; });
+    refuses("another end", [](auto& d) { d.node[0].end -= 1; });
+    refuses("needs out of order", [](auto& d) { d.node[3].first_need = 1000; });
+    refuses("a reserved word", [](auto& d) { d.node[3].reserved = 1; });
+    refuses("a need that was merged before", [](auto& d) {
+        d.need.insert(d.need.begin(), 0U);
+        for (auto& n : d.node) ++n.first_need;
+        d.node[0].first_need = 0;  // the root's, and it is itself
+    });
+    refuses("a need that is none", [](auto& d) { d.need.push_back(100000); });
     refuses("triangles out of order", [](auto& d) { d.node[3].first_triangle = 1000; });
     refuses("a triangle elsewhere", [](auto& d) { std::swap(d.triangle.front(), d.triangle.back()); });
     refuses("a triangle twice", [](auto& d) { d.triangle[1] = d.triangle[0]; });

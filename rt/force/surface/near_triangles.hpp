@@ -21,6 +21,7 @@ struct NearTriangles {
     std::array<float, 3> low_m{}, high_m{};  // the surface within this box is there, with what hangs on it
     bool complete = false;                   // false: there were more than fit
     bool full_detail = false;                // all in the filter's radius is as in the full mesh
+    float deviation_m = 0.0F;                // of these triangles from the full surface, at the most
     std::uint64_t step = 0;                  // of the refinement, from 1; 0: none yet
     std::uint32_t count = 0;
     std::vector<NearTriangle> triangle;  // `count` of them mean something; never resized

@@ -9,12 +9,17 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kCascadeMax = 1U << 16;  // of places: longer cascades end in the middle
+constexpr std::uint32_t kCascadeMax = 1U << 16;  // of nodes in a row; longer ones end in the middle
+constexpr std::size_t kPathMax = 1U << 12;       // deeper trees are not followed to their end in near()
 
 }  // namespace
 
 Refinement::Refinement(const VertexForest& forest, const RefineSettings& settings)
-    : forest_(forest), settings_(settings), near_(settings.near_max) {
+    : forest_(forest),
+      settings_(settings),
+      frontier_(std::min(settings.nodes_max, forest.leaves())),
+      mergeable_(std::min(settings.nodes_max, forest.leaves())),
+      near_(settings.near_max) {
     settings_.nodes_max = std::min(settings_.nodes_max, forest.leaves());
     if (settings_.nodes_max < forest.roots())
         throw StartupError("refine a surface",
@@ -22,246 +27,141 @@ Refinement::Refinement(const VertexForest& forest, const RefineSettings& setting
                                " vertices, and no more than " + std::to_string(settings.nodes_max) +
                                " may be active",
                            "allow more active vertices");
-    if (settings_.nodes_max > 1U << 28)
-        throw StartupError("refine a surface", "more than 2^28 active vertices are asked for",
-                           "allow fewer active vertices");
-    // A surface has two triangles a vertex; edges with more than two triangles bring more.
-    const std::uint64_t triangles = std::min<std::uint64_t>(
-        forest.triangles_always().size() + 3 * std::uint64_t{settings_.nodes_max}, forest.triangles());
-    record_.resize(2 * std::size_t{settings_.nodes_max} + 2);
-    key_.resize(record_.size());
-    size_.resize(record_.size());
-    triangle_.resize(static_cast<std::size_t>(triangles));
-    leaves_.resize(triangle_.size());
-    splittable_.reserve(settings_.nodes_max);
-    mergeable_.reserve(settings_.nodes_max);
+    state_.resize(forest.nodes(), {0, kNone});
+    active_leaf_.resize(forest.leaves() / 64 + std::size_t{1});
+    ask_full_.node.resize(settings_.splits_max);
+    ask_rest_.node.resize(settings_.splits_max);
+    ask_merge_.node.resize(settings_.merges_max);
     stack_.resize(kCascadeMax);
+    path_.resize(std::min<std::size_t>(kPathMax, forest.nodes()));
     begin();
 }
 
 void Refinement::begin() {
-    for (std::uint32_t r = 0; r < forest_.roots(); ++r) fill(r, forest_.root(r), kNone);
+    for (std::uint32_t r = 0; r < forest_.roots(); ++r) {
+        const VertexForest::Branch b = forest_.root(r);
+        if (b.is_leaf())
+            set_active(b.first, true);
+        else
+            list(frontier_, b.node);
+    }
     vertices_ = forest_.roots();
-    record_used_ = vertices_ + vertices_ % 2;
-    for (std::uint32_t r = 0; r < forest_.roots(); ++r)
-        if (record_[r].node != kNoForestNode) list(splittable_, r);
-    for (const ForestTriangle& t : forest_.triangles_always()) {
-        const std::uint32_t s = take_triangle(t);
-        for (std::uint32_t k = 0; k < 3; ++k) put(4 * s + k, forest_.tree_of(t.leaf[k]));
-    }
+    triangles_ = static_cast<std::uint32_t>(forest_.triangles_always().size());
 }
 
-void Refinement::fill(std::uint32_t record, const VertexForest::Branch& branch,
-                      std::uint32_t parent) noexcept {
-    const std::uint32_t parent_number = parent == kNone ? kNone : key_[parent].number;
-    if (branch.is_leaf()) {
-        record_[record] = {forest_.leaf_position_m(branch.first), kNoForestNode, parent, kNone, kNone, kNone};
-        key_[record] = {branch.first, branch.end, 0, parent_number};
-        size_[record] = {};
-    } else {
-        const ForestNode& node = forest_.node(branch.node);
-        record_[record] = {node.position_m, branch.node, parent, kNone, kNone, kNone};
-        key_[record] = {branch.first, branch.end, node.number, parent_number};
-        size_[record] = {node.reach_m, node.error_m};
-        // If it is split, then soon: call for what that needs.
-        __builtin_prefetch(&node + 1);
-        __builtin_prefetch(&node + (node.middle - branch.first));
-        __builtin_prefetch(forest_.first_triangle_of(branch.node));
-    }
+float Refinement::limit_m(const ForestNode& node) const noexcept {
+    return node.reach_m + settings_.filter.distance_m(node.error_m);
 }
 
-std::uint32_t Refinement::take_pair() noexcept {
-    const std::uint32_t first = free_pair_;
-    if (first == kNone) {
-        record_used_ += 2;
-        return record_used_ - 2;
-    }
-    free_pair_ = record_[first].head;
-    return first;
+void Refinement::list(CutList& in, std::uint32_t n) noexcept {
+    const ForestNode& node = forest_.node(n);
+    state_[n].place = in.add(n, node.position_m, limit_m(node));
 }
 
-void Refinement::release_pair(std::uint32_t first) noexcept {
-    record_[first].head = free_pair_;
-    free_pair_ = first;
-}
-
-std::uint32_t Refinement::take_triangle(const ForestTriangle& triangle) noexcept {
-    std::uint32_t s = free_triangle_;
-    if (s != kNone)
-        free_triangle_ = triangle_[s].next[0];
-    else
-        s = triangle_used_++;
-    triangle_[s].number = triangle.number;
-    triangle_[s].seen = 0;
-    leaves_[s].leaf = triangle.leaf;
-    ++triangles_;
-    return s;
-}
-
-void Refinement::release_triangle(std::uint32_t s) noexcept {
-    triangle_[s].number = kNone;
-    triangle_[s].next[0] = free_triangle_;
-    free_triangle_ = s;
-    --triangles_;
-}
-
-void Refinement::put(std::uint32_t corner, std::uint32_t record) noexcept {
-    Triangle& t = triangle_[corner / 4];
-    t.at[corner % 4] = record;
-    t.next[corner % 4] = record_[record].head;
-    record_[record].head = corner;
-}
-
-void Refinement::unlink(std::uint32_t corner, std::uint32_t record) noexcept {
-    std::uint32_t* link = &record_[record].head;
-    while (*link != corner) link = &triangle_[*link / 4].next[*link % 4];
-    *link = triangle_[corner / 4].next[corner % 4];
-}
-
-void Refinement::set_limits(Entry& entry) const noexcept {
-    const Size& size = size_[entry.record];
-    entry.limit_m = size.reach_m + settings_.filter.distance_m(size.error_m);
-    entry.full_limit_m = size.reach_m + settings_.filter.radius_m();
-}
-
-void Refinement::list(List& in, std::uint32_t record) noexcept {
-    record_[record].listed = static_cast<std::uint32_t>(in.size());
-    in.push_back({record_[record].position_m, 0.0F, 0.0F, record, kNone, 0});
-    set_limits(in.back());
-}
-
-void Refinement::unlist(List& in, std::uint32_t record) noexcept {
-    const std::uint32_t place = record_[record].listed;
-    if (place == kNone) return;
-    in[place] = in.back();
-    record_[in[place].record].listed = place;
-    in.pop_back();
-    record_[record].listed = kNone;
+void Refinement::unlist(CutList& in, std::uint32_t n) noexcept {
+    const std::uint32_t place = state_[n].place, moved = in.remove(place, kNone);
+    if (moved != kNone) state_[moved].place = place;
+    state_[n].place = kNone;
 }
 
 void Refinement::set_filter(const RefineFilter& filter) noexcept {
     settings_.filter = filter;
-    for (Entry& e : splittable_) set_limits(e);
-    for (Entry& e : mergeable_) set_limits(e);
-}
-
-std::uint32_t Refinement::merge_all(const Box& box) noexcept {
-    std::uint32_t merges = 0;
-    std::size_t left = mergeable_.size();
-    for (; left > 0 && merges < settings_.merges_max; --left) {
-        if (merge_cursor_ >= mergeable_.size()) merge_cursor_ = 0;
-        Entry& e = mergeable_[merge_cursor_];
-        if (box.distance_m(e.position_m) < e.limit_m || blocked(e)) {
-            ++merge_cursor_;
-            continue;
-        }
-        merge(e.record);  // another entry comes to its place, and its parent may have been added
-        ++merges;
-        left = std::min(left + 1, mergeable_.size() + 1);
-    }
-    return merges;
-}
-
-Refinement::Done Refinement::split_all(const Box& box, bool full, std::uint32_t& budget) noexcept {
-    Done all = Done::yes;
-    for (std::size_t i = 0; i < splittable_.size();) {
-        const Entry& e = splittable_[i];
-        const float distance = box.distance_m(e.position_m);
-        if (!(distance < (full ? e.full_limit_m : e.limit_m))) {
-            ++i;
-            continue;
-        }
-        const Done done = split_with_forced(e.record, budget);  // another entry comes to its place
-        if (done == Done::out_of_budget) return done;
-        if (done == Done::no_room) {
-            all = done;
-            ++i;
-        }
-    }
-    return all;
+    for (CutList* const in : {&frontier_, &mergeable_})
+        for (std::uint32_t i = 0; i < in->size(); ++i) in->set_limit(i, limit_m(forest_.node(in->node(i))));
 }
 
 RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept {
     RefineStep out;
     if (probe_m.allFinite() && velocity_m_s.allFinite()) {
-        Box box{};
+        RefineBox box{};
         for (std::size_t i = 0; i < 3; ++i) {
             const auto axis = static_cast<Eigen::Index>(i);
             const double way = velocity_m_s[axis] * settings_.look_ahead_s;
             box.centre_m[i] = static_cast<float>(std::clamp(probe_m[axis] + 0.5 * way, -1e7, 1e7));
             box.half_m[i] = static_cast<float>(std::min(0.5 * std::abs(way), 1e7));
         }
-        out.merges = merge_all(box);
+        // What is merged may be needed by what is split, so that comes last; unless room is short.
+        const bool merge_first = vertices_ + settings_.splits_max > settings_.nodes_max;
+        if (merge_first) out.merges = merge_all(box);
+        ask_full_.count = ask_rest_.count = 0;
+        ask_full_.full = ask_rest_.full = false;
+        frontier_.each(box, true, [&](std::uint32_t i) { ask(frontier_.node(i), box); });
         std::uint32_t budget = settings_.splits_max;
-        const Done near = split_all(box, true, budget);
-        const Done far = near == Done::out_of_budget ? near : split_all(box, false, budget);
+        const Done near = split_queue(ask_full_, box, budget);
+        const Done far = near == Done::out_of_budget ? near : split_queue(ask_rest_, box, budget);
         out.splits = settings_.splits_max - budget;
+        if (!merge_first) out.merges = merge_all(box);
         out.full_detail = near == Done::yes;
         out.no_room = near == Done::no_room || far == Done::no_room;
         out.settled = near == Done::yes && far == Done::yes && out.splits == 0 && out.merges == 0;
-        collect(box, out.full_detail);
+        collect(box, out);
     }
     out.vertices = vertices_;
     out.triangles = triangles_;
     return out;
 }
 
-void Refinement::collect(const Box& box, bool full_detail) noexcept {
+void Refinement::collect(const RefineBox& box, RefineStep& step) noexcept {
     NearTriangles& to = near_.back();
     ++steps_;
     to.step = steps_;
-    to.full_detail = full_detail;
+    to.full_detail = step.full_detail;
     to.complete = true;
     to.count = 0;
+    to.deviation_m = 0.0F;
     const auto near_m = static_cast<float>(settings_.near_m);
     for (std::size_t i = 0; i < 3; ++i) {
         to.low_m[i] = box.centre_m[i] - box.half_m[i] - near_m;
         to.high_m[i] = box.centre_m[i] + box.half_m[i] + near_m;
     }
-    const auto seen = static_cast<std::uint32_t>(steps_);
-    // A leaf is taken where its parent reaches the box: that holds its triangles too.
-    const auto reaches = [&](std::uint32_t record) {
-        const Record& r = record_[record];
-        return r.node == kNoForestNode || box.distance_m(r.position_m) <= near_m + size_[record].reach_m;
-    };
-    std::uint32_t top = 0;
-    for (std::uint32_t root = 0; root < forest_.roots() && to.complete; ++root) {
-        stack_[top++] = root;
-        while (top > 0) {
-            const std::uint32_t now = stack_[--top];
-            if (!reaches(now)) continue;
-            const Record& r = record_[now];
-            if (!r.at_cut()) {
-                if (top + 2 > stack_.size()) {
-                    to.complete = false;
-                    continue;
-                }
-                stack_[top++] = r.child;
-                stack_[top++] = r.child + 1;
-                continue;
+    const bool whole = walk(
+        path_,
+        [&](const ForestNode& node) { return box.distance_m(node.position_m) <= near_m + node.span_m; },
+        [&](const ForestNode& node) { return box.distance_m(node.position_m) <= near_m + node.own_span_m; },
+        [&](const ForestTriangle& t, const std::array<std::uint32_t, 3>& at) {
+            NearTriangle made{{position_m(at[0]), position_m(at[1]), position_m(at[2])}, t.number};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto [low, high] =
+                    std::minmax({made.corner_m[0][i], made.corner_m[1][i], made.corner_m[2][i]});
+                if (low > to.high_m[i] || high < to.low_m[i]) return;
             }
-            for (std::uint32_t c = r.head; c != kNone; c = triangle_[c / 4].next[c % 4]) {
-                Triangle& t = triangle_[c / 4];
-                if (t.seen == seen) continue;
-                t.seen = seen;
-                if (to.count == to.triangle.size()) {
-                    to.complete = false;
-                    break;
-                }
-                to.triangle[to.count++] = {
-                    {record_[t.at[0]].position_m, record_[t.at[1]].position_m, record_[t.at[2]].position_m},
-                    t.number};
+            if (to.count == to.triangle.size()) {
+                to.complete = false;
+                return;
             }
-        }
-    }
+            for (const std::uint32_t place : at)
+                if (leaf(place) == kNoForestNode)
+                    to.deviation_m =
+                        std::max(to.deviation_m, forest_.node(place - forest_.leaves()).deviation_m);
+            to.triangle[to.count++] = made;
+        });
+    to.complete = to.complete && whole;
+    step.deviation_near_m = to.deviation_m;
     near_.publish();
 }
 
+std::uint32_t Refinement::descend(VertexForest::Branch b, std::uint32_t leaf) const noexcept {
+    while (!b.is_leaf() && is_split(b.node)) b = forest_.child(b, leaf < forest_.node(b.node).middle ? 0 : 1);
+    return b.is_leaf() ? b.first : forest_.leaves() + b.node;
+}
+
+std::uint32_t Refinement::place_of(std::uint32_t leaf) const noexcept {
+    return is_active(leaf) ? leaf : descend(forest_.root(forest_.tree_of(leaf)), leaf);
+}
+
+float Refinement::deviation_m() const noexcept {
+    float most = 0.0F;
+    for (std::uint32_t i = 0; i < frontier_.size(); ++i)
+        most = std::max(most, forest_.node(frontier_.node(i)).deviation_m);
+    return most;
+}
+
 std::size_t Refinement::memory_bytes() const {
-    return record_.capacity() * (sizeof(Record) + sizeof(Key) + sizeof(Size)) +
-           triangle_.capacity() * (sizeof(Triangle) + sizeof(Leaves)) +
-           (splittable_.capacity() + mergeable_.capacity()) * sizeof(Entry) + 4 * stack_.capacity() +
-           3 * settings_.near_max * sizeof(NearTriangle) + sizeof(*this);
+    return state_.capacity() * sizeof(State) + active_leaf_.capacity() * 8 + frontier_.bytes() +
+           mergeable_.bytes() +
+           4 * (ask_full_.node.capacity() + ask_rest_.node.capacity() + ask_merge_.node.capacity() +
+                stack_.capacity()) +
+           path_.capacity() * sizeof(Level) + 3 * settings_.near_max * sizeof(NearTriangle) + sizeof(*this);
 }
 
 }  // namespace tact

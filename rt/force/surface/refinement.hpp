@@ -1,26 +1,32 @@
 // Keeps the surface fine around the probe and coarse elsewhere: the cut through the forest, changed a little in
 // every step (El-Sana, Varshney 1999; ipc/assets/vertex_forest.hpp).
 //
-// A step    takes the box that the probe is about to pass through, merges what is finer than the filter asks for
-//           there and splits what is coarser, nearest first. Splits and merges have a budget each; splits that
-//           others force count, and a cascade stops in the middle when the budget is out. Every state between
-//           two of them is a whole surface; what is left is done in the next step.
+// A step    takes the box that the probe is about to pass through, splits what is coarser than the filter asks
+//           for there and merges what is finer, what is within the filter's radius first. Splits and merges
+//           have a budget each; splits that others force count, and a cascade stops in the middle when the
+//           budget is out. Every state between two of them is a whole surface; what is left is done in the next
+//           step.
 // Same      where the filter and the box are the same and the budget is not out, the cut is the same, wherever
-//           the probe came from.
-// Memory    none per triangle of the mesh: records of what is active alone, in pools of nodes_max. All is taken
-//           by the constructor.
+//           the probe came from: what is asked for, and what that needs.
+// Cost      follows the number of changes, and a look at the nodes at the cut; triangles are looked at in near()
+//           alone.
+// Memory    8 bytes for each node of the forest, 40 for each vertex that may be active. All is taken by the
+//           constructor.
 // Frame     model, metres.  Thread  one thread calls step() and set_filter(), never the servo's; near() is for
 //           the servo.
-// Fails by  StartupError where nodes_max cannot hold the coarsest mesh. Full pools leave the surface as fine as
+// Fails by  StartupError where nodes_max cannot hold the coarsest mesh. Full lists leave the surface as fine as
 //           they can, and say so.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/huge_pages.hpp"
 #include "ipc/base/pose.hpp"
+#include "rt/force/surface/cut_list.hpp"
 #include "rt/force/surface/near_triangles.hpp"
 #include "rt/force/surface/refine_filter.hpp"
 
@@ -40,8 +46,9 @@ struct RefineStep {
     std::uint32_t splits = 0, merges = 0;
     bool settled = false;      // nothing was left to do
     bool full_detail = false;  // all within the filter's radius of the box is as in the full mesh
-    bool no_room = false;      // the pools were full
+    bool no_room = false;      // as many vertices as may be are active
     std::uint32_t vertices = 0, triangles = 0;  // active
+    float deviation_near_m = 0.0F;  // of the triangles of near() from the full surface, at the most
 };
 
 class Refinement {
@@ -56,108 +63,131 @@ public:
     // Servo thread.
     [[nodiscard]] const NearTriangles& near() noexcept TACT_RT { return near_.newest(); }
 
+    // The rest looks at the whole cut; on the thread of step(), and it may allocate.
     // visit(number of the triangle, {three places}) for every active triangle; a place names an active vertex
-    // as long as the cut stays. position_m(place), leaf(place): the full mesh's vertex, or kNoForestNode.
+    // as long as the cut stays.
     template <class Visit>
     void each_triangle(Visit&& visit) const {
-        for (std::uint32_t s = 0; s < triangle_used_; ++s)
-            if (triangle_[s].number != kNone) visit(triangle_[s].number, triangle_[s].at);
+        std::vector<Level> path(forest_.nodes());
+        static_cast<void>(walk(
+            path, [](const ForestNode&) { return true; }, [](const ForestNode&) { return true; },
+            [&](const ForestTriangle& t, const std::array<std::uint32_t, 3>& at) { visit(t.number, at); }));
     }
-    [[nodiscard]] const std::array<float, 3>& position_m(std::uint32_t place) const {
-        return record_[place].position_m;
+    [[nodiscard]] std::array<float, 3> position_m(std::uint32_t place) const {
+        return place < forest_.leaves() ? forest_.leaf_position_m(place)
+                                        : forest_.node(place - forest_.leaves()).position_m;
     }
+    // The full mesh's vertex, or kNoForestNode.
     [[nodiscard]] std::uint32_t leaf(std::uint32_t place) const {
-        return record_[place].node == kNoForestNode ? key_[place].first : kNoForestNode;
+        return place < forest_.leaves() ? place : kNoForestNode;
     }
     // The active vertex that stands for a vertex of the full mesh.
     [[nodiscard]] std::uint32_t place_of(std::uint32_t leaf) const noexcept;
+    // From the full surface, and of the full surface from the active one, at the most. See the forest.
+    [[nodiscard]] float deviation_m() const noexcept;
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
+    static constexpr std::uint32_t kSplit = 1U << 31;
 
-    // A node or leaf at the cut, or above it. Siblings lie in one line of the cache, at 2 i and 2 i + 1.
-    struct alignas(32) Record {
-        std::array<float, 3> position_m;
-        std::uint32_t node;    // kNoForestNode: the leaf `first`
-        std::uint32_t parent;  // record
-        std::uint32_t child;   // record of the first one, the second comes after it; kNone at the cut
-        std::uint32_t head;    // its list of corners; of a free pair: the next free one
-        std::uint32_t listed;  // its entry in splittable_ or mergeable_
-        [[nodiscard]] bool at_cut() const { return child == kNone; }
-    };
-    // Of each record, what neighbours look at.
-    struct Key {
-        std::uint32_t first, end;             // leaves below
-        std::uint32_t number, parent_number;  // of merges; 0 for a leaf, kNone above a root
-        [[nodiscard]] bool holds(std::uint32_t leaf) const { return leaf >= first && leaf < end; }
-    };
-    struct Size {  // of each record; a leaf has none
-        float reach_m, error_m;
-    };
-    // Corner k of triangle s is 4 s + k in lists.
-    struct alignas(32) Triangle {
-        std::array<std::uint32_t, 3> at, next;
-        std::uint32_t number;  // kNone: free, and next[0] the next free
-        std::uint32_t seen;    // by collect()
-    };
-    struct alignas(16) Leaves {  // of each triangle
-        std::array<std::uint32_t, 3> leaf;
-    };
-    struct Entry {
-        std::array<float, 3> position_m;
-        float limit_m, full_limit_m;  // to be split where the box is nearer; where it is in the full radius
-        std::uint32_t record;
-        std::uint32_t blocker, blocker_number;  // who must merge first, and the merge that must be his
-    };
-    using List = HugeVector<Entry>;  // reserved for all
-    struct Box {
-        std::array<float, 3> centre_m, half_m;
-        [[nodiscard]] float distance_m(const std::array<float, 3>& p) const noexcept {
-            return std::max({std::abs(p[0] - centre_m[0]) - half_m[0],
-                             std::abs(p[1] - centre_m[1]) - half_m[1],
-                             std::abs(p[2] - centre_m[2]) - half_m[2]});
-        }
+    struct State {           // of each node
+        std::uint32_t word;  // kSplit, and how many split nodes are its children or need it
+        std::uint32_t
+            place;  // in mergeable_ where it is split and nobody needs it, in frontier_ where it is active
     };
     enum class Done : std::uint8_t { yes, out_of_budget, no_room };
+    struct Queue {  // of nodes; what does not fit is found again in the next step
+        HugeVector<std::uint32_t> node;
+        std::uint32_t count = 0;
+        bool full = false;
+        void put(std::uint32_t n) noexcept {
+            full = full || count == node.size();
+            if (!full) node[count++] = n;
+        }
+    };
+    struct Level {
+        VertexForest::Branch branch;
+        std::uint32_t next;  // child
+    };
 
     void begin();
-    void fill(std::uint32_t record, const VertexForest::Branch& branch, std::uint32_t parent) noexcept;
-    std::uint32_t take_pair() noexcept;
-    void release_pair(std::uint32_t first) noexcept;
-    std::uint32_t take_triangle(const ForestTriangle& triangle) noexcept;
-    void release_triangle(std::uint32_t triangle) noexcept;
-    void put(std::uint32_t corner, std::uint32_t record) noexcept;
-    void unlink(std::uint32_t corner, std::uint32_t record) noexcept;
-    void list(List& in, std::uint32_t record) noexcept;
-    void unlist(List& in, std::uint32_t record) noexcept;
-    void set_limits(Entry& entry) const noexcept;
+    [[nodiscard]] bool is_split(std::uint32_t n) const noexcept { return (state_[n].word & kSplit) != 0; }
+    [[nodiscard]] bool is_active(std::uint32_t leaf) const noexcept {
+        return (active_leaf_[leaf / 64] >> leaf % 64 & 1U) != 0;
+    }
+    void set_active(std::uint32_t leaf, bool active) noexcept {
+        const std::uint64_t bit = std::uint64_t{1} << leaf % 64;
+        active_leaf_[leaf / 64] = active ? active_leaf_[leaf / 64] | bit : active_leaf_[leaf / 64] & ~bit;
+    }
+    void list(CutList& in, std::uint32_t n) noexcept;
+    void unlist(CutList& in, std::uint32_t n) noexcept;
+    void hold(std::uint32_t n) noexcept;
+    void let_go(std::uint32_t n, const RefineBox& box) noexcept;
+    [[nodiscard]] float limit_m(const ForestNode& node) const noexcept;
+    [[nodiscard]] std::uint32_t unmet_need(std::uint32_t n) const noexcept;
+    void fetch(std::uint32_t n) const noexcept;
+    void ask(std::uint32_t n, const RefineBox& box) noexcept;
 
-    [[nodiscard]] std::uint32_t holder(std::uint32_t leaf, std::uint32_t around) const noexcept;
-    [[nodiscard]] bool has_room(std::uint32_t record) const noexcept;
-    void split(std::uint32_t record) noexcept;
-    Done split_with_forced(std::uint32_t record, std::uint32_t& budget) noexcept;
-    [[nodiscard]] bool blocked(Entry& entry) const noexcept;
-    void merge(std::uint32_t record) noexcept;
-    std::uint32_t merge_all(const Box& box) noexcept;
-    Done split_all(const Box& box, bool full, std::uint32_t& budget) noexcept;
-    void collect(const Box& box, bool full_detail) noexcept;
+    void split(std::uint32_t n, const RefineBox& box) noexcept;
+    Done split_with_forced(std::uint32_t n, const RefineBox& box, std::uint32_t& budget) noexcept;
+    Done split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept;
+    void merge(std::uint32_t n, const RefineBox& box) noexcept;
+    std::uint32_t merge_all(const RefineBox& box) noexcept;
+    void collect(const RefineBox& box, RefineStep& step) noexcept;
+
+    [[nodiscard]] std::uint32_t descend(VertexForest::Branch b, std::uint32_t leaf) const noexcept;
+    // enter(node) for split nodes, from the roots on: false leaves it out with what lies below. take(node): its own
+    // triangles are wanted: emit(triangle, places). False: the path was too short for some.
+    template <class Enter, class Take, class Emit>
+    bool walk(std::span<Level> path, Enter&& enter, Take&& take, Emit&& emit) const {
+        bool whole = true;
+        std::size_t depth = 0;
+        const auto place = [&](std::uint32_t leaf) {
+            if (is_active(leaf)) return leaf;
+            for (std::size_t i = depth; i-- > 0;)  // the third corner is likely to be a near relation
+                if (leaf >= path[i].branch.first && leaf < path[i].branch.end)
+                    return descend(path[i].branch, leaf);
+            return place_of(leaf);
+        };
+        const auto go_into = [&](const VertexForest::Branch& b) {
+            if (b.is_leaf() || !is_split(b.node) || !enter(forest_.node(b.node))) return;
+            if (depth == path.size()) {
+                whole = false;
+                return;
+            }
+            path[depth++] = {b, 0};
+            if (!take(forest_.node(b.node))) return;
+            for (const ForestTriangle& t : forest_.triangles_of(b.node))
+                emit(t, {place(t.leaf[0]), place(t.leaf[1]), place(t.leaf[2])});
+        };
+        for (std::uint32_t r = 0; r < forest_.roots(); ++r) {
+            go_into(forest_.root(r));
+            while (depth > 0) {
+                Level& level = path[depth - 1];
+                if (level.next == 2)
+                    --depth;
+                else
+                    go_into(forest_.child(level.branch, level.next++));
+            }
+        }
+        for (const ForestTriangle& t : forest_.triangles_always())
+            emit(t, {place_of(t.leaf[0]), place_of(t.leaf[1]), place_of(t.leaf[2])});
+        return whole;
+    }
 
     const VertexForest& forest_;
     RefineSettings settings_;
-    HugeVector<Record> record_;  // the first ones are the roots, in order
-    HugeVector<Key> key_;
-    HugeVector<Size> size_;
-    HugeVector<Triangle> triangle_;
-    HugeVector<Leaves> leaves_;
-    std::uint32_t record_used_ = 0, triangle_used_ = 0;  // from there on never taken yet
-    std::uint32_t free_pair_ = kNone, free_triangle_ = kNone;
+    HugeVector<State> state_;
+    HugeVector<std::uint64_t> active_leaf_;  // a bit each: the full mesh's vertex is there
+    CutList frontier_;                       // active nodes
+    CutList mergeable_;                      // split nodes that nobody needs
     std::uint32_t vertices_ = 0, triangles_ = 0;
-    List splittable_;  // inner nodes at the cut
-    List mergeable_;   // nodes both of whose children are at the cut
-    std::uint32_t merge_cursor_ = 0;
+    Queue ask_full_, ask_rest_, ask_merge_;  // within the radius; elsewhere
     HugeVector<std::uint32_t> stack_;
+    std::vector<Level> path_;
     std::uint64_t steps_ = 0;
+    RefineBox collected_{};
     NearExchange near_;
 };
 

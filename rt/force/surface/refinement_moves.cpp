@@ -2,164 +2,136 @@
 #include "rt/force/surface/refinement.hpp"
 
 namespace tact {
+namespace {
 
-std::uint32_t Refinement::place_of(std::uint32_t leaf) const noexcept {
-    std::uint32_t place = forest_.tree_of(leaf);
-    while (!record_[place].at_cut()) {
-        const std::uint32_t child = record_[place].child;
-        place = key_[child].holds(leaf) ? child : child + 1;
-    }
-    return place;
+constexpr std::uint32_t kFetchAhead = 6;  // turns
+
+}  // namespace
+
+void Refinement::fetch(std::uint32_t n) const noexcept {
+    const ForestNode& node = forest_.node(n);
+    __builtin_prefetch(forest_.first_need_of(n));
+    __builtin_prefetch(&node + 1);
+    __builtin_prefetch(&node + (node.middle - node.first));
+    if (node.parent != kNoForestNode) __builtin_prefetch(&state_[node.parent]);
 }
 
-// The same for a leaf that is likely to lie below a neighbour.
-std::uint32_t Refinement::holder(std::uint32_t leaf, std::uint32_t around) const noexcept {
-    for (std::uint32_t c = record_[around].head; c != kNone; c = triangle_[c / 4].next[c % 4]) {
-        for (const std::uint32_t w : triangle_[c / 4].at)
-            if (key_[w].holds(leaf)) return w;
-    }
-    return place_of(leaf);
+// To be split, where it is wanted: puts it into one of the queues.
+void Refinement::ask(std::uint32_t n, const RefineBox& box) noexcept {
+    const ForestNode& node = forest_.node(n);
+    const bool full = box.distance_m(node.position_m) < node.reach_m + settings_.filter.radius_m();
+    (full ? ask_full_ : ask_rest_).put(n);
 }
 
-bool Refinement::has_room(std::uint32_t record) const noexcept {
-    return vertices_ < settings_.nodes_max &&
-           triangles_ + forest_.triangles_of(record_[record].node).size() <= triangle_.size();
+void Refinement::hold(std::uint32_t n) noexcept {
+    if (state_[n].word == kSplit) unlist(mergeable_, n);
+    ++state_[n].word;
 }
 
-void Refinement::split(std::uint32_t record) noexcept {
-    const Key key = key_[record];
-    const VertexForest::Branch branch{key.first, key.end, record_[record].node};
-    const VertexForest::Branch second = forest_.child(branch, 1);
-    const std::uint32_t a = take_pair(), b = a + 1;
-    fill(a, forest_.child(branch, 0), record);
-    fill(b, second, record);
-    const auto half = [&](std::uint32_t leaf) { return leaf < second.first ? a : b; };
-    // The list as it was tells who stands for the third corner of what appears.
-    std::uint32_t fresh = kNone;  // chained by `seen`
-    for (const ForestTriangle& t : forest_.triangles_of(branch.node)) {
-        const std::uint32_t s = take_triangle(t);
-        Triangle& triangle = triangle_[s];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t leaf = t.leaf[k];
-            triangle.at[k] = key.holds(leaf) ? half(leaf) : holder(leaf, record);
-        }
-        triangle.seen = fresh;
-        fresh = s;
-    }
-    for (std::uint32_t c = record_[record].head; c != kNone;) {
-        const std::uint32_t next = triangle_[c / 4].next[c % 4];
-        put(c, half(leaves_[c / 4].leaf[c % 4]));
-        c = next;
-    }
-    while (fresh != kNone) {
-        const std::uint32_t s = fresh;
-        fresh = triangle_[s].seen;
-        triangle_[s].seen = 0;
-        for (std::uint32_t k = 0; k < 3; ++k) put(4 * s + k, triangle_[s].at[k]);
-    }
-    unlist(splittable_, record);
-    Record& r = record_[record];
-    r.head = kNone;
-    r.child = a;
-    if (r.parent != kNone) unlist(mergeable_, r.parent);
-    list(mergeable_, record);
-    for (const std::uint32_t child : {a, b})
-        if (record_[child].node != kNoForestNode) list(splittable_, child);
+void Refinement::let_go(std::uint32_t n, const RefineBox& box) noexcept {
+    if (--state_[n].word != kSplit) return;
+    list(mergeable_, n);
+    if (!mergeable_.within(state_[n].place, box)) ask_merge_.put(n);
+}
+
+void Refinement::split(std::uint32_t n, const RefineBox& box) noexcept {
+    const ForestNode& node = forest_.node(n);
+    unlist(frontier_, n);
+    state_[n].word = kSplit;
+    list(mergeable_, n);
+    if (node.parent != kNoForestNode) hold(node.parent);
+    for (const std::uint32_t need : forest_.needs_of(n)) hold(need);
+    const auto add = [&](std::uint32_t child) {
+        list(frontier_, child);
+        if (frontier_.within(state_[child].place, box)) ask(child, box);
+    };
+    if (node.first_is_leaf())
+        set_active(node.first, true);
+    else
+        add(n + 1);
+    if (node.second_is_leaf())
+        set_active(node.middle, true);
+    else
+        add(node.second_of(n));
     ++vertices_;
+    triangles_ += static_cast<std::uint32_t>(forest_.triangles_of(n).size());
 }
 
-// Neighbours with a higher number go first, theirs before them; numbers rise, so there is an end.
-Refinement::Done Refinement::split_with_forced(std::uint32_t record, std::uint32_t& budget) noexcept {
+// A node that has to be split before n is, or kNone.
+std::uint32_t Refinement::unmet_need(std::uint32_t n) const noexcept {
+    const std::uint32_t parent = forest_.node(n).parent;
+    if (parent != kNoForestNode && !is_split(parent)) return parent;
+    for (const std::uint32_t need : forest_.needs_of(n))
+        if (!is_split(need)) return need;
+    return kNone;
+}
+
+// What is needed goes first, what that needs before it; numbers rise, so there is an end.
+Refinement::Done Refinement::split_with_forced(std::uint32_t n, const RefineBox& box,
+                                               std::uint32_t& budget) noexcept {
     std::uint32_t top = 0;
-    stack_[top++] = record;
+    stack_[top++] = n;
     while (top > 0) {
         const std::uint32_t now = stack_[top - 1];
-        if (!record_[now].at_cut()) {  // forced by another one meanwhile
-            --top;
+        const std::uint32_t need = unmet_need(now);
+        if (need != kNone) {
+            if (top == stack_.size()) return Done::no_room;
+            stack_[top++] = need;
             continue;
         }
-        const std::uint32_t before = top;
-        const std::uint32_t number = key_[now].number;
-        for (std::uint32_t c = record_[now].head; c != kNone; c = triangle_[c / 4].next[c % 4]) {
-            for (const std::uint32_t w : triangle_[c / 4].at) {
-                if (key_[w].number <= number || stack_[top - 1] == w) continue;
-                if (top == stack_.size()) return Done::no_room;
-                stack_[top++] = w;
-            }
-        }
-        if (top != before) continue;
         if (budget == 0) return Done::out_of_budget;
-        if (!has_room(now)) return Done::no_room;
-        split(now);
+        if (vertices_ >= settings_.nodes_max) return Done::no_room;
+        split(now, box);
         --budget;
         --top;
     }
     return Done::yes;
 }
 
-bool Refinement::blocked(Entry& entry) const noexcept {
-    if (entry.blocker != kNone) {  // who was in the way may still be
-        if (key_[entry.blocker].number == entry.blocker_number && !record_[entry.blocker].at_cut())
-            return true;
-        entry.blocker = kNone;
+// Children that are wanted too come to its end meanwhile.
+Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept {
+    Done all = Done::yes;
+    for (std::uint32_t i = 0; i < queue.count; ++i) {
+        if (i + kFetchAhead < queue.count) fetch(queue.node[i + kFetchAhead]);
+        const std::uint32_t n = queue.node[i];
+        if (is_split(n)) continue;  // forced by another one meanwhile
+        const Done done = split_with_forced(n, box, budget);
+        if (done == Done::out_of_budget) return done;
+        if (done == Done::no_room) all = done;
     }
-    // Of those in the way the one with the highest number is likely to go last: then it is looked at again.
-    const std::uint32_t number = key_[entry.record].number, first = record_[entry.record].child;
-    std::uint32_t blocker = kNone, highest = 0;
-    for (const std::uint32_t child : {first, first + 1}) {
-        for (std::uint32_t c = record_[child].head; c != kNone; c = triangle_[c / 4].next[c % 4]) {
-            for (const std::uint32_t w : triangle_[c / 4].at) {
-                const std::uint32_t up = key_[w].parent_number;
-                if (up >= number || up <= highest) continue;
-                highest = up;
-                blocker = w;
-            }
-        }
-    }
-    if (blocker == kNone) return false;
-    entry.blocker = record_[blocker].parent;
-    entry.blocker_number = highest;
-    return true;
+    return queue.full ? Done::out_of_budget : all;
 }
 
-void Refinement::merge(std::uint32_t record) noexcept {
-    const std::uint32_t a = record_[record].child, b = a + 1;
-    // A triangle with corners at both goes; the rest is handed to the parent.
-    for (std::uint32_t c = record_[a].head; c != kNone;) {
-        Triangle& t = triangle_[c / 4];
-        const std::uint32_t next = t.next[c % 4];
-        std::uint32_t other = 0;  // corner at b
-        while (other < 3 && t.at[other] != b) ++other;
-        if (other == 3) {
-            put(c, record);
-        } else {
-            const std::uint32_t third = 3 - c % 4 - other;
-            unlink(c / 4 * 4 + third, t.at[third]);
-            t.number = kNone;  // released when it is met from the other side
-        }
-        c = next;
-    }
-    for (std::uint32_t c = record_[b].head; c != kNone;) {
-        const Triangle& t = triangle_[c / 4];
-        const std::uint32_t next = t.next[c % 4];
-        if (t.number == kNone)
-            release_triangle(c / 4);
-        else
-            put(c, record);
-        c = next;
-    }
-    unlist(splittable_, a);
-    unlist(splittable_, b);
-    release_pair(a);
-    unlist(mergeable_, record);
-    Record& r = record_[record];
-    r.child = kNone;
-    list(splittable_, record);
-    if (r.parent != kNone) {
-        const std::uint32_t first = record_[r.parent].child;
-        if (record_[first].at_cut() && record_[first + 1].at_cut()) list(mergeable_, r.parent);
-    }
+void Refinement::merge(std::uint32_t n, const RefineBox& box) noexcept {
+    const ForestNode& node = forest_.node(n);
+    if (node.first_is_leaf())
+        set_active(node.first, false);
+    else
+        unlist(frontier_, n + 1);
+    if (node.second_is_leaf())
+        set_active(node.middle, false);
+    else
+        unlist(frontier_, node.second_of(n));
+    unlist(mergeable_, n);
+    state_[n].word = 0;
+    list(frontier_, n);
+    if (node.parent != kNoForestNode) let_go(node.parent, box);
+    for (const std::uint32_t need : forest_.needs_of(n)) let_go(need, box);
     --vertices_;
+    triangles_ -= static_cast<std::uint32_t>(forest_.triangles_of(n).size());
+}
+
+// What nobody needs and the filter does not ask for; then what only that needed.
+std::uint32_t Refinement::merge_all(const RefineBox& box) noexcept {
+    std::uint32_t merges = 0;
+    ask_merge_.count = 0;
+    ask_merge_.full = false;
+    mergeable_.each(box, false, [&](std::uint32_t i) { ask_merge_.put(mergeable_.node(i)); });
+    for (; merges < ask_merge_.count; ++merges) {
+        if (merges + kFetchAhead < ask_merge_.count) fetch(ask_merge_.node[merges + kFetchAhead]);
+        merge(ask_merge_.node[merges], box);
+    }
+    return merges;
 }
 
 }  // namespace tact
