@@ -268,6 +268,21 @@ private:
         return DrawnHand{{tip, Quat::Identity()}, force, false};
     }
 
+    // Where the tool would be without the surface, and what holds it off.
+    std::optional<DrawnTouch> touch_marks() const {
+        if (!controller_.attached() || !controller_.have_touch) return std::nullopt;
+        const TouchTopic& t = controller_.touch;
+        const auto vec = [](const auto& v) {
+            return Vec3(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+        };
+        DrawnTouch drawn{vec(t.probe_model_m), vec(t.proxy_model_m), t.radius_model_m, t.planes, {}, {}};
+        for (std::uint32_t i = 0; i < t.planes; ++i) {
+            drawn.normal[i] = vec(t.normal_model[i]);
+            drawn.push_n[i] = static_cast<double>(t.push_n[i]);
+        }
+        return drawn;
+    }
+
     void follow_bodies(std::int64_t now_ns) {
         list_.predict(now_ns);
         const BodiesTopic* const topic =
@@ -319,6 +334,7 @@ private:
         if (controller_.attached()) view.second_hand = second_hand_.at(now_ns, content_->meta);
         state_.second_hand = view.second_hand.has_value();
         if (const auto pen = touching_pen()) view.second_hand = pen;
+        if (view_options_.force && content_->meta.kind == SceneKind::surface) view.touch = touch_marks();
         state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
         state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
         state_.force_n = view.force_world_n.norm();

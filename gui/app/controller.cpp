@@ -18,8 +18,8 @@ Controller::News Controller::poll() {
     if (news.arrived) {
         refusal_.clear();
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
-        seen_tool_ = seen_second_ = seen_bodies_ = seen_health_ = seen_levels_ = 0;
-        have_tool = have_second = have_bodies = have_health = have_levels = false;
+        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_health_ = seen_levels_ = 0;
+        have_tool = have_second = have_bodies = have_touch = have_health = have_levels = false;
         cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -49,6 +49,7 @@ Controller::Fresh Controller::read() {
     fresh.tool = take(region_->tool[0], seen_tool_, tool, have_tool);
     fresh.second = take(region_->tool[1], seen_second_, second, have_second);
     fresh.bodies = take(region_->bodies, seen_bodies_, bodies, have_bodies);
+    fresh.touch = take(region_->touch, seen_touch_, touch, have_touch);
     fresh.health = take(region_->health, seen_health_, health, have_health);
     fresh.levels = take(region_->levels, seen_levels_, levels, have_levels);
     return fresh;

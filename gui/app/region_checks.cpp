@@ -44,6 +44,18 @@ bool sensible(const ToolTopic& t) noexcept {
            near(t.torque_world_n_m) && near(t.force_model_n) && near(t.velocity_world_m_s);
 }
 
+bool sensible(const TouchTopic& t) noexcept {
+    if (!near(t.probe_model_m) || !near(t.proxy_model_m) || t.planes > kTouchPlanesMax ||
+        t.state > TouchState::lagging || !(t.radius_model_m >= 0.0 && t.radius_model_m < 1e3))
+        return false;
+    for (std::uint32_t i = 0; i < t.planes; ++i) {
+        const float* const n = t.normal_model[i];
+        const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        if (!(square > 0.98F && square < 1.02F && t.push_n[i] >= 0.0F && t.push_n[i] < 1e3F)) return false;
+    }
+    return true;
+}
+
 bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&

@@ -7,11 +7,13 @@
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/tool.hpp"
+#include "ipc/topics/touch.hpp"
 
 namespace tact {
 
 [[nodiscard]] bool sensible(const BodiesTopic& bodies) noexcept;
 [[nodiscard]] bool sensible(const ToolTopic& tool) noexcept;
+[[nodiscard]] bool sensible(const TouchTopic& touch) noexcept;
 [[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 

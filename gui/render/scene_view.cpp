@@ -120,6 +120,7 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glEnable(GL_DEPTH_TEST);
     if (options.force) draw_force(pass);
     if (frame.second_hand) draw_second_hand(pass);
+    if (frame.touch) draw_touch(pass);
     glDisable(GL_DEPTH_TEST);
     glBindVertexArray(0);
     glUseProgram(0);
@@ -187,6 +188,15 @@ void SceneView::draw_second_hand(const Pass& pass) {
     const float rgba[4] = {share(c[0]), share(c[1]), share(c[2]), 1.0F};
     programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, rgba);
     touched_wall_.draw();
+}
+
+void SceneView::draw_touch(const Pass& pass) {
+    const TubeMesh marks =
+        build_touch_marks(*pass.frame.touch, content_->centre_model_m, radius_a(), arrow_a_per_n());
+    if (marks.index.empty()) return;
+    touch_marks_.fill(marks, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    touch_marks_.draw();
 }
 
 void SceneView::draw_box(const Pass& pass) {

@@ -16,6 +16,7 @@
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/second_hand.hpp"
+#include "gui/render/touch_marks.hpp"
 #include "gui/render/triangle_buffers.hpp"
 
 namespace tact {
@@ -36,6 +37,7 @@ struct ViewFrame {
     std::uint32_t points_felt = 0;  // picks the level of the codebook that is shown
     Vec3 force_world_n = Vec3::Zero();
     std::optional<DrawnHand> second_hand;
+    std::optional<DrawnTouch> touch;
 };
 
 class SceneView {
@@ -75,6 +77,7 @@ private:
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
     void draw_second_hand(const Pass& pass);
+    void draw_touch(const Pass& pass);
     void draw_box(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
@@ -83,7 +86,7 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
-    TriangleBuffers arrow_, second_hand_, touched_wall_;
+    TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_;
     Points box_;
 };
 

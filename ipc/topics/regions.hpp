@@ -15,6 +15,7 @@
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
 #include "ipc/topics/tool.hpp"
+#include "ipc/topics/touch.hpp"
 
 namespace tact {
 
@@ -24,6 +25,7 @@ struct RtRegion {
     static constexpr char kName[] = "tact.rt";
     Latest<ToolTopic> tool[kHandsMax];
     Latest<BodiesTopic> bodies;
+    Latest<TouchTopic> touch;
     Latest<HeadTopic> head;
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
@@ -33,7 +35,7 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, HeadTopic, HealthTopic, LatenessTopic, LevelsTopic,
+    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, HeadTopic, HealthTopic, LatenessTopic, LevelsTopic,
                              EventTopic, TraceTopic>;
 };
 

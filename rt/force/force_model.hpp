@@ -55,6 +55,18 @@ struct ModelBodies {
     std::uint32_t options_asked = 0;  // and as ordered; they differ while a model is built aside
 };
 
+// What a model that touches a surface shows of it. Model metres.
+struct ModelTouch {
+    static constexpr std::size_t kPlanesMax = 3;
+    bool there = false;  // false: this model touches no surface, and the rest means nothing
+    Vec3 probe_m = Vec3::Zero(), proxy_m = Vec3::Zero();
+    double radius_m = 0.0;
+    std::uint32_t planes = 0;             // that hold the proxy
+    std::array<Vec3, kPlanesMax> normal;  // unit, towards the proxy
+    std::array<double, kPlanesMax> push_n{};
+    std::uint8_t state = 0;  // numbered as TouchState
+};
+
 // What a person asks of the bodies.
 struct ModelOrder {
     enum class Kind : std::uint8_t {
@@ -87,6 +99,7 @@ public:
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
+    [[nodiscard]] virtual ModelTouch touch() const noexcept TACT_RT { return {}; }
 
     // Constant time, between steps. No order makes the force step: what was felt fades out, and what is felt
     // from then on fades in from zero. False: refused, and nothing changed.

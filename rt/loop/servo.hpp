@@ -117,6 +117,7 @@ private:
     void bound_by_delay() noexcept TACT_RT;
     void glide(HandCycle& h, double dt_s) noexcept TACT_RT;
     void say_notice(HandCycle& h, std::uint32_t hand) noexcept TACT_RT;
+    void publish_touch(const CycleState& c) noexcept TACT_RT;
     void publish_tools(const CycleState& c) noexcept TACT_RT;
     void publish_health(const CycleState& c) noexcept TACT_RT;
     void publish_lateness(const CycleState& c) noexcept TACT_RT;

@@ -21,7 +21,7 @@ void put(double (&to)[4], const Quat& from) noexcept {
 }
 // The topic and the model say the same things in the same numbers; neither knows the other.
 static_assert(ModelBodies::kMax == kBodiesMax && ModelBodies::kNone == kNoBody &&
-              ModelBodies::kFixed == kBodyFixed);
+              ModelBodies::kFixed == kBodyFixed && ModelTouch::kPlanesMax == kTouchPlanesMax);
 static_assert(static_cast<int>(kOptionClash) == static_cast<int>(kDockingClash) &&
               static_cast<int>(kOptionSubtraction) == static_cast<int>(kDockingSubtraction) &&
               static_cast<int>(kOptionLaplacian) == static_cast<int>(kDockingLaplacian));
@@ -102,6 +102,25 @@ void Servo::publish_tools(const CycleState& c) noexcept {
         b.body[i].flags = bodies.flags[i];
     }
     region_.bodies.publish(b);
+    publish_touch(c);
+}
+
+void Servo::publish_touch(const CycleState& c) noexcept {
+    const ModelTouch touch = c.hand[0].model->touch();
+    if (!touch.there) return;
+    TouchTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.cycle = c.cycle;
+    put(t.probe_model_m, touch.probe_m);
+    put(t.proxy_model_m, touch.proxy_m);
+    t.radius_model_m = touch.radius_m;
+    t.planes = std::min(touch.planes, static_cast<std::uint32_t>(kTouchPlanesMax));
+    for (std::uint32_t i = 0; i < t.planes; ++i) {
+        put(t.normal_model[i], touch.normal[i]);
+        t.push_n[i] = static_cast<float>(touch.push_n[i]);
+    }
+    t.state = static_cast<TouchState>(touch.state);
+    region_.touch.publish(t);
 }
 
 void Servo::publish_health(const CycleState& c) noexcept {

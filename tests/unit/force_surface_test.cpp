@@ -173,6 +173,23 @@ TEST(Surface, APlanePushesBackByStiffnessTimesDepth) {
     }
 }
 
+TEST(Surface, WhatIsShownOfATouchIsWhatIsFelt) {
+    Hand hand(crossing(), plain(0.002), Vec3(0.01, 0.012, 0.014));
+    const Vec3 goal(-0.002, -0.003, 0.02);  // over one sheet, held by the two others
+    const Vec3 force = hand.lead(goal);
+    const ModelTouch touch = hand.model->touch();
+    ASSERT_TRUE(touch.there);
+    EXPECT_LT((kWorldPerModel * touch.probe_m - goal).norm(), 1e-9);
+    EXPECT_EQ(touch.proxy_m, hand.model->contact().proxy_m);
+    EXPECT_NEAR(kWorldPerModel * touch.radius_m, 0.002, 1e-12);
+    Vec3 pushed = Vec3::Zero();
+    for (std::uint32_t i = 0; i < touch.planes; ++i) pushed += touch.push_n[i] * touch.normal[i];
+    EXPECT_EQ(touch.planes, 2U);
+    EXPECT_LT((pushed - force).norm(), 0.01);
+    (void)hand.lead(Vec3(0.01, 0.012, 0.014));
+    EXPECT_EQ(hand.model->touch().planes, 0U);
+}
+
 TEST(Surface, ASheetWithoutThicknessIsFeltFromTheSideWhereTheToolCameFrom) {
     for (const double side : {1.0, -1.0}) {
         for (const double radius_m : {0.0, 0.002}) {

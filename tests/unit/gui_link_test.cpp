@@ -34,6 +34,27 @@ TEST(RegionChecks, AcceptWhatAControllerWrites) {
     EXPECT_TRUE(sensible(tool));
 }
 
+TEST(RegionChecks, RefuseATouchThatCannotBe) {
+    TouchTopic good{};
+    good.planes = 1;
+    good.normal_model[0][1] = 1.0F;
+    good.push_n[0] = 0.5F;
+    EXPECT_TRUE(sensible(good));
+    EXPECT_TRUE(sensible(TouchTopic{}));
+    const auto refused = [&](auto spoil) {
+        TouchTopic t = good;
+        spoil(t);
+        return !sensible(t);
+    };
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.planes = 4; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.proxy_model_m[2] = std::nan(""); }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.probe_model_m[0] = 1e9; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.normal_model[0][0] = 1.0F; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.push_n[0] = std::nanf(""); }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.radius_model_m = -1.0; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.state = static_cast<TouchState>(3); }));
+}
+
 TEST(RegionChecks, RefuseBodiesThatCannotBe) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();

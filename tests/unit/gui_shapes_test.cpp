@@ -1,10 +1,12 @@
 // Bonds, colours and shapes of atoms: gui/render/bonds, elements, atom_shapes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <set>
 
 #include "gui/render/atom_shapes.hpp"
+#include "gui/render/touch_marks.hpp"
 #include "gui/render/tube.hpp"
 #include "ipc/base/units.hpp"
 
@@ -128,6 +130,37 @@ TEST(Shapes, TheTraceIsBrokenWhereTheTubeIs) {
     EXPECT_EQ(strands_of(s).size(), 3U);  // of five, three and two atoms
     EXPECT_EQ(trace_of(s).size(), 4U + 2U + 1U);
     EXPECT_EQ(build_tubes(s, 10000).strands, 3U);
+}
+
+// How far the marks reach from a place along a direction, and against it; ångström.
+std::pair<float, float> extent(const TubeMesh& mesh, const Eigen::Vector3f& from,
+                               const Eigen::Vector3f& along) {
+    std::pair<float, float> found{1e9F, -1e9F};
+    for (const TubeVertex& v : mesh.vertex) {
+        const float at = along.dot(Eigen::Vector3f(v.position_a[0], v.position_a[1], v.position_a[2]) - from);
+        found = {std::min(found.first, at), std::max(found.second, at)};
+    }
+    return found;
+}
+
+TEST(TouchMarks, ReachFromTheProbeToTheProxyAndAsFarAsThePlanePushes) {
+    DrawnTouch touch;
+    touch.probe_model_m = kAngstromM * Vec3(10.0, -4.0, 0.0);
+    touch.proxy_model_m = kAngstromM * Vec3(10.0, 6.0, 0.0);
+    const Eigen::Vector3f centre(0.0F, 0.0F, 0.0F), up(0.0F, 1.0F, 0.0F);
+    const auto [low, high] = extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up);
+    EXPECT_NEAR(low, -4.0F - 1.4F, 1e-3F);  // a ball that can be seen
+    EXPECT_NEAR(high, 6.0F, 1e-3F);
+    touch.planes = 1;
+    touch.normal[0] = Vec3::UnitY();
+    touch.push_n[0] = 2.0;
+    EXPECT_NEAR(extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up).second, 46.0F,
+                0.1F);
+    touch.radius_model_m = 5.0 * kAngstromM;  // a ball is touched below its centre
+    EXPECT_NEAR(extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up).second, 41.0F,
+                0.1F);
+    touch.probe_model_m.x() = std::nan("");
+    EXPECT_TRUE(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F).index.empty());
 }
 
 }  // namespace

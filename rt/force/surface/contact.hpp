@@ -76,6 +76,7 @@ public:
     [[nodiscard]] const SurfaceMesh& mesh() const noexcept { return mesh_; }
     [[nodiscard]] const ContactSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] const Vec3& proxy_m() const noexcept TACT_RT { return proxy_m_; }
+    [[nodiscard]] const Vec3& goal_m() const noexcept TACT_RT { return goal_m_; }  // of the last step
     // The proxy is at the goal, or where that is inside a closed surface, outside at the nearest place.
     void seat(const Vec3& goal_m) noexcept TACT_RT;
     Contact follow(const Vec3& goal_m, std::uint32_t moves_max,

@@ -78,6 +78,21 @@ ModelBodies SurfaceModel::bodies() const noexcept {
     return list;
 }
 
+ModelTouch SurfaceModel::touch() const noexcept {
+    ModelTouch t;
+    t.there = true;
+    t.probe_m = solver_.goal_m();
+    t.proxy_m = solver_.proxy_m();
+    t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
+    t.state = static_cast<std::uint8_t>(contact_.state);
+    t.planes = contact_.planes;
+    for (std::uint32_t i = 0; i < t.planes; ++i) {
+        t.normal[i] = contact_.plane[i].normal;
+        t.push_n[i] = settings_.stiffness_n_m * meta_.world_per_model * contact_.plane[i].weight_m;
+    }
+    return t;
+}
+
 // What shading adds to the way from the tool to the proxy, model.
 Vec3 SurfaceModel::shaded_turn_m(const ContactPlane& plane) const noexcept {
     const SurfaceMesh& mesh = solver_.mesh();

@@ -59,6 +59,7 @@ public:
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
+    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
 
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const Contact& contact() const { return contact_; }       // of the last step

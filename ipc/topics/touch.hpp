@@ -1,0 +1,39 @@
+// Where the hand would be and where its proxy is, on a surface that is touched, every servo cycle.
+//
+// Published by models that touch a surface; without one the topic stays unwritten.
+// Frame     model, metres
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "ipc/shm/topic.hpp"
+
+namespace tact {
+
+inline constexpr std::size_t kTouchPlanesMax = 3;
+
+enum class TouchState : std::uint8_t {
+    settled,  // the proxy is as near to the hand as the surface lets it
+    gliding,  // on its way there, as far as one cycle may take it
+    lagging,  // the time of the cycle was not enough
+};
+
+struct alignas(64) TouchTopic {
+    static constexpr TopicInfo kInfo{.name = "touch", .version = 1, .writer = Writer::rt};
+    std::int64_t taken_at_ns;
+    std::uint64_t cycle;
+    double probe_model_m[3];   // the tool as the hand holds it, maybe inside the surface
+    double proxy_model_m[3];   // as the surface lets it
+    double radius_model_m;     // of the tool; 0: a point
+    float normal_model[3][3];  // of what holds the proxy, unit, towards it
+    float push_n[3];           // its share in the force, before friction and damping
+    std::uint32_t planes;      // how many of the three hold; 0: it is free
+    TouchState state;
+    std::uint8_t reserved[3];  // zero
+};
+static_assert(std::is_trivially_copyable_v<TouchTopic> && sizeof(TouchTopic) == 128);
+static_assert(offsetof(TouchTopic, normal_model) == 72);
+
+}  // namespace tact
