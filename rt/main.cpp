@@ -104,7 +104,7 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
-    app.add_option("--hand", v.hand, "of the emulated device: passive or wander");
+    app.add_option("--hand", v.hand, "of the emulated device: passive, wander or stroke");
     app.add_option("--tool-radius-mm", o.tool_radius_mm,
                    "of the ball that touches a surface, in the hand's space; 0: a point")
         ->check(CLI::Range(0.0, 50.0));

@@ -1,5 +1,5 @@
 // tact demo dock: a synthetic ring of six, started away from its place, is drawn into its 12 A map.
-// tact demo touch: a hand wanders over a rough terrain or sphere.
+// tact demo touch: a hand strokes a rough terrain or sphere.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"
@@ -33,7 +33,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     add_run_options(*touch, *touch_options);
     touch->callback([touch_options, shape, &exit_code] {
-        let_the_hand_wander(*touch_options);
+        let_the_hand_stroke(*touch_options);
         const auto scene =
             baked_scene({.inputs = {}, .words = {"demo", "touch", "--shape", *shape}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *touch_options);

@@ -24,7 +24,7 @@ void touch(TouchOptions& o, int& exit_code) {
         std::puts(scene.c_str());
         exit_code = 0;
     } else {
-        let_the_hand_wander(o.run);
+        let_the_hand_stroke(o.run);
         exit_code = run_scene(scene, o.run);
     }
 }

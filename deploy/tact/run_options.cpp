@@ -30,7 +30,7 @@ constexpr Passed kController[] = {
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},
     {"--force-scale", "X", "gain of the shown force"},
-    {"--hand", "NAME", "what the emulated hand does: passive or wander"},
+    {"--hand", "NAME", "what the emulated hand does: passive, wander or stroke"},
     {"--tool-radius-mm", "R", "of the ball that touches a surface; 0: a point"},
     {"--stiffness", "N/M", "of a surface"},
     {"--friction", "MU", "of a surface"},
@@ -42,9 +42,9 @@ bool RunOptions::has_controller_option(const std::string& name) const {
     return std::find(controller.begin(), controller.end(), name) != controller.end();
 }
 
-void let_the_hand_wander(RunOptions& options) {
+void let_the_hand_stroke(RunOptions& options) {
     if (!options.has_controller_option("--hand") && !options.has_controller_option("--config"))
-        options.controller.insert(options.controller.end(), {"--hand", "wander"});
+        options.controller.insert(options.controller.end(), {"--hand", "stroke"});
 }
 
 void RunOptions::settle() {

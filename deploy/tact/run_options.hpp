@@ -33,8 +33,8 @@ struct RunOptions {
     void settle();
 };
 
-// A surface moves nobody: without a device and without another wish, the emulated hand wanders over it.
-void let_the_hand_wander(RunOptions& options);
+// A surface moves nobody: without a device and without another wish, the emulated hand strokes it.
+void let_the_hand_stroke(RunOptions& options);
 
 void add_run_options(CLI::App& app, RunOptions& options);
 

@@ -53,7 +53,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--rate-hz", o.rate_hz, "of the arms' states")->check(CLI::Range(100, 8000));
     app.add_option("--watchdog-ms", o.watchdog_ms, "of the arms; a patient one for emulated processors")
         ->check(CLI::Range(1, 60'000));
-    app.add_option("--hand", o.hand, "on the arms: passive or wander");
+    app.add_option("--hand", o.hand, "on the arms: passive, wander or stroke");
     app.add_option("--seed", o.seed, "of hands and head");
     app.add_flag("--no-ritual", o.no_ritual, "nobody takes the arms to their calibration pose");
     app.add_option("--slow", o.slow, "the calibration takes so many times as long")

@@ -2,7 +2,8 @@
 //
 // Frame     device
 // Step      exact for a force that is constant over it, so stable at any step and any servo rate
-// Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about.
+// Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about. stroke: the
+//           same, mostly sideways, and down, so that it rests on what is there.
 #pragma once
 
 #include <array>
@@ -20,7 +21,7 @@ namespace tact {
 // grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
 // such that 0.05 N m turns it by 150 degrees a second.
 struct SimHandSettings {
-    std::string script = "passive";  // "passive", "wander"
+    std::string script = "passive";  // "passive", "wander", "stroke"
     std::uint64_t seed = 1;
     double mass_kg = 0.25;
     double damping_n_s_m = 5.0;
@@ -28,6 +29,7 @@ struct SimHandSettings {
     double damping_n_m_s = 0.02;
     double wander_m = 0.03;  // amplitude
     double wander_rad = 0.3;
+    double press_m = 0.03;  // how far down a stroking hand means to be
 };
 
 class SimHand {
@@ -50,7 +52,7 @@ private:
 
     SimHandSettings settings_;
     Vec3 reach_m_;
-    bool wanders_;
+    bool wanders_, strokes_;
     Waves waves_{};
     double time_s_ = 0.0;
     Pose pose_;

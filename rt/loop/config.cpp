@@ -53,7 +53,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
         {"device.driver", &c.device.driver, 0, 0, {}},
-        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander"}},
+        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander", "stroke"}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e7, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},

@@ -120,6 +120,27 @@ TEST(SimHand, wanders_smoothly_within_bounds_and_the_same_way_for_the_same_seed)
     EXPECT_LT(fastest, 0.5);
 }
 
+TEST(SimHand, a_stroking_hand_goes_down_and_rests_on_what_holds_it) {
+    SimHandSettings settings;
+    settings.script = "stroke";
+    SimHand free(settings, Vec3::Constant(0.2)), held(settings, Vec3::Constant(0.2));
+    constexpr double kGroundM = -0.01, kGroundN_M = 1000.0;
+    double least_n = 1e9, most_n = 0.0, farthest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+        free.step(milliseconds(1), {});
+        const double push_n = std::max(0.0, kGroundN_M * (kGroundM - held.pose().p_m.y()));
+        held.step(milliseconds(1), {Vec3(0.0, push_n, 0.0), Vec3::Zero()});
+        if (i < 5000) continue;
+        EXPECT_LT(free.pose().p_m.y(), -0.02);
+        least_n = std::min(least_n, push_n);
+        most_n = std::max(most_n, push_n);
+        farthest = std::max(farthest, Vec3(held.pose().p_m.x(), 0.0, held.pose().p_m.z()).norm());
+    }
+    EXPECT_GT(least_n, 0.2);
+    EXPECT_LT(most_n, 3.0);
+    EXPECT_GT(farthest, 0.005);
+}
+
 TEST(SimHand, an_unknown_script_is_refused_in_words) {
     SimHandSettings settings;
     settings.script = "dance";
