@@ -33,6 +33,7 @@
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/pointer_model.hpp"
 #include "rt/force/surface/surface_model.hpp"
+#include "rt/force/surface/tool_model.hpp"
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
@@ -106,7 +107,8 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->excludes(copies);
     app.add_option("--hand", v.hand, "of the emulated device: passive, wander or stroke");
     app.add_option("--tool-radius-mm", o.tool_radius_mm,
-                   "of the ball that touches a surface, in the hand's space; 0: a point")
+                   "of the ball that touches a surface, in the hand's space; 0: a point. Of a tool that is a "
+                   "mesh: of the balls at its points; 0: as baked")
         ->check(CLI::Range(0.0, 50.0));
     app.add_option("--stiffness", o.surface.stiffness_n_m, "of a surface, N/m")
         ->check(CLI::Range(1.0, 20000.0))
@@ -161,6 +163,7 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o)
     if (read_meta(scene).kind == SceneKind::surface) {
         SurfaceSettings settings = o.surface;
         settings.radius_m = 1e-3 * o.tool_radius_mm;
+        if (has_touch_tool(scene)) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
     return load_docking_model(scene, docking_settings(o, scene));

@@ -8,6 +8,7 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/touch_paths.hpp"
 #include "deploy/tact/touch_run.hpp"
+#include "deploy/tact/touch_tool_run.hpp"
 #include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/error.hpp"
 
@@ -35,6 +36,7 @@ SurfaceSettings measured(double radius_m, bool shading) {
 json bench_surface() {
     json all;
     std::uint64_t jammed = 0, unsettled = 0;
+    const TouchTool block = bake_tool_to_measure("block"), scaler = bake_tool_to_measure("scaler");
     for (const auto& [key, parts] : {std::pair<std::string, int>{"92k", 68}, {"2m", 316}, {"10m", 707}}) {
         const ScratchFolder scratch;
         const auto scene = scratch.path() / "surface.tact";
@@ -45,17 +47,21 @@ json bench_surface() {
         const SceneFile file = SceneFile::open(scene);
         const SurfaceMesh surface = read_surface(file);
         const std::vector<Vec3> path = touch_path_m(surface, TouchWay::slide, 1.0, kSlideSamples);
-        for (const auto& [tool, radius_m] :
-             {std::pair<std::string, double>{"point", 0.0}, {"sphere1mm", 1e-3}, {"sphere3mm", 3e-3}}) {
-            const std::vector<TouchStep> steps =
-                touch_along(surface, path, measured(radius_m, true), kPasses);
+        const auto count = [&](const std::string& tool, const std::vector<TouchStep>& steps) {
             all[tool + "_us_p50_" + key] = percentile_us(steps, 0.5);
             all[tool + "_us_p99_" + key] = percentile_us(steps, 0.99);
             all[tool + "_us_p999_" + key] = percentile_us(steps, 0.999);
             all[tool + "_us_max_" + key] = percentile_us(steps, 1.0);
             jammed += jammed_cycles(steps);
             unsettled += unsettled_cycles(steps);
-        }
+        };
+        for (const auto& [tool, radius_m] :
+             {std::pair<std::string, double>{"point", 0.0}, {"sphere1mm", 1e-3}, {"sphere3mm", 3e-3}})
+            count(tool, touch_along(surface, path, measured(radius_m, true), kPasses));
+        for (const auto& [name, tool] :
+             {std::pair<std::string, const TouchTool*>{"tool1000", &block}, {"scaler1000", &scaler}})
+            count(name,
+                  touch_tool_along(surface, *tool, tool_path(path, *tool), measured(0.0, false), kPasses));
     }
     all["jammed_cycles"] = jammed;
     all["unsettled_cycles"] = unsettled;

@@ -3,6 +3,8 @@
 // Work     a rough sphere of about 50 mm radius, made by tact-prep, with the number of triangles in the key
 //          (92k: 92 480, 2m: 1 997 120, 10m: 9 996 980); a tool slides over it at about 55 mm/s, 1.5 +- 0.5 mm
 //          deep, 0.5 N/mm, 1000 positions a second for 4 s.
+// Tools    tool1000: 1000 points of a block of 16 x 8 x 12 mm, one side flat on the sphere; scaler1000: of a
+//          dentist's scaler, on its tip
 // Method   touch_run.hpp; three passes. Jammed are cycles, five or more in a row, whose proxy stands.
 // Memory   some 4 GB for the largest, while it is baked
 // Fails by StartupError: tact-prep does not bake, a mesh or path cannot be read.

@@ -5,6 +5,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/run.hpp"
 #include "deploy/tact/scene_cache.hpp"
+#include "deploy/tact/tool_options.hpp"
 
 namespace tact::launch {
 
@@ -31,11 +32,13 @@ void add_demo(CLI::App& app, int& exit_code) {
     touch->add_option("--shape", *shape, "terrain or sphere")
         ->check(CLI::IsMember({"terrain", "sphere"}))
         ->capture_default_str();
+    const auto tool = add_tool_options(*touch);
     add_run_options(*touch, *touch_options);
-    touch->callback([touch_options, shape, &exit_code] {
+    touch->callback([touch_options, shape, tool, &exit_code] {
         let_the_hand_stroke(*touch_options);
-        const auto scene =
-            baked_scene({.inputs = {}, .words = {"demo", "touch", "--shape", *shape}, .options = {}});
+        BakeRequest request{.inputs = {}, .words = {"demo", "touch", "--shape", *shape}, .options = {}};
+        tool->add_to(request);
+        const auto scene = baked_scene(request);
         exit_code = scene.empty() ? 130 : run_scene(scene, *touch_options);
     });
 }

@@ -4,6 +4,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/run.hpp"
 #include "deploy/tact/scene_cache.hpp"
+#include "deploy/tact/tool_options.hpp"
 
 namespace tact::launch {
 namespace {
@@ -12,12 +13,15 @@ struct TouchOptions {
     RunOptions run;
     std::filesystem::path mesh;
     std::vector<std::string> prep;
+    std::shared_ptr<ToolOptions> tool;
     bool bake_only = false;
 };
 
 void touch(TouchOptions& o, int& exit_code) {
-    const auto scene = baked_scene(
-        {.inputs = {o.mesh}, .words = {"touch", std::filesystem::absolute(o.mesh)}, .options = o.prep});
+    BakeRequest request{
+        .inputs = {o.mesh}, .words = {"touch", std::filesystem::absolute(o.mesh)}, .options = o.prep};
+    o.tool->add_to(request);
+    const auto scene = baked_scene(request);
     if (scene.empty()) {
         exit_code = 130;
     } else if (o.bake_only) {
@@ -52,6 +56,7 @@ void add_touch(CLI::App& app, int& exit_code) {
                 help)
             ->type_name(type);
     }
+    o->tool = add_tool_options(*command);
     add_run_options(*command, o->run);
     command->callback([o, &exit_code] { touch(*o, exit_code); });
 }

@@ -107,6 +107,10 @@ public:
     [[nodiscard]] SurfacePoint nearest(const Vec3& point_m, double radius_m,
                                        std::uint32_t hint = SurfacePoint::kNone,
                                        std::uint32_t visits_max = kVisitsMax) const noexcept TACT_RT;
+    // Nothing of the surface is nearer than this, which is at the most at_most_m: the distance of the leaves'
+    // boxes, without a look at triangles. 0 where the visits were used up.
+    [[nodiscard]] double clearance_m(const Vec3& point_m, double at_most_m,
+                                     std::uint32_t visits_max = kVisitsMax) const noexcept TACT_RT;
     // Interpolated from the corners; never zero length.
     [[nodiscard]] Vec3 normal_at(const SurfacePoint& at) const noexcept TACT_RT;
     // Counter-clockwise; zero where it has no area.

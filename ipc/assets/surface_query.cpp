@@ -164,6 +164,43 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
     return best;
 }
 
+double SurfaceMesh::clearance_m(const Vec3& point_m, double at_most_m,
+                                std::uint32_t visits_max) const noexcept {
+    if (!point_m.allFinite() || node_.empty()) return 0.0;
+    const F4 x = all(static_cast<float>(point_m.x())), y = all(static_cast<float>(point_m.y())),
+             z = all(static_cast<float>(point_m.z()));
+    struct Entry {
+        float square;
+        std::uint32_t node;
+    };
+    std::array<Entry, kStack> stack;  // filled before it is read
+    std::size_t depth = 0;
+    stack[depth++] = {0.0F, 0};
+    auto least = static_cast<float>(std::min(at_most_m * at_most_m, 1e36));
+    while (depth > 0 && least > 0.0F) {
+        const Entry entry = stack[--depth];
+        if (!(entry.square < least)) continue;
+        if (visits_max-- == 0) return 0.0;
+        const SurfaceNode& node = node_[entry.node];
+        const F4 squares = box_squares(node, x, y, z);
+        const std::size_t begin = depth;
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (!(squares[k] < least) || node.child[k] == SurfaceNode::kNone) continue;
+            if ((node.child[k] & SurfaceNode::kLeaf) != 0) {
+                least = squares[k];
+                continue;
+            }
+            // The nearest one on top.
+            std::size_t i = depth++;
+            for (; i > begin && stack[i - 1].square < squares[k]; --i) stack[i] = stack[i - 1];
+            stack[i] = {squares[k], node.child[k]};
+        }
+    }
+    // The point and the boxes in single precision.
+    const double rounding = 2e-7 * (largest_m_ + point_m.cwiseAbs().maxCoeff());
+    return std::max(std::sqrt(static_cast<double>(least)) * (1.0 - 1e-6) - rounding, 0.0);
+}
+
 Vec3 SurfaceMesh::normal_at(const SurfacePoint& at) const noexcept {
     const auto corner = corners(at.triangle);
     const Vec3 sum =

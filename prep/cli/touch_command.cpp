@@ -13,6 +13,7 @@
 #include "prep/mesh_file/import_mesh.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/surface/clean_mesh.hpp"
+#include "prep/synthetic/made_tool.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
 
 namespace tact {
@@ -29,6 +30,9 @@ constexpr Unit kUnits[] = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6},
 struct TouchSettings {
     std::string mesh, scene, unit = "mm", up = "y", shape = "terrain";
     double size_mm = 150.0;
+    std::string tool, tool_unit = "mm", tool_up = "y", tool_grip = "middle";
+    double tool_size_mm = 0.0;
+    std::uint32_t tool_points = 1000;
     std::uint32_t parts = 0, vertices_max = 500'000;
     bool no_picture = false, no_forest = false, compare_locality = false, json = false;
 };
@@ -38,6 +42,44 @@ std::string shown_plain(std::string text) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     }
     return text;
+}
+
+// From the file's unit; y up.
+void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& up) {
+    const auto unit =
+        std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return name == u.name; });
+    const auto scale = static_cast<float>(unit->metres);
+    for (std::size_t v = 0; v < mesh.position_m.size(); v += 3) {
+        float* const p = mesh.position_m.data() + v;
+        for (int axis = 0; axis < 3; ++axis) p[axis] *= scale;
+        if (up == "z") {  // turned about x
+            const float y = p[1];
+            p[1] = p[2];
+            p[2] = -y;
+        }
+    }
+}
+
+// One of those made in code, or from a file.
+void add_tool(const TouchSettings& o, SurfaceInput& input, Console& console) {
+    if (o.tool.empty()) return;
+    input.tool = made_tool(o.tool);
+    if (input.tool.triangles() > 0) {
+        input.tool_sampling.grip_in_middle = false;
+        input.note.push_back("tool mesh: " + o.tool + ", made by tact-prep");
+    } else {
+        ImportedMesh in = import_mesh(o.tool, console.progress());
+        const CleanReport cleaned = clean_mesh(in.mesh, 0.0, console.progress());
+        to_metres(in.mesh, o.tool_unit, o.tool_up);
+        input.tool = std::move(in.mesh);
+        input.tool_sampling.grip_in_middle = o.tool_grip == "middle";
+        input.note.push_back("tool mesh: " + shown_plain(fs::absolute(o.tool).string()));
+        input.note.push_back("tool unit: " + o.tool_unit + ", " + o.tool_up + " up, held in its " +
+                             o.tool_grip);
+        input.note.push_back("tool repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none")));
+    }
+    input.tool_sampling.points = o.tool_points;
+    input.tool_size_m = 1e-3 * o.tool_size_mm;
 }
 
 SurfaceInput touch_file(const TouchSettings& o, Console& console) {
@@ -51,18 +93,7 @@ SurfaceInput touch_file(const TouchSettings& o, Console& console) {
                          1e-9);
     });
     const CleanReport cleaned = clean_mesh(in.mesh, 0.0, console.progress());
-    const auto unit =
-        std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return o.unit == u.name; });
-    const auto scale = static_cast<float>(unit->metres);
-    for (std::size_t v = 0; v < in.mesh.position_m.size(); v += 3) {
-        float* const p = in.mesh.position_m.data() + v;
-        for (int axis = 0; axis < 3; ++axis) p[axis] *= scale;
-        if (o.up == "z") {  // turned about x
-            const float y = p[1];
-            p[1] = p[2];
-            p[2] = -y;
-        }
-    }
+    to_metres(in.mesh, o.unit, o.up);
     input.note = {"mesh: " + shown_plain(fs::absolute(o.mesh).string()), "mesh format: " + in.format,
                   "mesh unit: " + o.unit + ", " + o.up + " up",
                   "mesh repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none"))};
@@ -83,11 +114,14 @@ SurfaceInput touch_made(const TouchSettings& o) {
 }
 
 void touch(const TouchSettings& o, bool made) {
-    check_target("write scene", o.scene,
-                 made ? std::vector<std::string>{} : std::vector<std::string>{o.mesh});
+    std::vector<std::string> inputs;
+    if (!made) inputs.push_back(o.mesh);
+    if (!o.tool.empty() && made_tool(o.tool).triangles() == 0) inputs.push_back(o.tool);
+    check_target("write scene", o.scene, inputs);
     const auto started = std::chrono::steady_clock::now();
     Console console;
     SurfaceInput input = made ? touch_made(o) : touch_file(o, console);
+    add_tool(o, input, console);
     input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
     input.size_m = 1e-3 * o.size_mm;
     input.picture = !o.no_picture;
@@ -105,6 +139,7 @@ void touch(const TouchSettings& o, bool made) {
                                           {"vertices", baked.vertices},
                                           {"triangles", baked.triangles},
                                           {"closed", baked.closed},
+                                          {"tool_points", baked.tool_points},
                                           {"picture_vertices", baked.picture_vertices},
                                           {"world_per_model", baked.meta.world_per_model},
                                           {"bytes_per_triangle", baked.bytes_per_triangle},
@@ -134,6 +169,25 @@ void add_touch(CLI::App& app, CLI::App& demo) {
         sub->add_flag("--compare-locality", o->compare_locality,
                       "also tells how wide the parts below nodes are without localization")
             ->excludes(no_forest);
+        sub->add_option("--tool", o->tool,
+                        "what touches, instead of a ball: a mesh as above, or scaler or block, made here");
+        sub->add_option("--tool-unit", o->tool_unit, "of the tool's file, as --unit")
+            ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
+            ->capture_default_str();
+        sub->add_option("--tool-up", o->tool_up, "axis of the tool's file that points up: y or z")
+            ->check(CLI::IsMember({"y", "z"}))
+            ->capture_default_str();
+        sub->add_option("--tool-size-mm", o->tool_size_mm,
+                        "how wide its diagonal is in the hand's space; 0: as large against the mesh as it is")
+            ->check(CLI::Range(0.0, 1000.0))
+            ->capture_default_str();
+        sub->add_option("--tool-points", o->tool_points, "at which it is felt")
+            ->check(CLI::Range(1U, TouchTool::kPointsMax))
+            ->capture_default_str();
+        sub->add_option("--tool-grip", o->tool_grip,
+                        "where the hand holds it: the middle of its surface, or the origin of its file")
+            ->check(CLI::IsMember({"middle", "origin"}))
+            ->capture_default_str();
         sub->add_flag("--no-picture", o->no_picture, "nothing to look at, for measurements");
         sub->add_flag("--json", o->json, "print what was baked as JSON");
     };

@@ -50,6 +50,42 @@ std::size_t bytes_of(const VertexForestData& forest) {
            forest.node.size() * sizeof(ForestNode) + forest.triangle.size() * sizeof(ForestTriangle);
 }
 
+// Sampled in the scene's model; the surface goes so far down that the tool does not reach into it.
+void bake_tool(SurfaceInput& input, SceneWriter& out, BakedSurface& baked, const Progress& progress) {
+    TriangleMesh& mesh = input.tool;
+    if (input.tool_size_m > 0.0) {
+        Eigen::Vector3f low = Eigen::Vector3f::Constant(3e38F), high = -low;
+        for (std::size_t v = 0; v < mesh.vertices(); ++v) {
+            const Eigen::Vector3f p = Eigen::Map<const Eigen::Vector3f>(mesh.position_m.data() + 3 * v);
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        const double diagonal_m = static_cast<double>((high - low).norm());
+        if (!(diagonal_m > 1e-12) || !std::isfinite(diagonal_m))
+            throw StartupError("bake a tool", "its diagonal is " + std::to_string(diagonal_m) + " m",
+                               "check the tool's mesh");
+        const auto scale = static_cast<float>(input.tool_size_m / diagonal_m / baked.meta.world_per_model);
+        for (float& x : mesh.position_m) x *= scale;
+    }
+    const TouchTool tool = sample_tool(std::move(mesh), input.tool_sampling, progress);
+    double lowest = 0.0, reach = 0.0;
+    for (std::size_t i = 0; i < tool.points(); ++i) {
+        lowest = std::min(lowest, tool.at_m(i).y());
+        reach = std::max(reach, tool.at_m(i).norm());
+    }
+    baked.meta.centre_model_m[1] -= lowest;
+    baked.tool_points = tool.points();
+    const double mm = 1e3 * baked.meta.world_per_model;
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "tool: %zu points, %.3g mm apart in the hand's space, reaching %.3g mm from the hand; balls of "
+        "%.3g mm\n",
+        tool.points(), mm * static_cast<double>(tool.cover_m.back()), mm * reach, mm * tool.ball_m);
+    baked.note += line;
+    write_touch_tool(out, tool);
+}
+
 }  // namespace
 
 BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress& progress) {
@@ -100,6 +136,7 @@ BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress
     std::snprintf(line, sizeof line, "hand: 1 mm is %.6g m of the model; the diagonal is %.0f mm wide\n",
                   1e-3 / baked.meta.world_per_model, 1e3 * input.size_m);
     baked.note += line;
+    if (input.tool.triangles() > 0) bake_tool(input, out, baked, progress);
     write_meta(out, baked.meta, baked.note);
     write_surface(out, data);
     if (input.forest) write_forest(out, forest);

@@ -10,11 +10,14 @@
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
 #include "ipc/assets/surface_mesh.hpp"
+#include "ipc/assets/touch_tool.hpp"
 #include "ipc/base/error.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/surface/build_surface.hpp"
 #include "prep/surface/forest_builder.hpp"
+#include "prep/surface/sample_tool.hpp"
 #include "rt/force/surface/refinement.hpp"
+#include "rt/force/surface/tool_model.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/unit/assets_samples.hpp"
 
@@ -23,7 +26,7 @@ namespace {
 
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
-                                {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}};
+                                {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}, {'T', 'O', 'O', 'L'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -65,6 +68,7 @@ const std::vector<Input>& good_sections() {
         write_progressive_mesh(scene, 0, octahedron);
         write_surface(scene, build_surface(octahedron));
         write_forest(scene, terrain().forest.data);
+        write_touch_tool(scene, sample_tool(octahedron, {.points = 12}));
         const Input bytes = scene.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
         std::vector<Input> good;
@@ -150,6 +154,32 @@ void use_forest(const SceneFile& file) {
     }
 }
 
+// Over the octahedron, so that whatever is accepted can be stepped.
+void use_tool(const SceneFile& file) {
+    const TouchTool tool = read_touch_tool(file);
+    require(tool.normal.size() == tool.points() && tool.cover_m.size() == tool.points());
+    for (const std::uint32_t v : tool.drawn) require(v < tool.drawn_m.size() / 3);
+    static const std::vector<std::byte> bytes = [] {
+        SceneWriter out;
+        TriangleMesh mesh;
+        mesh.position_m = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+        mesh.triangle = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+        write_surface(out, build_surface(mesh));
+        return out.to_bytes();
+    }();
+    const SceneFile surface = SceneFile::from_bytes(bytes, "surface");
+    SceneMeta meta{};
+    meta.kind = SceneKind::surface;
+    meta.world_per_model = 0.01;
+    ToolModel model(meta, read_surface(surface), tool, {});
+    ToolState hand;
+    model.reset(hand);
+    for (int i = 0; i < 8; ++i) {
+        hand.T_world_tool.p_m = Vec3(0.02 - 0.004 * i, 0.003, 0.002 * i);
+        require(model.step(hand, {}).wrench_world.finite());
+    }
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
@@ -174,6 +204,7 @@ bool run(std::span<const std::byte> input) {
         sections += accepted([&] { use_mesh(file); });
         sections += accepted([&] { use_surface(file); });
         sections += accepted([&] { use_forest(file); });
+        sections += accepted([&] { use_tool(file); });
     });
     return sections == std::size(kTags);
 }

@@ -24,6 +24,18 @@ double shaded_share(double cosine) noexcept {
 }
 
 ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s) {
+    check_surface_settings(s);
+    const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
+    // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
+    const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
+    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
+    return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
+            glide / meta.world_per_model};
+}
+
+}  // namespace
+
+void check_surface_settings(const SurfaceSettings& s) {
     const auto within = [](const char* what, double value, double low, double high) {
         if (!(value >= low && value <= high))
             throw StartupError(
@@ -36,15 +48,7 @@ ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s
     within("damping in N s/m", s.damping_n_s_m, 0.0, 10.0);
     within("friction", s.friction, 0.0, 2.0);
     within("force limit in N", s.force_n_max, 0.1, 100.0);
-    const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
-    // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
-    const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
-    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
-    return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
-            glide / meta.world_per_model};
 }
-
-}  // namespace
 
 SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings)
     : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)) {}

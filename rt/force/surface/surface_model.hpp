@@ -41,6 +41,9 @@ struct SurfaceSettings {
     double force_n_max = 12.0;
 };
 
+// Fails by StartupError where one is out of range.
+void check_surface_settings(const SurfaceSettings& settings);
+
 class SurfaceModel final : public ForceModel {
 public:
     static constexpr const char* kKnobPath = "surface.force";

@@ -1,0 +1,45 @@
+#include "deploy/tact/tool_options.hpp"
+
+namespace tact::launch {
+
+void ToolOptions::add_to(BakeRequest& request) const {
+    if (tool.empty()) return;
+    std::error_code none;
+    const bool file = std::filesystem::exists(tool, none);
+    if (file) request.inputs.emplace_back(tool);
+    request.options.insert(request.options.end(),
+                           {"--tool", file ? std::filesystem::absolute(tool).string() : tool});
+    request.options.insert(request.options.end(), prep.begin(), prep.end());
+}
+
+std::shared_ptr<ToolOptions> add_tool_options(CLI::App& app) {
+    const auto o = std::make_shared<ToolOptions>();
+    auto* const group = app.add_option_group("Tool", "what touches, instead of a ball");
+    auto* const tool =
+        group
+            ->add_option("--tool", o->tool,
+                         "a mesh, in six degrees of freedom and with torque; or scaler or block, "
+                         "which are made here")
+            ->type_name("FILE|NAME");
+    for (const auto& [name, type, help] :
+         {std::tuple("--tool-unit", "UNIT", "of the tool's file, as --unit; default mm"),
+          std::tuple("--tool-up", "AXIS", "of the tool's file that points up: y (default) or z"),
+          std::tuple(
+              "--tool-size-mm", "MM",
+              "how wide its diagonal is in the hand's space; default: as large against the mesh as it is"),
+          std::tuple("--tool-points", "N", "at which it is felt, evenly over its surface; default 1000"),
+          std::tuple("--tool-grip", "PLACE", "where it is held: middle (default) or origin of its file")}) {
+        group
+            ->add_option_function<std::string>(
+                name,
+                [o, n = std::string(name)](const std::string& v) {
+                    o->prep.insert(o->prep.end(), {n, v});
+                },
+                help)
+            ->type_name(type)
+            ->needs(tool);
+    }
+    return o;
+}
+
+}  // namespace tact::launch

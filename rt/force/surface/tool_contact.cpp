@@ -1,0 +1,246 @@
+#include "rt/force/surface/tool_contact.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kLeavesOfPoint = 1024, kBeyondAtOnce = 48;
+constexpr int kMoveRounds = 12;
+constexpr double kGoneSteps = 1.5;   // a proxy on a slope travels farther than the goal
+constexpr double kLookedWays = 1.3;  // a look reaches so much farther than the way asks for
+constexpr double kAskedRooms = 4.0;  // a point with a bound of so many ways is asked before it is looked at
+constexpr double kRestingShare = 0.02;  // of a margin: what is left is rounding
+
+Vec3 linear(const Vec6& y) { return y.head<3>(); }
+
+}  // namespace
+
+ToolContact::ToolContact(const SurfaceMesh& mesh, const TouchTool& tool, const ToolContactSettings& settings)
+    : mesh_(mesh),
+      settings_(settings),
+      points_(mesh, tool, settings.ball_m),
+      kernel_(&best_look_kernel()),
+      leaf_(kLeavesOfPoint),
+      number_(4 * kLeavesOfPoint + kLooks),
+      beyond_(kBeyondAtOnce),
+      // An arc of angle a leaves its tangent by a^2 / 2 of its radius.
+      turn_max_rad_(std::min(std::sqrt(2.0 * settings.margin_m / points_.reach_m()), 0.2)) {}
+
+Vec6 ToolContact::way_m(const Pose& from, const Pose& to) const noexcept {
+    Vec6 way;
+    way << to.p_m - from.p_m,
+        points_.gyration_m() * rotation_vector_rad((to.q * from.q.conjugate()).normalized());
+    return way;
+}
+
+void ToolContact::seat(const Pose& goal) noexcept {
+    goal_ = proxy_ = {goal.p_m, goal.q.normalized()};
+    proxy_.p_m = points_.seat(proxy_);
+    held_count_ = 0;
+    last_move_m_ = 0.0;
+    seating_ = kSeatingMost;
+}
+
+// The guards of all triangles that a ball touches within reach_m; shorter, where there are too many.
+bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept {
+    const Vec3 place = points_.place_m(point);
+    const Eigen::Vector3f lever = points_.lever_m(point) / static_cast<float>(points_.gyration_m());
+    const double ball = settings_.ball_m, edge = ball - settings_.margin_m;
+    LookJob job = mesh_.look_job(place);
+    TriangleLooks seen;
+    for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
+        ++touch.looked;
+        std::size_t leaves = 0, count = 0;
+        if (!mesh_.leaves_near(place, ball + reach_m, leaf_, leaves)) continue;
+        for (std::size_t l = 0; l < leaves; ++l) {
+            const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
+            for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaf_[l]); ++k)
+                number_[count++] = first + k;
+        }
+        job.limit = static_cast<float>(ball + reach_m);
+        float least = job.limit;
+        for (std::size_t first = 0; first < count; first += kLooks) {
+            const std::size_t lanes = std::min(kLooks, count - first);
+            for (std::size_t lane = lanes; lane < kLooks; ++lane) number_[first + lane] = number_[first];
+            job.triangle = &number_[first];
+            kernel_->look(job, seen);
+            std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
+            for (; near != 0; near &= near - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+                const double distance = static_cast<double>(seen.distance[lane]),
+                             height = static_cast<double>(seen.height[lane]) - ball;
+                least = std::min(least, seen.distance[lane]);
+                const bool over = (seen.over >> lane & 1U) != 0;
+                // Out again by no more than a margin a move.
+                const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
+                if (!guards_.add(point, number_[first + lane], lever, seen, lane, static_cast<float>(slack),
+                                 static_cast<float>(height), !over && height >= 0.0))
+                    return false;
+            }
+        }
+        points_.saw(point, static_cast<double>(least) * (1.0 - 1e-6), reach_m);
+        return true;
+    }
+    return false;
+}
+
+Vec6 ToolContact::held_back(const TwistGuards::Solution& free, const Vec6& goal_m,
+                            double tolerance_m) const noexcept {
+    const Vec6 lift = free.move_m - goal_m;
+    const double depth = lift.norm();
+    if (!(depth > 0.0) || free.active_count == 0) return free.move_m;
+    // It falls freely on what it does not touch yet.
+    bool touches = false;
+    for (std::size_t i = 0; i < free.active_count; ++i)
+        touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
+    if (!touches) return free.move_m;
+    const Vec6 normal = lift / depth;
+    const Vec6 along = free.move_m - normal.dot(free.move_m) * normal;
+    const double way = along.norm(), held = settings_.friction * depth;
+    const Vec6 wanted = way > held ? Vec6(free.move_m - (held / way) * along) : Vec6(free.move_m - along);
+    TwistGuards::Solution s = TwistGuards::fresh(wanted);
+    guards_.solve(wanted, tolerance_m, s);
+    return s.move_m;
+}
+
+void ToolContact::list_places(const TwistGuards::Solution& solution, ToolTouch& touch) const noexcept {
+    touch.places = 0;
+    for (std::size_t i = 0; i < solution.active_count; ++i) {
+        const TwistGuards::Active& a = solution.active[i];
+        const std::uint32_t point = guards_.point(a.guard);
+        touch.place[touch.places++] = {points_.lever_m(point).cast<double>(), linear(a.normal), a.weight_m,
+                                       point, guards_.triangle(a.guard)};
+    }
+}
+
+ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTouch& touch,
+                                         Instant deadline) noexcept {
+    const double gyration = points_.gyration_m();
+    const auto twist = [&](const Vec6& y) {
+        return std::pair<Vec3, Vec3>(y.head<3>(), y.tail<3>() / gyration);
+    };
+    points_.begin_move(proxy_);
+    guards_.clear();
+    bool room = true;
+    const double expected = std::clamp(kLookedWays * last_move_m_, 4.0 * settings_.margin_m,
+                                       std::max(left_m, 4.0 * settings_.margin_m));
+    for (std::size_t i = 0; i < held_count_ && room; ++i) {
+        if (points_.is_awake(held_[i])) room = look(held_[i], expected, touch);
+    }
+    // Single precision of a guard over the length of the wish.
+    const double tolerance = 6e-7 * (wish.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
+    TwistGuards::Solution free = TwistGuards::fresh(wish);
+    Move move;
+    for (int round = 0;; ++round) {
+        guards_.solve(wish, tolerance, free);
+        if (!free.exact) {
+            guards_.allow_staying();
+            free = TwistGuards::fresh(wish);
+            guards_.solve(wish, tolerance, free);
+        }
+        TwistGuards::Solution best = free;
+        guards_.turn(wish, tolerance, best);
+        move.y = settings_.friction > 0.0 ? held_back(best, wish, tolerance) : best.move_m;
+        const double length = move.y.norm(), turned = move.y.tail<3>().norm() / gyration;
+        const double share =
+            std::min({1.0, left_m / std::max(length, 1e-300), turn_max_rad_ / std::max(turned, 1e-300)});
+        move.cut = share < 1.0;
+        if (move.cut) move.y *= share;
+        const auto [v, w] = twist(move.y);
+        list_places(best, touch);
+        const std::size_t count = points_.beyond(v, w, beyond_);
+        if (count == 0) return move;
+        const bool late = deadline != Instant::max() && Monotonic::now() >= deadline;
+        touch.late |= late;
+        if (late || !room || round == kMoveRounds || touch.looked >= kLooksMost ||
+            touch.asked >= kQueriesMost)
+            break;
+        for (std::size_t k = 0; k < count && room; ++k) {
+            const std::uint32_t i = beyond_[k];
+            if (touch.looked >= kLooksMost || touch.asked >= kQueriesMost) break;
+            const double way = points_.way_m(i, v, w);
+            // What was far when it was asked is asked again; what is near is looked at.
+            if (points_.asked_m(i) > kAskedRooms * way + settings_.ball_m) {
+                ++touch.asked;
+                points_.ask(i, way);
+                if (points_.room_m(i) >= way) continue;
+            }
+            room = look(i, kLookedWays * way, touch);
+        }
+    }
+    // Only as far as is known to be free.
+    const auto [v, w] = twist(move.y);
+    const double share = points_.share_in_room(v, w);
+    if (share < 1.0) {
+        move.y *= 0.999 * share;
+        move.short_ = true;
+    }
+    return move;
+}
+
+ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
+                              Instant deadline) noexcept {
+    ToolTouch touch;
+    const Pose to{goal.p_m, goal.q.normalized()};
+    const double glide = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.glide_m;
+    const double allowed = kGoneSteps * way_m(goal_, to).norm() + glide;
+    goal_ = to;
+    if (seating_ > 0) --seating_;
+    points_.wake(proxy_, points, std::span(held_).first(held_count_),
+                 points_.tried_all() ? kWakeQueries : kSeatQueries);
+    touch.T_model_proxy = proxy_;
+    touch.state = ContactState::lagging;
+    if (!points_.tried_all()) {
+        touch.state = ContactState::gliding;
+        return touch;
+    }
+    const Pose begin = proxy_;
+    Pose one_ago = proxy_, two_ago{Vec3::Constant(1e100), Quat::Identity()};
+    double left = allowed;
+    double gone = 0.0;
+    while (touch.moves < moves_max && touch.looked < kLooksMost && touch.asked < kQueriesMost &&
+           !touch.late) {
+        ++touch.moves;
+        const Move move = find_move(way_m(proxy_, to), left, touch, deadline);
+        const double length = move.y.norm();
+        held_count_ = 0;
+        for (std::uint32_t i = 0; i < touch.places; ++i) {
+            const auto end = held_.begin() + static_cast<std::ptrdiff_t>(held_count_);
+            if (std::find(held_.begin(), end, touch.place[i].point) == end)
+                held_[held_count_++] = touch.place[i].point;
+        }
+        if (move.cut || move.short_ || length > kRestingShare * settings_.margin_m) {
+            proxy_.p_m += move.y.head<3>();
+            proxy_.q =
+                (quat_from_rotation_vector(move.y.tail<3>() / points_.gyration_m()) * proxy_.q).normalized();
+        }
+        gone = std::max(gone, length);
+        last_move_m_ = length;
+        left = allowed - way_m(begin, proxy_).norm();
+        if (move.short_) {
+            if (length <= settings_.margin_m) break;
+            continue;
+        }
+        const bool to_and_fro =
+            (proxy_.p_m - two_ago.p_m).norm() < 1e10 && way_m(two_ago, proxy_).norm() <= settings_.margin_m;
+        two_ago = one_ago;
+        one_ago = proxy_;
+        if (!move.cut && (touch.places == 0 || to_and_fro || length <= settings_.margin_m)) {
+            touch.state = ContactState::settled;
+            break;
+        }
+        if (left <= settings_.margin_m) {
+            touch.state = ContactState::gliding;
+            break;
+        }
+    }
+    if (touch.state == ContactState::settled) seating_ = 0;
+    last_move_m_ = gone;  // the next step's first one
+    touch.T_model_proxy = proxy_;
+    return touch;
+}
+
+}  // namespace tact

@@ -1,0 +1,183 @@
+#include "rt/force/surface/tool_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kNoHandM = 1e3;
+constexpr double kBallMargin = 0.05;  // of its radius
+// Measured on the rough sphere, 1000 points in contact (README.md): the points' arithmetic, and what is looked at.
+constexpr double kStepUs = 10.0, kPointUs = 0.15;
+
+bool hand_is_there(const Pose& pose) noexcept {
+    const double turn = pose.q.squaredNorm();
+    return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kNoHandM && turn > 0.25 && turn < 4.0;
+}
+
+ToolContactSettings tool_contact_settings(const SceneMeta& meta, const TouchTool& tool,
+                                          const SurfaceSettings& s) {
+    check_surface_settings(s);
+    const double ball = s.radius_m > 0.0 ? s.radius_m / meta.world_per_model : tool.ball_m;
+    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
+    return {ball, kBallMargin * ball, s.friction, glide / meta.world_per_model};
+}
+
+}  // namespace
+
+ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
+                     const SurfaceSettings& settings)
+    : meta_(meta),
+      settings_(settings),
+      solver_(mesh, tool, tool_contact_settings(meta, tool, settings)),
+      gyration_world_m_(solver_.points().gyration_m() * meta.world_per_model),
+      torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {}
+
+KnobSpec ToolModel::knob() const noexcept {
+    return {
+        .path = SurfaceModel::kKnobPath, .floor = 0.0F, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
+}
+
+std::uint32_t ToolModel::items(float fidelity) const noexcept {
+    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
+    const std::uint32_t all = solver_.points().size(), least = std::min(all, std::max(kPointsLeast, all / 8));
+    return least + static_cast<std::uint32_t>(std::lround(level * static_cast<float>(all - least)));
+}
+
+PathLoad ToolModel::predict(float fidelity) const noexcept {
+    PathLoad load;
+    load.items = items(fidelity);
+    load.cost_predicted = Duration(std::llround(1e3 * (kStepUs + kPointUs * load.items)));
+    const double newton = settings_.stiffness_n_m * meta_.world_per_model;
+    load.error = newton * (solver_.points().cover_m(load.items) + 2.0 * solver_.settings().margin_m);
+    return load;
+}
+
+void ToolModel::reset(const ToolState& tool) noexcept {
+    asked_ = true;
+    fade_.cut();
+    touch_ = {};
+    ++grips_;
+    const bool there = hand_is_there(tool.T_world_tool);
+    // A proxy that is good is kept: it knows on which side of the surface it is.
+    const bool keeps =
+        there && seated_ &&
+        settings_.stiffness_n_m * meta_.world_per_model * solver_.way_m(goal(tool), solver_.proxy()).norm() <
+            settings_.force_n_max;
+    if (there && !keeps) solver_.seat(goal(tool));
+    seated_ = there;
+}
+
+ModelBodies ToolModel::bodies() const noexcept {
+    ModelBodies list;
+    list.count = 1;
+    list.T_model_body[0] = solver_.proxy();
+    list.id[0] = 1;
+    list.grips = grips_;
+    return list;
+}
+
+ModelTouch ToolModel::touch() const noexcept {
+    ModelTouch t;
+    t.there = true;
+    t.probe_m = solver_.goal().p_m;
+    t.proxy_m = solver_.proxy().p_m;
+    t.state = static_cast<std::uint8_t>(touch_.state);
+    double below_m = 1e300;  // the places go by their weights
+    for (t.planes = 0; t.planes < ModelTouch::kPlanesMax; ++t.planes) {
+        const TouchedPlace* next = nullptr;
+        for (std::uint32_t i = 0; i < touch_.places; ++i) {
+            const TouchedPlace& p = touch_.place[i];
+            if (p.weight_m < below_m && (next == nullptr || p.weight_m > next->weight_m)) next = &p;
+        }
+        if (next == nullptr) break;
+        below_m = next->weight_m;
+        t.normal[t.planes] = next->normal;
+        t.push_n[t.planes] = settings_.stiffness_n_m * meta_.world_per_model * next->weight_m;
+    }
+    return t;
+}
+
+Pose ToolModel::goal(const ToolState& tool) const noexcept {
+    return {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
+}
+
+Wrench ToolModel::felt(const ToolState& tool, const Vec6& way_m) const noexcept {
+    const Vec6 way_world_m = meta_.world_per_model * way_m;
+    const double depth_m = way_world_m.norm();
+    if (!(depth_m > 0.0)) return {};
+    const Vec6 along = way_world_m / depth_m;
+    const Twist& t = tool.twist_world;
+    Vec6 speed;
+    speed << t.linear_m_s, gyration_world_m_ * t.angular_rad_s;
+    const double into_m_s = speed.allFinite() ? -along.dot(speed) : 0.0;
+    const double damped = settings_.damping_n_s_m * into_m_s * std::min(1.0, depth_m / kDampedDepthM);
+    const double size_n = std::clamp(settings_.stiffness_n_m * depth_m + damped, 0.0, settings_.force_n_max);
+    return {size_n * along.head<3>(), gyration_world_m_ * size_n * along.tail<3>()};
+}
+
+StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept {
+    const Instant begin = Monotonic::now();
+    StepResult result;
+    result.load = predict(budget.fidelity);
+    fade_.begin_step();
+    const bool clutch = (tool.buttons & 1U) != 0;
+    if (!hand_is_there(tool.T_world_tool)) {
+        fade_.cut();
+        touch_ = {};
+        seated_ = false;
+        result.status = StepStatus::out_of_range;
+    } else if (asked_) {
+        const Pose to = goal(tool);
+        if (clutch && fade_.gain() <= 0.0) seated_ = false;
+        if (!seated_ && !clutch) {
+            solver_.seat(to);
+            seated_ = true;
+            ++grips_;
+        }
+        if (seated_) {
+            if (clutch)
+                fade_.fall();
+            else if (solver_.seating())
+                fade_.rest();
+            else
+                fade_.rise();
+            const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+            touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline);
+            const bool on_time = !hurried && !touch_.late;
+            if (on_time && touch_.state == ContactState::lagging) ++lagging_;
+            if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
+            const Vec6 way_m = solver_.way_m(to, solver_.proxy());
+            const double pulled_n = settings_.stiffness_n_m * meta_.world_per_model * way_m.norm();
+            if (touch_.state != ContactState::settled || !on_time)
+                result.load.error =
+                    std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));
+            const Wrench w = felt(tool, way_m);
+            result.wrench_world = fade_.show({fade_.gain() * w.force_n, fade_.gain() * w.torque_n_m});
+            if (pulled_n > kLostLimits * settings_.force_n_max) {
+                fade_.follow(fade_);
+                solver_.seat(to);
+                ++grips_;
+                ++released_;
+            }
+        } else {
+            touch_ = {};
+            fade_.rest();
+        }
+    }
+    result.load.cost = std::max(Monotonic::now() - begin, Duration(1));
+    return result;
+}
+
+std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings) {
+    const SceneMeta meta = read_meta(scene);
+    if (meta.kind != SceneKind::surface || !has_touch_tool(scene))
+        throw StartupError("loading '" + scene.name() + "'", "it is not a surface with a tool",
+                           "bake one with tact-prep touch MESH --tool TOOL -o SCENE");
+    return std::make_unique<ToolModel>(meta, read_surface(scene), read_touch_tool(scene), settings);
+}
+
+}  // namespace tact

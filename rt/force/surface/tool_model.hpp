@@ -1,0 +1,75 @@
+// Touching a triangle mesh with a tool that is a mesh itself: six degrees of freedom, force and torque.
+//
+// Force    k times the way from the hand to the proxy (tool_contact.hpp), at the hand's point; torque k g^2 times
+//          the turn from the hand to the proxy, g the tool's radius of gyration about that point, which is the
+//          metric of the proxy. So without friction both are slopes of one energy, and the wrench is the sum of
+//          what the touched places push with: torque = lever x force of each.
+// Damping  b times the speed along the wrench, in the same metric, in proportion to the depth up to
+//          kDampedDepthM; it never pulls.
+// Limit    the wrench keeps its direction where (force, torque / g) is larger than force_n_max. Left behind by
+//          more than kLostLimits times the way at that limit, the proxy is released as in surface_model.hpp.
+// Knob     "surface.force": points of the tool that are felt, an eighth to all of them. Points that the knob
+//          brings while the surface pokes between the others wait until they are free (tool_points.hpp).
+// Error    of feeling n points: k times their cover, as deep as a surface may poke between them whose slope
+//          against the tool's own stays below 45 degrees. While it glides or lags twice the force instead.
+// Shading  none: facets of the surface are felt by many points.
+// Seat     after a reset or the clutch the proxy comes from away from the surface to the hand, or to rest on it,
+//          within some 60 steps; then the force fades in. At a reset a proxy that is within the limit is kept.
+// Else     bodies, clutch, frames, thread as surface_model.hpp.
+#pragma once
+
+#include <memory>
+
+#include "ipc/assets/touch_tool.hpp"
+#include "rt/force/surface/surface_model.hpp"
+#include "rt/force/surface/tool_contact.hpp"
+
+namespace tact {
+
+class ToolModel final : public ForceModel {
+public:
+    static constexpr double kDampedDepthM = SurfaceModel::kDampedDepthM;
+    static constexpr double kLostLimits = SurfaceModel::kLostLimits;
+    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 16;
+
+    // settings.radius_m: of the points' balls in the hand's world; 0: as the tool says. The bytes behind `mesh`
+    // must outlive the model.
+    ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
+              const SurfaceSettings& settings);
+
+    [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
+    void reset(const ToolState& tool) noexcept TACT_RT override;
+    StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
+    [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
+    // About the hand's point; the three places that push most.
+    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+
+    // Cost and error of a level before it is computed.
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
+    [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
+    [[nodiscard]] const ToolContact& contact() const { return solver_; }
+    [[nodiscard]] double torque_n_m_rad() const { return torque_n_m_rad_; }  // stiffness in rotation
+    [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }
+    [[nodiscard]] std::uint64_t released() const { return released_; }
+
+private:
+    [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
+    [[nodiscard]] Wrench felt(const ToolState& tool, const Vec6& way_m) const noexcept TACT_RT;
+
+    SceneMeta meta_;
+    SurfaceSettings settings_;
+    ToolContact solver_;
+    ToolTouch touch_;
+    ForceFade fade_;
+    double gyration_world_m_, torque_n_m_rad_;
+    bool asked_ = false, seated_ = false;
+    std::uint64_t grips_ = 0, lagging_ = 0, released_ = 0;
+};
+
+// Fails by StartupError where the scene is no surface with a tool or a setting is out of range. The scene must
+// outlive the model.
+std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings);
+
+}  // namespace tact

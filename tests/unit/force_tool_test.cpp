@@ -1,0 +1,496 @@
+// Tools given as meshes: sampling, section, contact, force and torque.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/random.hpp"
+#include "prep/surface/build_surface.hpp"
+#include "prep/surface/sample_tool.hpp"
+#include "prep/synthetic/made_tool.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/tool_model.hpp"
+#include "tests/contract/force_model_contract.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kStiffness = 500.0, kWorldPerModel = 10.0;
+
+TriangleMesh box_mesh(const Vec3& half_m) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.position_m.push_back(
+                static_cast<float>((i >> axis & 1) != 0 ? half_m[axis] : -half_m[axis]));
+    mesh.triangle = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                     2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    return mesh;
+}
+
+void append_box(TriangleMesh& to, const Vec3& middle_m, const Vec3& half_m) {
+    const auto first = static_cast<std::uint32_t>(to.vertices());
+    const TriangleMesh box = box_mesh(half_m);
+    for (std::size_t i = 0; i < box.position_m.size(); ++i)
+        to.position_m.push_back(box.position_m[i] +
+                                static_cast<float>(middle_m[static_cast<Eigen::Index>(i % 3)]));
+    for (const std::uint32_t c : box.triangle) to.triangle.push_back(first + c);
+}
+
+// A square of 0.2 m, y up, of 2 * parts^2 triangles.
+TriangleMesh plane_mesh(std::uint32_t parts = 40) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i <= parts; ++i)
+        for (std::uint32_t k = 0; k <= parts; ++k)
+            for (const double x : {0.2 * i / parts - 0.1, 0.0, 0.2 * k / parts - 0.1})
+                mesh.position_m.push_back(static_cast<float>(x));
+    for (std::uint32_t i = 0; i < parts; ++i) {
+        for (std::uint32_t k = 0; k < parts; ++k) {
+            const std::uint32_t a = i * (parts + 1) + k, b = a + parts + 1;
+            mesh.triangle.insert(mesh.triangle.end(), {a, b + 1, b, a, a + 1, b + 1});
+        }
+    }
+    return mesh;
+}
+
+TriangleMesh scaled(TriangleMesh mesh, double by) {
+    for (float& x : mesh.position_m) x *= static_cast<float>(by);
+    return mesh;
+}
+
+// Of size in the hand's world; a scene in memory.
+struct World {
+    std::vector<std::byte> bytes;
+    std::unique_ptr<SceneFile> file;
+    SurfaceMesh mesh;
+    TouchTool tool;
+    SceneMeta meta{};
+    std::unique_ptr<ToolModel> model(const SurfaceSettings& settings) const {
+        return std::make_unique<ToolModel>(meta, mesh, tool, settings);
+    }
+    [[nodiscard]] double ball_world_m() const { return kWorldPerModel * tool.ball_m; }
+};
+
+std::unique_ptr<World> world(const TriangleMesh& surface, const TriangleMesh& tool,
+                             ToolSampling sampling = {}) {
+    auto w = std::make_unique<World>();
+    SceneWriter out;
+    write_surface(out, build_surface(scaled(surface, 1.0 / kWorldPerModel)));
+    write_touch_tool(out, sample_tool(scaled(tool, 1.0 / kWorldPerModel), sampling));
+    w->bytes = out.to_bytes();
+    w->file = std::make_unique<SceneFile>(SceneFile::from_bytes(w->bytes, "test.tact"));
+    w->mesh = read_surface(*w->file);
+    w->tool = read_touch_tool(*w->file);
+    w->meta.kind = SceneKind::surface;
+    w->meta.world_per_model = kWorldPerModel;
+    return w;
+}
+
+// 0.03 x 0.01 x 0.02 m over a plane; coarse points, as its corners tell.
+const World& box_on_plane() {
+    static const auto made =
+        world(plane_mesh(), box_mesh({0.015, 0.005, 0.01}), {.points = 300, .grip_in_middle = true});
+    return *made;
+}
+
+// A bar of 0.04 m along x, thin, over two blocks at x = -0.01 and x = 0.015.
+const World& bar_on_blocks() {
+    static const auto made = [] {
+        TriangleMesh blocks;
+        append_box(blocks, {-0.01, -0.01, 0.0}, {0.001, 0.01, 0.02});
+        append_box(blocks, {0.015, -0.01, 0.0}, {0.001, 0.01, 0.02});
+        return world(blocks, box_mesh({0.02, 0.001, 0.001}), {.points = 2000});
+    }();
+    return *made;
+}
+
+const World& scaler_on_rough() {
+    static const auto made = world(rough_sphere(60), made_tool("scaler"), {.grip_in_middle = false});
+    return *made;
+}
+
+SurfaceSettings plain(double friction = 0.0) {
+    return {.stiffness_n_m = kStiffness, .damping_n_s_m = 0.0, .friction = friction, .shading = false};
+}
+
+ToolState at(const Vec3& p, const Quat& q = Quat::Identity()) {
+    ToolState tool;
+    tool.T_world_tool = {p, q};
+    return tool;
+}
+
+struct Hand {
+    std::unique_ptr<ToolModel> model;
+    Pose place;
+    Wrench felt;
+    Hand(const World& w, const SurfaceSettings& settings, const Pose& start)
+        : model(w.model(settings)), place(start) {
+        model->reset(at(start.p_m, start.q));
+        for (int i = 0; i < ForceFade::kRampSteps + 8; ++i) (void)step(start);
+    }
+    const Wrench& step(const Pose& pose) {
+        place = pose;
+        felt = model->step(at(pose.p_m, pose.q), {}).wrench_world;
+        return felt;
+    }
+    // By steps of a tenth of a millimetre, or a hundredth of a radian; then at rest.
+    const Wrench& lead(const Pose& to, int rest = 300) {
+        const Pose from = place;
+        const int steps = 1 + static_cast<int>(std::max((to.p_m - from.p_m).norm() / 1e-4,
+                                                        from.q.angularDistance(to.q) / 1e-2));
+        for (int i = 1; i <= steps; ++i) {
+            const double s = static_cast<double>(i) / steps;
+            (void)step({from.p_m + s * (to.p_m - from.p_m), from.q.slerp(s, to.q)});
+        }
+        for (int i = 0; i < rest; ++i) (void)step(to);
+        return felt;
+    }
+    [[nodiscard]] Pose proxy() const {
+        Pose p = model->contact().proxy();
+        p.p_m *= kWorldPerModel;
+        return p;
+    }
+};
+
+Pose pose(const Vec3& p, const Vec3& turn_rad = Vec3::Zero()) {
+    return {p, quat_from_rotation_vector(turn_rad)};
+}
+
+TEST(TouchTool, EveryPrefixOfItsPointsIsAnEvenSampling) {
+    const TriangleMesh mesh = box_mesh({0.015, 0.005, 0.01});
+    const TouchTool tool = sample_tool(mesh, {.points = 600});
+    ASSERT_EQ(tool.points(), 600U);
+    SeededRandom random(5);
+    for (const std::size_t n : {8U, 40U, 200U, 600U}) {
+        const double cover = tool.cover_m[n - 1], ball = tool.ball_m;
+        double nearest = 1e9, farthest = 0.0;
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                nearest = std::min(nearest, (tool.at_m(i) - tool.at_m(k)).norm());
+        for (int i = 0; i < 2000; ++i) {  // a place of the surface
+            Vec3 p = random.direction();
+            p = p.cwiseAbs().maxCoeff() > 0.0 ? Vec3(p / p.cwiseAbs().maxCoeff()) : p;
+            p = p.cwiseProduct(Vec3(0.015, 0.005, 0.01));
+            double least = 1e9;
+            for (std::size_t k = 0; k < n; ++k) least = std::min(least, (tool.at_m(k) - p).norm());
+            farthest = std::max(farthest, least);
+        }
+        EXPECT_LE(farthest, 1.15 * cover + 3.0 * ball) << n;
+        EXPECT_GE(nearest, 0.66 * cover - 4.0 * ball) << n;
+    }
+    // All corners among the first; every ball inside, and at its surface.
+    std::size_t corners = 0, stick_out = 0;
+    for (std::size_t i = 0; i < tool.points(); ++i) {
+        const Vec3 below = Vec3(0.015, 0.005, 0.01) - tool.at_m(i).cwiseAbs();
+        if (i < 60 && below.maxCoeff() < 1.3 * tool.ball_m) ++corners;
+        if (below.minCoeff() < 0.97 * tool.ball_m) ++stick_out;
+        EXPECT_GT(below.minCoeff(), 0.0);
+        EXPECT_LT(below.minCoeff(), 1.3 * tool.ball_m);
+    }
+    EXPECT_EQ(corners, 8U);
+    EXPECT_LT(stick_out, 12U);
+}
+
+TEST(TouchTool, TheSameMeshGivesTheSameToolAndTheSectionHoldsIt) {
+    const TriangleMesh mesh = made_tool("scaler");
+    SceneWriter out;
+    const TouchTool a = sample_tool(mesh, {.points = 400, .grip_in_middle = false}),
+                    b = sample_tool(mesh, {.points = 400, .grip_in_middle = false});
+    EXPECT_EQ(a.point_m, b.point_m);
+    write_touch_tool(out, a);
+    const auto bytes = out.to_bytes();
+    const TouchTool read = read_touch_tool(SceneFile::from_bytes(bytes, "t"));
+    EXPECT_EQ(read.point_m, a.point_m);
+    EXPECT_EQ(read.normal, a.normal);
+    EXPECT_EQ(read.parent, a.parent);
+    EXPECT_EQ(read.cover_m, a.cover_m);
+    EXPECT_EQ(read.drawn, a.drawn);
+    EXPECT_EQ(read.ball_m, a.ball_m);
+}
+
+TEST(TouchTool, AWrongSectionIsRefused) {
+    const TouchTool good = sample_tool(box_mesh({0.01, 0.01, 0.01}), {.points = 20});
+    const auto refused = [&](auto change) {
+        TouchTool tool = good;
+        change(tool);
+        SceneWriter out;
+        write_touch_tool(out, tool);
+        const auto bytes = out.to_bytes();
+        const SceneFile file = SceneFile::from_bytes(bytes, "t");
+        EXPECT_THROW((void)read_touch_tool(file), StartupError);
+    };
+    refused([](TouchTool& t) { t.parent[3] = 3; });
+    refused([](TouchTool& t) { t.parent[0] = 1; });
+    refused([](TouchTool& t) { t.ball_m = 0.0; });
+    refused([](TouchTool& t) { t.ball_m = std::nan(""); });
+    refused([](TouchTool& t) { t.point_m[4] = std::nanf(""); });
+    refused([](TouchTool& t) { t.cover_m[5] = 2.0F * t.cover_m[4] + 1.0F; });
+    refused([](TouchTool& t) { t.drawn[2] = 8; });
+    refused([](TouchTool& t) { t.point_m.pop_back(); });
+    refused([](TouchTool& t) { t.parent.clear(); });
+}
+
+TEST(TouchTool, MadeToolsAreClosedAndTurnedOutward) {
+    for (const char* name : kMadeTools) {
+        const TriangleMesh mesh = made_tool(name);
+        EXPECT_TRUE(build_surface(mesh).closed) << name;
+        double volume = 0.0;
+        const auto at = [&](std::size_t i) {
+            const float* p = mesh.position_m.data() + 3 * mesh.triangle[i];
+            return Vec3(p[0], p[1], p[2]);
+        };
+        for (std::size_t t = 0; t < mesh.triangle.size(); t += 3)
+            volume += at(t).dot(at(t + 1).cross(at(t + 2)));
+        EXPECT_GT(volume, 0.0) << name;
+    }
+    EXPECT_EQ(made_tool("none").triangles(), 0U);
+}
+
+TEST(TwistGuards, TheAnswerIsTheNearestTwistThatKeepsEveryGuard) {
+    SeededRandom random(11);
+    const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
+    for (int trial = 0; trial < 60; ++trial) {
+        TwistGuards guards;
+        const int count = 1 + static_cast<int>(random.below(40));
+        std::vector<std::pair<Vec6, double>> plane;
+        for (int i = 0; i < count; ++i) {
+            const Vec3 n = random.direction(), lever(number(), number(), number());
+            TriangleLooks look{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                look.away[axis][0] = static_cast<float>(n[static_cast<Eigen::Index>(axis)]);
+            const auto slack = static_cast<float>(0.3 * random.uniform());
+            ASSERT_TRUE(guards.add(0, 0, lever.cast<float>(), look, 0, slack, slack, false));
+            Vec6 normal;
+            normal << n, lever.cross(n);
+            plane.emplace_back(normal, static_cast<double>(slack));
+        }
+        Vec6 goal;
+        for (double& x : goal) x = number();
+        TwistGuards::Solution s = TwistGuards::fresh(goal);
+        guards.solve(goal, 1e-6, s);
+        ASSERT_TRUE(s.exact);
+        Vec6 pushed = goal;
+        for (std::size_t i = 0; i < s.active_count; ++i) {
+            EXPECT_GE(s.active[i].weight_m, 0.0);
+            EXPECT_NEAR(s.active[i].normal.dot(s.move_m) + s.active[i].slack_m, 0.0, 2e-6);
+            pushed += s.active[i].weight_m * s.active[i].normal;
+        }
+        EXPECT_LT((pushed - s.move_m).norm(),
+                  1e-9);  // with the weights above: the optimum (Karush, Kuhn, Tucker)
+        for (const auto& [normal, slack] : plane) EXPECT_GT(normal.dot(s.move_m) + slack, -3e-6);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tool, ForceModelContract,
+                         testing::Values(ForceModelCase{"box",
+                                                        [] { return box_on_plane().model({}); },
+                                                        {Vec3(0.0, 0.02, 0.0), Quat::Identity()},
+                                                        pose({0.01, 0.003, 0.005}, {0.05, 0.2, -0.1})},
+                                         ForceModelCase{"scaler",
+                                                        [] { return scaler_on_rough().model({}); },
+                                                        {Vec3(0.0, 0.075, 0.0), Quat::Identity()},
+                                                        pose({0.004, 0.06, 0.003}, {0.1, 0.0, 0.1})}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(Tool, ABoxOnAPlanePushesAlongTheNormalByItsDepth) {
+    Hand hand(box_on_plane(), plain(), pose({0.003, 0.02, -0.002}));
+    const Wrench& w = hand.lead(pose({0.013, 0.004, 0.004}));
+    EXPECT_NEAR(w.force_n.y(), kStiffness * 0.001, 0.01);
+    EXPECT_LT(std::hypot(w.force_n.x(), w.force_n.z()), 0.003);
+    EXPECT_LT(w.torque_n_m.norm(), 3e-5);
+    const Wrench clear = hand.lead(pose({0.013, 0.03, 0.004}));
+    EXPECT_LT(clear.force_n.norm() + clear.torque_n_m.norm(), 1e-9);
+}
+
+TEST(Tool, ATiltedBoxIsHeldByItsLowestCornerAndTheTorqueIsLeverTimesForce) {
+    Hand hand(box_on_plane(), plain(), pose({0.0, 0.03, 0.0}));
+    (void)hand.lead(pose({0.0, 0.013, 0.0}, {0.3, 0.1, 0.5}));
+    ASSERT_GT(hand.model->tool_touch().places, 0U);
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (std::uint32_t i = 0; i < hand.model->tool_touch().places; ++i) {
+        const TouchedPlace& p = hand.model->tool_touch().place[i];
+        const Vec3 f = kStiffness * kWorldPerModel * p.weight_m * p.normal;
+        force += f;
+        torque += kWorldPerModel * p.lever_m.cross(f);
+    }
+    EXPECT_GT(hand.felt.force_n.y(), 0.1);
+    EXPECT_LT((hand.felt.force_n - force).norm(), 0.01);
+    EXPECT_LT((hand.felt.torque_n_m - torque).norm(), 2e-4);
+    EXPECT_LT(std::hypot(hand.felt.force_n.x(), hand.felt.force_n.z()), 0.01);
+}
+
+// Two supports at a = 0.009 and b = 0.014 from the hand (inner edges of the blocks), pushed down by d without
+// a turn: the proxy turns by t and lies y above, with weights l: y = l1 + l2, g^2 t = b l2 - a l1, kept where
+// y + t b = d, y - t a = d. Both hold only for t = 0, y = d: forces b / (a + b) and a / (a + b).
+TEST(Tool, ABarOnTwoSupportsSharesTheForceByItsLevers) {
+    Hand hand(bar_on_blocks(), plain(), pose({0.0, 0.01, 0.0}));
+    (void)hand.lead(pose({0.0, 0.0, 0.0}));
+    EXPECT_NEAR(hand.felt.force_n.y(), kStiffness * 0.001, 0.01);
+    EXPECT_LT(hand.felt.torque_n_m.norm(), 1e-4);
+    // Over one support alone, to the right of the other: it tilts, and the hand feels the lever.
+    Hand over(bar_on_blocks(), plain(), pose({-0.022, 0.01, 0.0}));
+    (void)over.lead(pose({-0.022, 0.0, 0.0}));
+    const double lever = over.felt.torque_n_m.z() / over.felt.force_n.y();
+    EXPECT_GT(over.felt.force_n.y(), 0.02);
+    EXPECT_GT(lever, 0.0105);
+    EXPECT_LT(lever, 0.0135);
+}
+
+TEST(Tool, ABoxOverAnEdgeTiltsAndTheForceFollowsFromOneEnergy) {
+    Hand hand(bar_on_blocks(), plain(), pose({-0.018, 0.01, 0.0}));
+    SeededRandom random(2);
+    const auto energy = [&](const Pose& goal) {
+        (void)hand.lead(goal, 400);
+        const Vec6 way =
+            hand.model->contact().way_m({goal.p_m / kWorldPerModel, goal.q}, hand.model->contact().proxy());
+        return 0.5 * kStiffness * kWorldPerModel * kWorldPerModel * way.squaredNorm();
+    };
+    const Pose middle = pose({-0.018, 0.0003, 0.0005}, {0.0, 0.03, 0.05});
+    for (int i = 0; i < 4; ++i) {
+        const Vec3 push = random.direction(), turn = random.direction();
+        constexpr double kStep = 4e-5, kTurn = 4e-3;
+        const auto moved = [&](double s) {
+            return Pose{middle.p_m + s * kStep * push,
+                        quat_from_rotation_vector(s * kTurn * turn) * middle.q};
+        };
+        (void)energy(middle);
+        const double work = hand.felt.force_n.dot(kStep * push) + hand.felt.torque_n_m.dot(kTurn * turn);
+        const double slope = 0.5 * (energy(moved(1.0)) - energy(moved(-1.0)));
+        EXPECT_NEAR(-slope, work, 2e-6 + 0.03 * std::abs(work)) << i;
+    }
+}
+
+TEST(Tool, AMirroredWorldGivesAMirroredWrench) {
+    // x to -x.
+    Hand left(bar_on_blocks(), plain(), pose({0.003, 0.01, 0.0}));
+    static const auto mirrored = [] {
+        TriangleMesh blocks;
+        append_box(blocks, {0.01, -0.01, 0.0}, {0.001, 0.01, 0.02});
+        append_box(blocks, {-0.015, -0.01, 0.0}, {0.001, 0.01, 0.02});
+        return world(blocks, box_mesh({0.02, 0.001, 0.001}), {.points = 2000});
+    }();
+    Hand right(*mirrored, plain(), pose({-0.003, 0.01, 0.0}));
+    const Wrench a = left.lead(pose({0.003, 0.0002, 0.001}, {0.02, 0.1, 0.06})),
+                 b = right.lead(pose({-0.003, 0.0002, 0.001}, {0.02, -0.1, -0.06}));
+    EXPECT_GT(a.force_n.norm(), 0.1);
+    EXPECT_LT((a.force_n - Vec3(-b.force_n.x(), b.force_n.y(), b.force_n.z())).norm(), 0.02);
+    EXPECT_LT((a.torque_n_m - Vec3(b.torque_n_m.x(), -b.torque_n_m.y(), -b.torque_n_m.z())).norm(), 2e-4);
+}
+
+TEST(Tool, FrictionHoldsABoxInItsConeAndItSlidesAtTheRim) {
+    constexpr double kFriction = 0.4, kDepth = 0.001;
+    Hand hand(box_on_plane(), plain(kFriction), pose({0.0, 0.02, 0.0}));
+    (void)hand.lead(pose({0.0, 0.005 - kDepth, 0.0}));
+    const Wrench held = hand.lead(pose({0.5 * kFriction * kDepth, 0.005 - kDepth, 0.0}));
+    EXPECT_NEAR(-held.force_n.x(), kStiffness * 0.5 * kFriction * kDepth, 0.01);
+    const Wrench slides = hand.lead(pose({0.01, 0.005 - kDepth, 0.0}));
+    EXPECT_NEAR(-slides.force_n.x(), kFriction * slides.force_n.y(), 0.02);
+}
+
+// Over the rough sphere, the tip about `depth` deep.
+Pose slide(double t, double depth) {
+    const double around = 1.1 * t, up = 0.9 * std::sin(0.61 * t);
+    const Vec3 d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
+    const Quat q = Quat::FromTwoVectors(Vec3::UnitY(), d) * quat_from_rotation_vector(Vec3(0.0, t, 0.0));
+    return {(rough_radius_m(d) + 0.0137 - depth) * d, q};
+}
+
+TEST(Tool, TheProxyNeverJamsAndNoPointIsEverBehindTheSurface) {
+    for (const double speed : {1.0, 3.0}) {
+        Hand hand(scaler_on_rough(), plain(speed > 2.0 ? 0.2 : 0.0), slide(0.0, -0.01));
+        const ToolPoints& points = hand.model->contact().points();
+        EXPECT_EQ(points.awake(), points.size());
+        (void)hand.lead(slide(0.0, 0.001));
+        Wrench before = hand.felt;
+        for (int i = 0; i < 1500; ++i) {
+            const Pose last = hand.place;
+            const Wrench now = hand.step(slide(1e-3 * speed * i, 0.001));
+            const double gyration = kWorldPerModel * points.gyration_m();
+            const double moved =
+                (hand.place.p_m - last.p_m).norm() + gyration * last.q.angularDistance(hand.place.q);
+            // One that stands still is left behind by 60 mm and more a second.
+            ASSERT_LT((hand.proxy().p_m - hand.place.p_m).norm(), 0.012) << i;
+            ASSERT_LT((now.force_n - before.force_n).norm(), 2.5 * kStiffness * moved + 0.1);
+            ASSERT_LT((now.torque_n_m - before.torque_n_m).norm(),
+                      gyration * (2.5 * kStiffness * moved + 0.1));
+            before = now;
+            if (i % 250 != 249) continue;
+            EXPECT_EQ(points.awake(), points.size());
+            for (std::uint32_t k = 0; k < points.size(); ++k) {
+                const Pose proxy = hand.model->contact().proxy();
+                const Vec3 p = proxy * scaler_on_rough().tool.at_m(k);
+                const SurfacePoint s = scaler_on_rough().mesh.nearest(p, 10.0);
+                ASSERT_GT(s.distance_m, 0.85 * scaler_on_rough().tool.ball_m) << k;
+                // Outside: its way to far above crosses nothing; by the side of the nearest facet, well above it.
+                if (s.distance_m > 20.0 * scaler_on_rough().tool.ball_m) {
+                    ASSERT_GT(scaler_on_rough().mesh.normal_at(s).dot(p - s.point_m), 0.0) << k;
+                }
+            }
+        }
+        EXPECT_EQ(hand.model->released(), 0U);
+    }
+}
+
+TEST(Tool, ASettledProxyIsTheNearestFreePoseThatSmallMovesFind) {
+    Hand hand(scaler_on_rough(), plain(), slide(0.0, -0.01));
+    SeededRandom random(4);
+    const World& w = scaler_on_rough();
+    for (int place = 0; place < 4; ++place) {
+        const Pose goal = slide(0.3 * place, 0.0015);
+        (void)hand.lead(slide(0.3 * place, -0.01));
+        (void)hand.lead(goal, 600);
+        EXPECT_EQ(hand.model->tool_touch().state, ContactState::settled);
+        const ToolContact& contact = hand.model->contact();
+        const Pose model_goal{goal.p_m / kWorldPerModel, goal.q}, proxy = contact.proxy();
+        const double way = contact.way_m(model_goal, proxy).norm();
+        for (int i = 0; i < 60; ++i) {
+            const Vec3 v = 1e-5 * random.direction(),
+                       turn = 1e-5 / contact.points().gyration_m() * random.direction();
+            const Pose other{proxy.p_m + v, quat_from_rotation_vector(turn) * proxy.q};
+            if (contact.way_m(model_goal, other).norm() > way - 4e-6) continue;
+            double least = 1.0;
+            for (std::size_t k = 0; k < w.tool.points(); ++k)
+                least =
+                    std::min(least, w.mesh.nearest(other * w.tool.at_m(k), 10.0 * w.tool.ball_m).distance_m);
+            EXPECT_LT(least, w.tool.ball_m);
+        }
+    }
+}
+
+TEST(Tool, AToolThatIsPutIntoTheSurfaceComesToRestOnItAndIsFeltWithoutAStep) {
+    for (const double y : {0.001, 0.004, 0.0051, 0.02}) {
+        const auto model = box_on_plane().model(plain());
+        const ToolState tool = at({0.0, y, 0.0});
+        model->reset(tool);
+        Wrench before;
+        for (int i = 0; i < 800; ++i) {
+            const Wrench now = model->step(tool, {}).wrench_world;
+            ASSERT_LT((now.force_n - before.force_n).norm(), 0.03);
+            before = now;
+        }
+        EXPECT_EQ(model->contact().points().awake(), model->contact().points().size());
+        EXPECT_NEAR(before.force_n.y(), kStiffness * std::max(0.0, 0.005 - y), 0.01) << y;
+    }
+}
+
+TEST(Tool, WithoutTimeItGoesNoFartherThanWhatIsKnownToBeFree) {
+    Hand hand(scaler_on_rough(), plain(), slide(0.0, -0.004));
+    Budget hurried;
+    hurried.deadline = instant_from_ns(0);
+    const World& w = scaler_on_rough();
+    for (int i = 0; i < 400; ++i) {
+        const Pose p = slide(2e-3 * i, 0.001);
+        const StepResult result = hand.model->step(at(p.p_m, p.q), hurried);
+        EXPECT_EQ(result.status, StepStatus::out_of_time);
+        if (i % 100 != 99) continue;
+        for (std::size_t k = 0; k < w.tool.points(); ++k)
+            ASSERT_GT(w.mesh.nearest(hand.model->contact().proxy() * w.tool.at_m(k), 10.0).distance_m,
+                      0.85 * w.tool.ball_m);
+    }
+    (void)hand.lead(slide(0.8, -0.02));
+    EXPECT_LT((hand.proxy().p_m - hand.place.p_m).norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace tact
