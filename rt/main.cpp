@@ -40,6 +40,7 @@
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
 #include "rt/loop/supervisor.hpp"
+#include "rt/loop/tend_thread.hpp"
 #include "rt/loop/thread_setup.hpp"
 #include "rt/start_bodies.hpp"
 
@@ -63,7 +64,7 @@ struct Options {
 // The command line goes on top of the file, so it is parsed into these and applied after it.
 struct Overrides {
     std::optional<double> rate_hz, goal_hz, picture_goal_hz, force_scale;
-    std::optional<std::string> law, hand;
+    std::optional<std::string> law, hand, surface_mode;
     std::optional<int> core, priority;
     bool free_run = false;
 };
@@ -116,6 +117,9 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
     app.add_option("--friction", o.surface.friction, "coefficient of a surface")
         ->check(CLI::Range(0.0, 2.0))
         ->capture_default_str();
+    app.add_option("--mode", v.surface_mode,
+                   "how a surface is looked up: off-brute, off-tree or chr (fine around the tool)")
+        ->check(CLI::IsMember({"off-brute", "off-tree", "chr"}));
     app.add_option("--seed", o.seed, "of that direction, and of the emulated hand");
     app.add_option("--force-scale", v.force_scale, "times the scene's own gain")->check(CLI::Range(0.0, 1e6));
     app.add_flag("--check", o.check, "read and check everything, then exit");
@@ -135,6 +139,7 @@ RtConfig configure(const Options& o, const Overrides& v) {
     if (v.core) c.servo.core = *v.core;
     if (v.law) c.governor.law = *v.law;
     if (v.hand) c.device.hand = *v.hand;
+    if (v.surface_mode) c.surface.mode = *v.surface_mode;
     if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
     if (v.picture_goal_hz) c.governor.picture_goal_hz = *v.picture_goal_hz;
     if (v.force_scale) c.shape.force_scale = *v.force_scale;
@@ -159,11 +164,17 @@ DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
 }
 
 // The one place that knows which model a scene is for.
-std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o) {
+std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o, const RtConfig& config) {
     if (read_meta(scene).kind == SceneKind::surface) {
         SurfaceSettings settings = o.surface;
         settings.radius_m = 1e-3 * o.tool_radius_mm;
-        if (has_touch_tool(scene)) return load_tool_model(scene, settings);
+        for (std::size_t i = 0; i < kSurfaceModeNames.size(); ++i)
+            if (config.surface.mode == kSurfaceModeNames[i]) settings.mode = static_cast<SurfaceMode>(i);
+        const bool tool = has_touch_tool(scene);
+        if (tool && settings.mode != SurfaceMode::off_tree)
+            throw StartupError("touching with a tool that is a mesh", "it is looked up in the tree alone",
+                               "choose mode off-tree");
+        if (tool) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
     return load_docking_model(scene, docking_settings(o, scene));
@@ -278,7 +289,7 @@ int run(const Options& o, const Overrides& overrides) {
     std::optional<LinkServer> link;
     if (!o.check) link.emplace(o.session, region.fd());
 
-    std::unique_ptr<ForceModel> model = load_model(scene, o);
+    std::unique_ptr<ForceModel> model = load_model(scene, o, config);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;
@@ -361,6 +372,9 @@ int run(const Options& o, const Overrides& overrides) {
                            [&lines] { lines->drop(); });
         supervisor->start(thread.thread_id);
     }
+
+    std::optional<TendThread> tending;
+    if (hands[0].model->tended()) tending.emplace(*hands[0].model, region->tool[0], thread.thread_id);
 
     House house({.session = o.session,
                  .seconds = o.seconds,

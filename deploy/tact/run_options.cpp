@@ -34,6 +34,7 @@ constexpr Passed kController[] = {
     {"--tool-radius-mm", "R", "of the ball that touches a surface; 0: a point"},
     {"--stiffness", "N/M", "of a surface"},
     {"--friction", "MU", "of a surface"},
+    {"--mode", "NAME", "how a surface is looked up: off-brute, off-tree or chr"},
 };
 
 }  // namespace

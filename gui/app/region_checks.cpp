@@ -46,7 +46,8 @@ bool sensible(const ToolTopic& t) noexcept {
 
 bool sensible(const TouchTopic& t) noexcept {
     if (!near(t.probe_model_m) || !near(t.proxy_model_m) || t.planes > kTouchPlanesMax ||
-        t.state > TouchState::lagging || !(t.radius_model_m >= 0.0 && t.radius_model_m < 1e3))
+        t.state > TouchState::lagging || t.regime > TouchRegime::brute ||
+        !(t.radius_model_m >= 0.0 && t.radius_model_m < 1e3))
         return false;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         const float* const n = t.normal_model[i];

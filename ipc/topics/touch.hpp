@@ -20,6 +20,13 @@ enum class TouchState : std::uint8_t {
     lagging,  // the time of the cycle was not enough
 };
 
+// What the force was computed on.
+enum class TouchRegime : std::uint8_t {
+    tree,      // the tree over the full mesh
+    adaptive,  // a surface kept fine around the tool, here as in the full mesh
+    brute,     // every triangle
+};
+
 struct alignas(64) TouchTopic {
     static constexpr TopicInfo kInfo{.name = "touch", .version = 1, .writer = Writer::rt};
     std::int64_t taken_at_ns;
@@ -31,7 +38,8 @@ struct alignas(64) TouchTopic {
     float push_n[3];           // its share in the force, before friction and damping
     std::uint32_t planes;      // how many of the three hold; 0: it is free
     TouchState state;
-    std::uint8_t reserved[3];  // zero
+    TouchRegime regime;
+    std::uint8_t reserved[2];  // zero
 };
 static_assert(std::is_trivially_copyable_v<TouchTopic> && sizeof(TouchTopic) == 128);
 static_assert(offsetof(TouchTopic, normal_model) == 72);

@@ -64,7 +64,8 @@ struct ModelTouch {
     std::uint32_t planes = 0;             // that hold the proxy
     std::array<Vec3, kPlanesMax> normal;  // unit, towards the proxy
     std::array<double, kPlanesMax> push_n{};
-    std::uint8_t state = 0;  // numbered as TouchState
+    std::uint8_t state = 0;   // numbered as TouchState
+    std::uint8_t regime = 0;  // numbered as TouchRegime
 };
 
 // What a person asks of the bodies.
@@ -94,7 +95,9 @@ public:
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
     // The largest stiffness that the hand can meet in it, N/m; 0: nobody knows.
     [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
-    // Slow half, own thread, tens of hertz: prepares what the next steps will need.
+    // True: tend() has something to do. Such a model stays until the run ends.
+    [[nodiscard]] virtual bool tended() const noexcept { return false; }
+    // Slow half, own thread, tens of hertz or more: prepares what the next steps will need.
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;

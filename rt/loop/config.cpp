@@ -93,6 +93,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"lines.age_us_max", &c.lines.age_us_max, 1000, 1e7, {}},
         {"shape.force_scale", &c.shape.force_scale, 0, 1e6, {}},
         {"shape.damping_n_s_m", &c.shape.damping_n_s_m, 0, 100, {}},
+        {"surface.mode", &c.surface.mode, 0, 0, {"off-brute", "off-tree", "chr"}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
         {"safety.torque_n_m_max", &c.safety.torque_n_m_max, 0, 10, {}},
         {"safety.force_slew_n_s", &c.safety.force_slew_n_s, 1, 1e6, {}},
@@ -224,7 +225,7 @@ void read_config(const std::string& path, RtConfig& config) {
             throw StartupError(at(path, node.source()) + ": " + section_name,
                                "this key belongs to no section",
                                "put it under [servo], [device], [device2], [arm], [tracker], [lines], "
-                               "[shape], [safety] or [governor]");
+                               "[shape], [surface], [safety] or [governor]");
         }
         if (section_name == "arm") {
             read_arm_section(*table, path, config.arm);

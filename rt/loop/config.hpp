@@ -79,6 +79,9 @@ struct RtConfig {
         double force_scale = 1.0;
         double damping_n_s_m = 0.0;
     } shape;
+    struct Surface {
+        std::string mode = "off-tree";  // or "off-brute", "chr"
+    } surface;
     struct Safety {
         double force_n_max = 3.3;
         double torque_n_m_max = 0.2;

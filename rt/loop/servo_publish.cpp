@@ -120,6 +120,7 @@ void Servo::publish_touch(const CycleState& c) noexcept {
         t.push_n[i] = static_cast<float>(touch.push_n[i]);
     }
     t.state = static_cast<TouchState>(touch.state);
+    t.regime = static_cast<TouchRegime>(touch.regime);
     region_.touch.publish(t);
 }
 

@@ -29,6 +29,49 @@ SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& s
       slot_(4 * kLeavesMax + kLooks),
       number_(4 * kLeavesMax + kLooks) {}
 
+double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
+    const double allowed = kFollowedSteps * (goal_m - goal_m_).norm() + settings_.glide_m;
+    return settings_.radius_m + (1.0 + kCollectedMoves) * std::max(allowed, settings_.margin_m);
+}
+
+void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
+    mesh_ = mesh;
+    collected_m_ = -1.0;
+}
+
+// False: there are more than fit.
+bool SurfaceContact::find(double radius_m) noexcept {
+    std::size_t leaves = 0;
+    if (!mesh_.leaves_near(proxy_m_, radius_m, leaf_, leaves)) return false;
+    collected_ = 0;
+    for (std::size_t l = 0; l < leaves; ++l) {
+        const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]),
+                            count = SurfaceNode::leaf_count(leaf_[l]);
+        for (std::uint32_t t = first; t < first + count; ++t) triangle_[collected_++] = t;
+    }
+    return true;
+}
+
+bool SurfaceContact::find_in_all(double radius_m) noexcept {
+    LookJob job = mesh_.look_job(proxy_m_);
+    job.limit = static_cast<float>(radius_m * (1.0 + kBoundSlack));
+    TriangleLooks seen;
+    std::array<std::uint32_t, kLooks> number;  // filled before it is read
+    job.triangle = number.data();
+    const auto all = static_cast<std::uint32_t>(mesh_.triangles());
+    collected_ = 0;
+    for (std::uint32_t first = 0; first < all; first += kLooks) {
+        for (std::uint32_t k = 0; k < kLooks; ++k) number[k] = std::min(first + k, all - 1);
+        kernel_->look(job, seen);
+        for (std::uint32_t k = 0; k < kLooks && first + k < all; ++k) {
+            if ((seen.near >> k & 1U) == 0) continue;
+            if (collected_ == triangle_.size()) return false;
+            triangle_[collected_++] = first + k;
+        }
+    }
+    return true;
+}
+
 // Triangles for moves of reach_m. Where they are too many the moves are made shorter; false: even the shortest
 // has too many.
 bool SurfaceContact::collect(double& reach_m) noexcept {
@@ -37,14 +80,7 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
     if (collected_m_ >= 0.0 && moved + reach_m <= collected_m_ && !too_many) return true;
     double wide = kCollectedMoves * reach_m;
     for (int attempt = 0; attempt < 12; ++attempt) {
-        std::size_t leaves = 0;
-        if (mesh_.leaves_near(proxy_m_, settings_.radius_m + wide, leaf_, leaves)) {
-            collected_ = 0;
-            for (std::size_t l = 0; l < leaves; ++l) {
-                const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]),
-                                    count = SurfaceNode::leaf_count(leaf_[l]);
-                for (std::uint32_t t = first; t < first + count; ++t) triangle_[collected_++] = t;
-            }
+        if (settings_.brute ? find_in_all(settings_.radius_m + wide) : find(settings_.radius_m + wide)) {
             std::fill_n(bound_m_.begin(), collected_, 0.0F);
             collected_at_m_ = proxy_m_;
             collected_m_ = wide;
@@ -128,6 +164,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
     Contact contact;
     const double step = kFollowedSteps * (goal_m - goal_m_).norm();
     goal_m_ = goal_m;
+    if (settings_.brute) collected_m_ = -1.0;
     const Vec3 begin_m = proxy_m_;
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
     const double allowed = step + settings_.glide_m;

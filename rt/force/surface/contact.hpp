@@ -39,6 +39,7 @@ struct ContactSettings {
     double margin_m = 0.0;  // > 0, less than the radius
     double friction = 0.0;  // coefficient
     double glide_m = 0.0;   // see Glide, > 0
+    bool brute = false;     // every triangle is looked at in every step, without the tree
 };
 
 enum class ContactState : std::uint8_t {
@@ -77,6 +78,11 @@ public:
     [[nodiscard]] const ContactSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] const Vec3& proxy_m() const noexcept TACT_RT { return proxy_m_; }
     [[nodiscard]] const Vec3& goal_m() const noexcept TACT_RT { return goal_m_; }  // of the last step
+    // How far from the proxy as it is a step towards a goal may look.
+    [[nodiscard]] double looks_m(const Vec3& goal_m) const noexcept TACT_RT;
+    // From now on the same surface is this one, at least as far as the next step looks. Its bytes stay until another
+    // one is used.
+    void use(const SurfaceMesh& mesh) noexcept TACT_RT;
     // The proxy is at the goal, or where that is inside a closed surface, outside at the nearest place.
     void seat(const Vec3& goal_m) noexcept TACT_RT;
     Contact follow(const Vec3& goal_m, std::uint32_t moves_max,
@@ -84,6 +90,8 @@ public:
 
 private:
     bool collect(double& reach_m) noexcept TACT_RT;
+    bool find(double radius_m) noexcept TACT_RT;
+    bool find_in_all(double radius_m) noexcept TACT_RT;
     void look(double& reach_m, std::uint32_t& triangles) noexcept TACT_RT;
     bool guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept TACT_RT;
     [[nodiscard]] Vec3 held_back(const Guards::Solution& free, const Vec3& goal_m,

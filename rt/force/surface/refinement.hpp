@@ -58,6 +58,7 @@ public:
     // A probe that is not finite changes nothing.
     RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept;
     void set_filter(const RefineFilter& filter) noexcept;
+    void set_near(double near_m) noexcept { settings_.near_m = near_m; }
     [[nodiscard]] const RefineFilter& filter() const noexcept { return settings_.filter; }
 
     // Servo thread.
@@ -187,7 +188,6 @@ private:
     HugeVector<std::uint32_t> stack_;
     std::vector<Level> path_;
     std::uint64_t steps_ = 0;
-    RefineBox collected_{};
     NearExchange near_;
 };
 

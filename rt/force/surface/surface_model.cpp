@@ -30,7 +30,7 @@ ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s
     const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
     const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
     return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
-            glide / meta.world_per_model};
+            glide / meta.world_per_model, s.mode == SurfaceMode::off_brute};
 }
 
 }  // namespace
@@ -50,8 +50,50 @@ void check_surface_settings(const SurfaceSettings& s) {
     within("force limit in N", s.force_n_max, 0.1, 100.0);
 }
 
-SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings)
-    : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)) {}
+SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
+                           const VertexForest* forest)
+    : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)), full_(mesh) {
+    if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
+    if (settings.mode != SurfaceMode::chr) return;
+    if (forest == nullptr)
+        throw StartupError("touching a surface in mode chr", "the scene has no forest",
+                           "bake it without --no-forest, or choose mode off-tree");
+    const double radius_m = solver_.settings().radius_m;
+    adaptive_ = std::make_unique<AdaptiveSurface>(
+        mesh, *forest,
+        AdaptiveSettings{.least_m = radius_m + kLeastM / meta.world_per_model,
+                         .most_m = radius_m + kMostM / meta.world_per_model});
+}
+
+void SurfaceModel::tend(const ToolState& predicted, const Budget&) noexcept {
+    if (adaptive_ == nullptr) return;
+    const Whereabouts& now = whereabouts_.newest();
+    if (!now.there) return;
+    // The proxy goes where the tool goes, or less far.
+    refined_ =
+        adaptive_->tend(now.proxy_m, predicted.twist_world.linear_m_s / meta_.world_per_model, now.fidelity);
+}
+
+void SurfaceModel::use_full_surface() noexcept {
+    if (used_ == 0) return;
+    solver_.use(full_);
+    used_ = 0;
+}
+
+// Before a step: what holds all that it may look at.
+void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
+    if (adaptive_ == nullptr) return;
+    if (adaptive_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
+        if (used_ != adaptive_->version()) solver_.use(adaptive_->mesh());
+        used_ = adaptive_->version();
+        regime_ = SurfaceRegime::adaptive;
+    } else {
+        use_full_surface();
+        regime_ = SurfaceRegime::tree;
+    }
+    whereabouts_.back() = {solver_.proxy_m(), fidelity, true};
+    whereabouts_.publish();
+}
 
 KnobSpec SurfaceModel::knob() const noexcept {
     return {.path = kKnobPath, .floor = 0.0F, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
@@ -70,6 +112,7 @@ void SurfaceModel::reset(const ToolState& tool) noexcept {
     turn_m_.setZero();
     ++grips_;
     seated_ = tool_is_there(tool.T_world_tool);
+    use_full_surface();
     if (seated_) solver_.seat(meta_.to_model(tool.T_world_tool.p_m));
 }
 
@@ -89,6 +132,7 @@ ModelTouch SurfaceModel::touch() const noexcept {
     t.proxy_m = solver_.proxy_m();
     t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
     t.state = static_cast<std::uint8_t>(contact_.state);
+    t.regime = static_cast<std::uint8_t>(regime_);
     t.planes = contact_.planes;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         t.normal[i] = contact_.plane[i].normal;
@@ -146,6 +190,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
         const Vec3 goal_m = meta_.to_model(tool.T_world_tool.p_m);
         if (clutch && fade_.gain() <= 0.0) seated_ = false;
         if (!seated_ && !clutch) {
+            use_full_surface();
             solver_.seat(goal_m);
             seated_ = true;
             turn_m_.setZero();
@@ -156,6 +201,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
                 fade_.fall();
             else
                 fade_.rise();
+            choose_surface(goal_m, budget.fidelity);
             const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves, budget.deadline);
             const bool on_time = !hurried && !contact_.late;
@@ -169,6 +215,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             result.wrench_world = fade_.show({fade_.gain() * felt_n(tool, goal_m), Vec3::Zero()});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
+                use_full_surface();
                 solver_.seat(goal_m);
                 turn_m_.setZero();
                 ++grips_;
@@ -188,7 +235,11 @@ std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const S
     if (meta.kind != SceneKind::surface)
         throw StartupError("loading '" + scene.name() + "'", "it is not a surface",
                            "bake one with tact-prep touch MESH -o SCENE");
-    return std::make_unique<SurfaceModel>(meta, read_surface(scene), settings);
+    const SurfaceMesh mesh = read_surface(scene);
+    if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0)
+        return std::make_unique<SurfaceModel>(meta, mesh, settings);
+    const VertexForest forest = read_forest(scene, mesh.all_positions_m(), mesh.all_corners());
+    return std::make_unique<SurfaceModel>(meta, mesh, settings, &forest);
 }
 
 }  // namespace tact

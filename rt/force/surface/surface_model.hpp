@@ -13,13 +13,18 @@
 //          behind by more than kLostLimits times the way at that limit, it is released: that force fades out,
 //          the proxy is seated as after a reset, and the force fades in.
 // Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags.
+// Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
+//          of a surface kept fine around the tool by tend() (adaptive_surface.hpp), and where that does not hold
+//          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
+//          radius of full detail, kLeastM to kMostM beyond the tool's.
 // Bodies   one, the proxy, in the hand; orders are refused.
 // Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
 // Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.
 // Frames   tool and wrench in world, the surface in model; SceneMeta maps one to the other.
-// Thread   constructed anywhere (may throw StartupError); then servo. No allocation.
+// Thread   constructed anywhere (may throw StartupError); then servo, but for tend(). No allocation.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "ipc/assets/scene_file.hpp"
@@ -27,9 +32,15 @@
 #include "ipc/assets/surface_mesh.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
+#include "rt/force/surface/adaptive_surface.hpp"
 #include "rt/force/surface/contact.hpp"
 
 namespace tact {
+
+enum class SurfaceMode : std::uint8_t { off_brute, off_tree, chr };
+inline constexpr std::array kSurfaceModeNames{"off-brute", "off-tree", "chr"};
+// What the force of a step was computed on.
+enum class SurfaceRegime : std::uint8_t { tree, adaptive, brute };
 
 // In the hand's world.
 struct SurfaceSettings {
@@ -39,6 +50,7 @@ struct SurfaceSettings {
     double friction = 0.2;
     bool shading = true;
     double force_n_max = 12.0;
+    SurfaceMode mode = SurfaceMode::off_tree;
 };
 
 // Fails by StartupError where one is out of range.
@@ -53,8 +65,12 @@ public:
     static constexpr double kLostLimits = 2.0;
     static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
 
-    // The bytes behind `mesh` must outlive the model.
-    SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings);
+    static constexpr double kLeastM = 2e-3,
+                            kMostM = 4e-3;  // of full detail beyond the tool, in the hand's world
+
+    // The bytes behind mesh and forest must outlive the model. The forest is there for mode chr alone.
+    SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
+                 const VertexForest* forest = nullptr);
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
@@ -70,9 +86,17 @@ public:
 
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
+    [[nodiscard]] bool tended() const noexcept override { return adaptive_ != nullptr; }
+    void tend(const ToolState& predicted, const Budget& budget) noexcept override;
+    [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
+    [[nodiscard]] const RefineStep& refined() const { return refined_; }  // by the last tend(); on its thread
+    [[nodiscard]] const AdaptiveSurface* adaptive() const { return adaptive_.get(); }
+
 private:
     [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept TACT_RT;
     [[nodiscard]] Vec3 shaded_turn_m(const ContactPlane& plane) const noexcept TACT_RT;
+    void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
+    void use_full_surface() noexcept TACT_RT;
 
     SceneMeta meta_;
     SurfaceSettings settings_;
@@ -84,6 +108,18 @@ private:
     bool seated_ = false;         // the proxy is where a tool was
     std::uint64_t grips_ = 0;
     std::uint64_t lagging_ = 0, released_ = 0;
+
+    struct Whereabouts {  // of the proxy, for tend()
+        Vec3 proxy_m = Vec3::Zero();
+        float fidelity = 1.0F;
+        bool there = false;
+    };
+    SurfaceMesh full_;
+    std::unique_ptr<AdaptiveSurface> adaptive_;
+    TripleBuffer<Whereabouts> whereabouts_;
+    SurfaceRegime regime_ = SurfaceRegime::tree;
+    std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
+    RefineStep refined_;      // of the thread that tends
 };
 
 // Fails by StartupError where the scene is no surface or a setting is out of range. The scene must outlive the

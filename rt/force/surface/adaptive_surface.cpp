@@ -1,0 +1,83 @@
+#include "rt/force/surface/adaptive_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tact {
+namespace {
+
+constexpr float kTurned = 0.02F;    // a smaller change of the fidelity is not followed
+constexpr double kFallsOff = 1.0;   // radii within which the bell rises
+constexpr double kFarError = 0.5;   // radii of error allowed far away
+constexpr double kKeepsFrom = 0.2;  // of what is asked for: nearer to the border a newer surface is taken
+
+RefineFilter filter_of(double radius_m) {
+    return RefineFilter::bell(static_cast<float>(radius_m), static_cast<float>(kFallsOff * radius_m),
+                              static_cast<float>(kFarError * radius_m));
+}
+
+RefineSettings refine_settings(const AdaptiveSettings& s) {
+    RefineSettings r;
+    r.filter = filter_of(s.most_m);
+    r.look_ahead_s = s.look_ahead_s;
+    r.near_m = s.most_m;
+    r.near_max = s.near_max;
+    r.splits_max = r.merges_max = 8000;
+    return r;
+}
+
+double area_m2(const SurfaceMesh& mesh) {
+    double area = 0.0;
+    for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {
+        const auto c = mesh.corners(t);
+        const Vec3 a = mesh.position_m(c[0]);
+        area += 0.5 * (mesh.position_m(c[1]) - a).cross(mesh.position_m(c[2]) - a).norm();
+    }
+    return area;
+}
+
+}  // namespace
+
+AdaptiveSurface::AdaptiveSurface(const SurfaceMesh& full, const VertexForest& forest,
+                                 const AdaptiveSettings& settings)
+    : full_(full),
+      forest_(forest),
+      settings_(settings),
+      density_(static_cast<double>(full.triangles()) / std::max(area_m2(full), 1e-30)),
+      refinement_(forest_, refine_settings(settings)),
+      surface_(NearSurface(settings.near_max)) {}
+
+double AdaptiveSurface::radius_m(float fidelity) const noexcept {
+    const double level = fidelity >= 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;
+    return settings_.least_m + level * (settings_.most_m - settings_.least_m);
+}
+
+double AdaptiveSurface::predicted_triangles(float fidelity) const noexcept {
+    const double side = 2.0 * radius_m(fidelity);
+    return std::min(density_ * side * side, static_cast<double>(full_.triangles()));
+}
+
+void AdaptiveSurface::set_radius(float fidelity) noexcept {
+    if (std::abs(fidelity - fidelity_) < kTurned) return;
+    fidelity_ = fidelity;
+    refinement_.set_filter(filter_of(radius_m(fidelity)));
+    refinement_.set_near(radius_m(fidelity));
+}
+
+RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity) noexcept {
+    set_radius(fidelity);
+    const RefineStep done = refinement_.step(tool_m, velocity_m_s);
+    const NearTriangles& near = refinement_.near();
+    if (near.step == built_) return done;
+    built_ = near.step;
+    surface_.back().build(near, full_);
+    surface_.publish();
+    return done;
+}
+
+bool AdaptiveSurface::around(const Vec3& centre_m, double radius_m) noexcept {
+    return surface_.same().holds(centre_m, (1.0 + kKeepsFrom) * radius_m) ||
+           surface_.newest().holds(centre_m, radius_m);
+}
+
+}  // namespace tact

@@ -1,0 +1,132 @@
+// Three ways to look a surface up: the same force, and the adaptive one is there where the tool is.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ipc/base/error.hpp"
+#include "prep/surface/bake_surface.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/surface_model.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kStepS = 1e-3;
+constexpr int kTendEvery = 4;  // cycles
+
+struct Baked {
+    std::vector<std::byte> bytes;
+    std::unique_ptr<SceneFile> file;
+    double world_per_model = 0.0;
+    explicit Baked(bool forest) {
+        SceneWriter out;
+        SurfaceInput input;
+        input.mesh = rough_sphere(30);
+        input.picture = false;
+        input.forest = forest;
+        world_per_model = bake_surface(std::move(input), out).meta.world_per_model;
+        bytes = out.to_bytes();
+        file = std::make_unique<SceneFile>(SceneFile::from_bytes(bytes, "sphere.tact"));
+    }
+};
+const Baked& sphere() {
+    static const Baked baked(true);
+    return baked;
+}
+
+struct Felt {
+    std::vector<Vec3> force_n;
+    double adaptive = 0.0;  // share of the cycles
+    double moved_n = 0.0;   // the most from one cycle to the next
+};
+
+// Once around the sphere, and up and down, at a speed in the hand's world.
+Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool tended = true) {
+    const auto model = load_surface_model(
+        *sphere().file, {.radius_m = radius_m, .damping_n_s_m = 0.0, .friction = 0.1, .mode = mode});
+    const double scale = sphere().world_per_model, ball_m = 0.05 * scale;
+    const Vec3 middle = model->meta().to_world(Vec3::Zero());
+    Felt felt;
+    double angle = 0.0;
+    Vec3 before = middle + Vec3(0.0, 0.0, 1.2 * ball_m);
+    for (int i = 0; i < 1200; ++i) {
+        const double t = kStepS * i;
+        angle += speed_m_s * kStepS / ball_m;
+        const double up = 0.4 * std::sin(5.0 * t);
+        const Vec3 out(std::cos(up) * std::sin(angle), std::sin(up), std::cos(up) * std::cos(angle));
+        const double from = ball_m + radius_m + std::max(0.0, 0.01 - 0.05 * t);
+        ToolState tool;
+        tool.T_world_tool.p_m = middle + (from - 1e-3 * (1.0 + 0.5 * std::sin(9.0 * t))) * out;
+        tool.twist_world.linear_m_s =
+            i == 0 ? Vec3(Vec3::Zero()) : Vec3((tool.T_world_tool.p_m - before) / kStepS);
+        before = tool.T_world_tool.p_m;
+        if (i == 0) model->reset(tool);
+        if (tended && i % kTendEvery == 0) model->tend(tool, {});
+        const Vec3 force_n = model->step(tool, {}).wrench_world.force_n;
+        if (!felt.force_n.empty())
+            felt.moved_n = std::max(felt.moved_n, (force_n - felt.force_n.back()).norm());
+        felt.force_n.push_back(force_n);
+        felt.adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / 1200.0 : 0.0;
+    }
+    return felt;
+}
+
+void expect_same_force(const Felt& a, const Felt& b) {
+    double most_n = 0.0, mean_n = 0.0, felt_n = 0.0;
+    for (std::size_t i = 0; i < a.force_n.size(); ++i) {
+        most_n = std::max(most_n, (a.force_n[i] - b.force_n[i]).norm());
+        mean_n += (a.force_n[i] - b.force_n[i]).norm();
+        felt_n += b.force_n[i].norm();
+    }
+    const double force_n = felt_n / static_cast<double>(b.force_n.size());
+    EXPECT_GT(force_n, 0.3);
+    EXPECT_LT(mean_n, 0.01 * felt_n);
+    EXPECT_LT(most_n, 0.05 * force_n);
+    EXPECT_LT(a.moved_n, b.moved_n + 0.05);  // refinement makes no step
+}
+
+TEST(SurfaceModes, AllTrianglesAndTheTreeGiveTheSameForce) {
+    for (const double radius_m : {0.0, 1e-3})
+        expect_same_force(feel(SurfaceMode::off_brute, radius_m, 0.05),
+                          feel(SurfaceMode::off_tree, radius_m, 0.05));
+}
+
+TEST(SurfaceModes, TheAdaptiveSurfaceGivesTheForceOfTheFullMesh) {
+    for (const double radius_m : {0.0, 1e-3, 3e-3}) {
+        const Felt chr = feel(SurfaceMode::chr, radius_m, 0.05);
+        expect_same_force(chr, feel(SurfaceMode::off_tree, radius_m, 0.05));
+        EXPECT_GT(chr.adaptive, 0.99);
+    }
+}
+
+TEST(SurfaceModes, ItKeepsUpWithAFastHand) {
+    const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.5);
+    expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.5));
+    EXPECT_GT(chr.adaptive, 0.99);
+}
+
+TEST(SurfaceModes, WithoutTendingTheTreeAnswersAndSaysSo) {
+    const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.05, false);
+    EXPECT_EQ(chr.adaptive, 0.0);
+    expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.05));
+}
+
+TEST(SurfaceModes, AdaptiveWithoutAForestIsRefusedAndTheOthersAreNot) {
+    const Baked plain(false);
+    EXPECT_THROW((void)load_surface_model(*plain.file, {.mode = SurfaceMode::chr}), StartupError);
+    EXPECT_NE(load_surface_model(*plain.file, {.mode = SurfaceMode::off_brute}), nullptr);
+}
+
+TEST(SurfaceModes, MoreFidelityIsAWiderRadiusOfMoreTriangles) {
+    const auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
+    double radius = 0.0, triangles = 0.0;
+    for (const float fidelity : {0.0F, 0.3F, 1.0F}) {
+        EXPECT_GT(model->adaptive()->radius_m(fidelity), radius);
+        EXPECT_GT(model->adaptive()->predicted_triangles(fidelity), triangles);
+        radius = model->adaptive()->radius_m(fidelity);
+        triangles = model->adaptive()->predicted_triangles(fidelity);
+    }
+}
+
+}  // namespace
+}  // namespace tact
