@@ -48,24 +48,11 @@ private:
         while (!stack.empty()) {
             const auto [b, parent] = stack.back();
             stack.pop_back();
-            if (parent != kNoForestNode) check_nested(b, parent);
             if (b.is_leaf()) continue;
             check_node(b, parent);
             stack.push_back({forest_.child(b, 1), b.node});
             stack.push_back({forest_.child(b, 0), b.node});
         }
-    }
-    void check_nested(const VertexForest::Branch& b, std::uint32_t parent) const {
-        const ForestNode& up = forest_.node(parent);
-        const std::array<float, 3> at =
-            b.is_leaf() ? forest_.leaf_position_m(b.first) : forest_.node(b.node).position_m;
-        float distance = 0.0F;
-        for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(at[i] - up.position_m[i]));
-        const float reach = b.is_leaf() ? 0.0F : forest_.node(b.node).reach_m;
-        const bool spans =
-            b.is_leaf() || distance + forest_.node(b.node).span_m <= up.span_m * 1.00001F + 1e-30F;
-        if (!(distance + reach <= up.reach_m * 1.00001F + 1e-30F) || !spans)
-            fail("node " + std::to_string(parent) + " does not reach over its children");
     }
     void check_node(const VertexForest::Branch& b, std::uint32_t parent) {
         const ForestNode& node = forest_.node(b.node);

@@ -17,7 +17,7 @@
 //           those bring with them. Each has a higher number, so there is an end. A node may merge where no
 //           split one needs it. So nobody has to look at triangles to know what may change.
 // Reach     of a node: Chebyshev distance max(|dx|,|dy|,|dz|) from it within which all triangles at its leaves
-//           lie, as they are in the full mesh; a parent's box holds those of its children.
+//           lie, as they are in the full mesh.
 // Span      the same for the corners of all triangles that appear with the node or below, in whatever cut they
 //           are active; own span: of those that appear with the node.
 // Deviation of a node; 0 of a leaf; never less than a child's. No point of an active triangle is farther from
@@ -28,8 +28,8 @@
 // in the order in which splits ask for them.
 //
 // Frame     model, metres.  Thread  immutable. The mesh and the section outlive it.
-// Fails by  StartupError: order, ranges, numbers, every triangle's place and the nesting of reaches are
-//           checked here, so that walking needs no check.
+// Fails by  StartupError: order, ranges, numbers, needs and every triangle's place are checked here, so that
+//           walking needs no check.
 #pragma once
 
 #include <array>

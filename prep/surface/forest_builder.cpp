@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/huge_pages.hpp"
@@ -11,11 +12,9 @@
 namespace tact {
 namespace {
 
+constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kWider = 1.000001F;  // against rounding, at each step up
 
-float chebyshev(const float* a, const float* b) {
-    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
-}
 
 float distance(const float* a, const float* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -113,17 +112,35 @@ private:
         return place < leaves_ ? &mesh_.position_m[3 * std::size_t{place}]
                                : steps_[place - leaves_].position_m.data();
     }
-    // Reach, error and deviation of every node, from the leaves up.
-    void measure() {
-        reach_.assign(std::size_t{leaves_} + nodes_, 0.0F);
-        for (std::size_t t = 0; t < mesh_.triangles(); ++t) {
+    struct Box {  // of points
+        std::array<float, 3> low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+        void add(const float* p) {
             for (std::size_t i = 0; i < 3; ++i) {
-                const std::uint32_t v = mesh_.triangle[3 * t + i], w = mesh_.triangle[3 * t + (i + 1) % 3];
-                const float side = chebyshev(at(v), at(w));
-                reach_[v] = std::max(reach_[v], side);
-                reach_[w] = std::max(reach_[w], side);
+                low[i] = std::min(low[i], p[i]);
+                high[i] = std::max(high[i], p[i]);
             }
         }
+        void add(const Box& b) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                low[i] = std::min(low[i], b.low[i]);
+                high[i] = std::max(high[i], b.high[i]);
+            }
+        }
+        // Chebyshev distance of the farthest of its points.
+        [[nodiscard]] float farthest(const float* p) const {
+            float most = 0.0F;
+            for (std::size_t i = 0; i < 3; ++i) most = std::max({most, high[i] - p[i], p[i] - low[i]});
+            return most * kWider;
+        }
+    };
+    // Reach, error and deviation of every node, from the leaves up.
+    void measure() {
+        std::vector<Box> box(std::size_t{leaves_} + nodes_);  // of all triangles below
+        for (std::size_t t = 0; t < mesh_.triangle.size(); t += 3)
+            for (std::size_t i = 0; i < 9; ++i)
+                box[mesh_.triangle[t + i / 3]].add(at(mesh_.triangle[t + i % 3]));
+        reach_.assign(std::size_t{leaves_} + nodes_, 0.0F);
+        for (std::uint32_t v = 0; v < leaves_; ++v) reach_[v] = box[v].farthest(at(v));
         float largest = 0.0F;
         for (const float x : mesh_.position_m) largest = std::max(largest, std::abs(x));
         deviation_.assign(nodes_, 0.0F);
@@ -135,9 +152,10 @@ private:
                 deviation_[s] = std::max(
                     deviation_[s],
                     (distance(at(made), at(c)) + (c >= leaves_ ? deviation_[c - leaves_] : 0.0F)) * kWider);
-                reach_[made] = std::max(reach_[made], (chebyshev(at(made), at(c)) + reach_[c]) * kWider);
+                box[made].add(box[c]);
                 if (c >= leaves_) error_[s] = std::max(error_[s], error_[c - leaves_]);
             }
+            reach_[made] = box[made].farthest(at(made));
         }
     }
     // What stands between the merges of the two ends of an edge: where a merge on one side is followed by one on
@@ -191,33 +209,38 @@ private:
         constexpr int kWalked = 64;  // of deeper trees the reach tells
         std::vector<std::uint32_t> place(nodes_);
         for (std::uint32_t s = 0; s < nodes_; ++s) place[number_[leaves_ + s]] = leaves_ + s;
-        std::vector<float> own(nodes_, 0.0F), span(nodes_, 0.0F);
+        std::vector<Box> box(nodes_);
         for (std::size_t t = 0; t < node_of_triangle.size(); ++t) {
             if (node_of_triangle[t] == nodes_) continue;
             const std::uint32_t of = place[node_of_triangle[t]];
-            float& widest = own[of - leaves_];
+            Box& own = box[of - leaves_];
             for (std::size_t i = 0; i < 3; ++i) {
                 std::uint32_t now = mesh_.triangle[3 * t + i];
                 int left = kWalked;
                 for (; now < of && left > 0; --left) {
-                    widest = std::max(widest, chebyshev(at(of), at(now)) * kWider);
+                    own.add(at(now));
                     now = parent_[now];
                 }
                 if (now < of) {
                     const std::uint32_t top = highest(now, of);
-                    widest = std::max(widest, (chebyshev(at(of), at(top)) + reach_[top]) * kWider);
+                    const float reach = reach_of_places(top);
+                    const float* const p = at(top);
+                    for (const float side : {-reach, reach})
+                        own.add(std::array{p[0] + side, p[1] + side, p[2] + side}.data());
                 }
             }
         }
         for (std::uint32_t s = 0; s < nodes_; ++s) {
             const std::uint32_t made = leaves_ + s;
-            span[s] = std::max(span[s], own[s]);
+            out_.data.node[number_[made]].own_span_m = box[s].farthest(at(made));
             for (const std::uint32_t c : child_[s])
-                if (c >= leaves_)
-                    span[s] = std::max(span[s], (chebyshev(at(made), at(c)) + span[c - leaves_]) * kWider);
-            out_.data.node[number_[made]].span_m = span[s];
-            out_.data.node[number_[made]].own_span_m = own[s];
+                if (c >= leaves_) box[s].add(box[c - leaves_]);
+            out_.data.node[number_[made]].span_m = box[s].farthest(at(made));
         }
+    }
+    // Within this of a place lie all those that it stands for in turn. Nodes may lie outside of their triangles.
+    [[nodiscard]] float reach_of_places(std::uint32_t p) const {
+        return p < leaves_ ? 0.0F : deviation_[p - leaves_];
     }
     // Gives leaves and nodes their numbers: trees along a space-filling curve, each walked node first.
     void order() {

@@ -35,11 +35,11 @@ struct Torus {
     double diagonal_m = std::sqrt(2.6 * 2.6 * 2 + 0.6 * 0.6);
 };
 
-void run(benchmark::State& state, double way) {
+void run(benchmark::State& state, double way, double width = 0.05, double far = 0.02) {
     static const Torus torus;
     RefineSettings settings;
     const auto part = [&](double fraction) { return static_cast<float>(fraction * torus.diagonal_m); };
-    settings.filter = RefineFilter::bell(part(0.05), part(0.05), part(0.02));
+    settings.filter = RefineFilter::bell(part(0.05), part(width), part(far));
     settings.look_ahead_s = 0.0;
     settings.near_m = 0.01 * torus.diagonal_m;
     Refinement refinement(torus.forest, settings);
@@ -67,8 +67,12 @@ void run(benchmark::State& state, double way) {
 }
 
 void Moving(benchmark::State& state) { run(state, 0.01); }
+void MovingSteep(benchmark::State& state) { run(state, 0.01, 0.025, 0.04); }
+void MovingSteepest(benchmark::State& state) { run(state, 0.01, 0.01, 0.1); }
 void Still(benchmark::State& state) { run(state, 0.0); }
 BENCHMARK(Moving)->Unit(benchmark::kMicrosecond);
+BENCHMARK(MovingSteep)->Unit(benchmark::kMicrosecond);
+BENCHMARK(MovingSteepest)->Unit(benchmark::kMicrosecond);
 BENCHMARK(Still)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

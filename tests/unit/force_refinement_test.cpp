@@ -9,6 +9,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 #include "prep/mesh/mesh_folds.hpp"
+#include "prep/mesh/nearest_point.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/synthetic/rough_torus.hpp"
 #include "rt/force/surface/refinement.hpp"
@@ -218,6 +219,44 @@ TEST(Refinement, TheCutDoesNotDependOnWhereTheProbeCameFrom) {
     EXPECT_EQ(vertices_of(r), first);
     expect_whole(r, torus());
     EXPECT_EQ(r.memory_bytes(), bytes);
+}
+
+// By brute force, from points of each surface to all triangles of the other.
+double farthest_from(const TriangleMesh& from, const TriangleMesh& to) {
+    const auto at = [](const TriangleMesh& m, std::size_t corner) {
+        const float* const p = &m.position_m[3 * std::size_t{m.triangle[corner]}];
+        return Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
+    };
+    double farthest = 0.0;
+    for (std::size_t t = 0; t < from.triangle.size(); t += 3) {
+        const Vec3 middle = (at(from, t) + at(from, t + 1) + at(from, t + 2)) / 3.0;
+        for (const Vec3& p : {at(from, t), middle}) {
+            double nearest = 1e300;
+            for (std::size_t s = 0; s < to.triangle.size(); s += 3) {
+                const NearestPoint q = nearest_point(p, at(to, s), at(to, s + 1), at(to, s + 2));
+                nearest = std::min(nearest, std::sqrt(q.square));
+            }
+            farthest = std::max(farthest, nearest);
+        }
+    }
+    return farthest;
+}
+
+TEST(Refinement, TheDeviationOfTheActiveSurfaceIsWithinWhatIsSaid) {
+    static const Surface small(rough_torus(24, 12));
+    Refinement r(small.forest, some_settings(0.15F));
+    for (const Vec3& probe : {Vec3(1.3, 0.0, 0.0), Vec3(-0.9, 0.4, 0.2), Vec3(40.0, 0.0, 0.0)}) {
+        settle(r, probe);
+        const TriangleMesh active = active_mesh(r);
+        const auto said = static_cast<double>(r.deviation_m());
+        EXPECT_GT(said, 0.0);
+        EXPECT_LE(farthest_from(active, small.mesh), said);
+        EXPECT_LE(farthest_from(small.mesh, active), said);
+    }
+    r.set_filter(RefineFilter());
+    settle(r, Vec3::Zero());
+    EXPECT_EQ(r.deviation_m(), 0.0F);
+    EXPECT_EQ(r.step(Vec3::Zero(), Vec3::Zero()).deviation_near_m, 0.0F);
 }
 
 TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {

@@ -111,8 +111,8 @@ TEST(VertexForest, WhatIsWrittenIsReadAndNothingElseIsBelieved) {
     refuses("a number above its parent's", [](auto& d) { std::swap(d.node[0].number, d.node[1].number); });
     refuses("an error above its parent's", [](auto& d) { d.node[1].error_m = 9.0F; });
     refuses("no position", [](auto& d) { d.node[2].position_m[1] = NAN; });
-    refuses("a short reach", [](auto& d) { d.node[0].reach_m *= 0.5F; });
-    refuses("a short span", [](auto& d) { d.node[0].span_m = 0.0F; });
+    refuses("no reach", [](auto& d) { d.node[0].reach_m = -1.0F; });
+    refuses("a span below its own triangles'", [](auto& d) { d.node[0].span_m = 0.0F; });
     refuses("a deviation above its parent's", [](auto& d) { d.node[1].deviation_m = 9e3F; });
     refuses("another first leaf", [](auto& d) { d.node[1].first += 1; });
     refuses("another end", [](auto& d) { d.node[0].end -= 1; });

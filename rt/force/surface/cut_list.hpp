@@ -1,4 +1,4 @@
-// Nodes of a cut with what decides about them, in rows that four at a time are compared with a box.
+// Nodes of a cut with what decides about them; four at a time are compared with a box.
 //
 // Order     any; what is removed is replaced by the last one. Who removes tells the other's new place.
 // Memory    all taken by the constructor.  Thread  that of the refinement.
@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "ipc/base/huge_pages.hpp"
 
@@ -27,60 +28,71 @@ struct RefineBox {
 
 class CutList {
 public:
-    explicit CutList(std::size_t capacity) {
-        const std::size_t room = (capacity + 7) / 4 * 4;
-        for (HugeVector<float>& axis : position_m_) axis.resize(room);
-        limit_m_.resize(room);
-        node_.resize(room);
-    }
+    explicit CutList(std::size_t capacity) : entry_((capacity + 7) / 4 * 4) {}
     [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
-    [[nodiscard]] std::uint32_t node(std::uint32_t place) const noexcept { return node_[place]; }
-    void set_limit(std::uint32_t place, float limit_m) noexcept { limit_m_[place] = limit_m; }
+    [[nodiscard]] std::uint32_t node(std::uint32_t place) const noexcept { return entry_[place].node; }
+    void set_limit(std::uint32_t place, float limit_m) noexcept { entry_[place].limit_m = limit_m; }
     [[nodiscard]] bool within(std::uint32_t place, const RefineBox& box) const noexcept {
-        return box.distance_m({position_m_[0][place], position_m_[1][place], position_m_[2][place]}) <
-               limit_m_[place];
+        return box.distance_m(entry_[place].position_m) < entry_[place].limit_m;
+    }
+    // Whether the box with a margin touches what hangs on the node.
+    [[nodiscard]] bool reached(std::uint32_t place, const RefineBox& box, float margin_m) const noexcept {
+        return box.distance_m(entry_[place].position_m) < entry_[place].reach_m + margin_m;
     }
     // The new one's place.
-    std::uint32_t add(std::uint32_t node, const std::array<float, 3>& position_m, float limit_m) noexcept {
-        for (std::size_t i = 0; i < 3; ++i) position_m_[i][size_] = position_m[i];
-        limit_m_[size_] = limit_m;
-        node_[size_] = node;
+    std::uint32_t add(std::uint32_t node, const std::array<float, 3>& position_m, float limit_m,
+                      float reach_m) noexcept {
+        entry_[size_] = {position_m, limit_m, reach_m, node, {}};
         return size_++;
     }
     // The node that is at this place now, or `none`.
     std::uint32_t remove(std::uint32_t place, std::uint32_t none) noexcept {
         --size_;
         if (place == size_) return none;
-        for (HugeVector<float>& axis : position_m_) axis[place] = axis[size_];
-        limit_m_[place] = limit_m_[size_];
-        return node_[place] = node_[size_];
+        entry_[place] = entry_[size_];
+        return entry_[place].node;
     }
     // visit(place) for those that are nearer to the box than their limit, or the others; nothing may be added or
     // removed meanwhile.
     template <class Visit>
     void each(const RefineBox& box, bool nearer, Visit&& visit) const {
-        using F4 [[gnu::vector_size(16), gnu::aligned(16)]] = float;
+        using F4 [[gnu::vector_size(16)]] = float;
+        using I4 [[gnu::vector_size(16)]] = std::int32_t;
         using L2 [[gnu::vector_size(16)]] = long long;
-        const auto over = [&](std::size_t axis, std::uint32_t i) {
-            const F4 d = *reinterpret_cast<const F4*>(&position_m_[axis][i]) - box.centre_m[axis];
+        const auto over = [&](const F4& p, std::size_t axis) {
+            const F4 d = p - box.centre_m[axis];
             return (d > 0.0F ? d : -d) - box.half_m[axis];
         };
         for (std::uint32_t i = 0; i < size_; i += 4) {
-            const F4 x = over(0, i), y = over(1, i), z = over(2, i);
-            const F4 xy = x > y ? x : y, far = xy > z ? xy : z;
-            const auto in = far < *reinterpret_cast<const F4*>(&limit_m_[i]);
-            const L2 wanted = reinterpret_cast<L2>(nearer ? in : ~in);
+            std::array<F4, 4> row;  // of each entry x, y, z, limit; then of each of these four entries
+            for (std::uint32_t k = 0; k < 4; ++k) std::memcpy(&row[k], &entry_[i + k], sizeof row[k]);
+            const F4 xy01 = __builtin_shuffle(row[0], row[1], I4{0, 4, 1, 5}),
+                     xy23 = __builtin_shuffle(row[2], row[3], I4{0, 4, 1, 5}),
+                     zl01 = __builtin_shuffle(row[0], row[1], I4{2, 6, 3, 7}),
+                     zl23 = __builtin_shuffle(row[2], row[3], I4{2, 6, 3, 7});
+            const F4 x = over(__builtin_shuffle(xy01, xy23, I4{0, 1, 4, 5}), 0),
+                     y = over(__builtin_shuffle(xy01, xy23, I4{2, 3, 6, 7}), 1),
+                     z = over(__builtin_shuffle(zl01, zl23, I4{0, 1, 4, 5}), 2),
+                     limit = __builtin_shuffle(zl01, zl23, I4{2, 3, 6, 7});
+            const F4 xy = x > y ? x : y;
+            const I4 in = (xy > z ? xy : z) < limit;
+            const auto wanted = reinterpret_cast<L2>(nearer ? in : ~in);
             if ((wanted[0] | wanted[1]) == 0) continue;
             for (std::uint32_t k = 0; k < 4 && i + k < size_; ++k)
                 if ((in[k] != 0) == nearer) visit(i + k);
         }
     }
-    [[nodiscard]] std::size_t bytes() const noexcept { return 20 * node_.capacity(); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return sizeof(Entry) * entry_.capacity(); }
 
 private:
-    std::array<HugeVector<float>, 3> position_m_;
-    HugeVector<float> limit_m_;  // to be split where the box is nearer, else merged
-    HugeVector<std::uint32_t> node_;
+    struct alignas(32) Entry {
+        std::array<float, 3> position_m;
+        float limit_m;  // to be split where the box is nearer, else merged
+        float reach_m;  // of the node
+        std::uint32_t node;
+        std::array<std::uint32_t, 2> unused;
+    };
+    HugeVector<Entry> entry_;
     std::uint32_t size_ = 0;
 };
 

@@ -39,6 +39,13 @@ public:
                          [](const Point& a, const Point& b) { return a.distance_m < b.distance_m; });
         for (std::size_t i = 1; i < made.count_; ++i)
             made.point_[i].error_m = std::max(made.point_[i].error_m, made.point_[i - 1].error_m);
+        made.allows_.fill(kEverywhere);
+        for (std::size_t i = 1; i < made.count_; ++i) {
+            const Point &a = made.point_[i - 1], &b = made.point_[i];
+            made.allows_[i] = b.error_m;
+            const float rise = b.error_m - a.error_m;
+            made.per_error_[i] = rise > 0.0F ? (b.distance_m - a.distance_m) / rise : 0.0F;
+        }
         return made;
     }
     // error_far_m far away; 1 - 1/e of it at radius_m + width_m.
@@ -66,20 +73,20 @@ public:
     }
     // Within this distance an error is not allowed: allowed_m(d) < error_m just where d is below it.
     [[nodiscard]] float distance_m(float error_m) const noexcept {
-        for (std::size_t i = 1; i < count_; ++i) {
-            const Point &a = point_[i - 1], &b = point_[i];
-            if (error_m > b.error_m) continue;
-            const float rise = b.error_m - a.error_m;
-            const float part = rise > 0.0F ? (error_m - a.error_m) / rise : 0.0F;
-            return a.distance_m + part * (b.distance_m - a.distance_m);
-        }
-        return kEverywhere;
+        if (count_ == 0) return kEverywhere;
+        std::size_t i = 1;  // the first point that allows it; asked for at every split and merge: no branch
+        for (std::size_t k = 1; k < kPointsMax; ++k) i += error_m > allows_[k] ? 1 : 0;
+        if (i >= count_) return kEverywhere;
+        const Point& a = point_[i - 1];
+        return a.distance_m + (error_m - a.error_m) * per_error_[i];
     }
 
 private:
     static constexpr float kEverywhere = std::numeric_limits<float>::max();
     std::array<Point, kPointsMax> point_{};
     std::size_t count_ = 0;
+    std::array<float, kPointsMax> allows_{};     // errors of the points; beyond the last, nothing is more
+    std::array<float, kPointsMax> per_error_{};  // distance gained by allowing more, up to each point
 };
 
 }  // namespace tact

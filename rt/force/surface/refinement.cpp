@@ -55,7 +55,7 @@ float Refinement::limit_m(const ForestNode& node) const noexcept {
 
 void Refinement::list(CutList& in, std::uint32_t n) noexcept {
     const ForestNode& node = forest_.node(n);
-    state_[n].place = in.add(n, node.position_m, limit_m(node));
+    state_[n].place = in.add(n, node.position_m, limit_m(node), node.reach_m);
 }
 
 void Refinement::unlist(CutList& in, std::uint32_t n) noexcept {
@@ -85,7 +85,7 @@ RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexc
         if (merge_first) out.merges = merge_all(box);
         ask_full_.count = ask_rest_.count = 0;
         ask_full_.full = ask_rest_.full = false;
-        frontier_.each(box, true, [&](std::uint32_t i) { ask(frontier_.node(i), box); });
+        frontier_.each(box, true, [&](std::uint32_t i) { ask(i, box); });
         std::uint32_t budget = settings_.splits_max;
         const Done near = split_queue(ask_full_, box, budget);
         const Done far = near == Done::out_of_budget ? near : split_queue(ask_rest_, box, budget);

@@ -10,7 +10,7 @@
 //           the probe came from: what is asked for, and what that needs.
 // Cost      follows the number of changes, and a look at the nodes at the cut; triangles are looked at in near()
 //           alone.
-// Memory    8 bytes for each node of the forest, 40 for each vertex that may be active. All is taken by the
+// Memory    8 bytes for each node of the forest, 64 for each vertex that may be active. All is taken by the
 //           constructor.
 // Frame     model, metres.  Thread  one thread calls step() and set_filter(), never the servo's; near() is for
 //           the servo.
@@ -127,8 +127,8 @@ private:
     void let_go(std::uint32_t n, const RefineBox& box) noexcept;
     [[nodiscard]] float limit_m(const ForestNode& node) const noexcept;
     [[nodiscard]] std::uint32_t unmet_need(std::uint32_t n) const noexcept;
-    void fetch(std::uint32_t n) const noexcept;
-    void ask(std::uint32_t n, const RefineBox& box) noexcept;
+    void fetch_ahead(const Queue& queue, std::uint32_t i) const noexcept;
+    void ask(std::uint32_t place, const RefineBox& box) noexcept;
 
     void split(std::uint32_t n, const RefineBox& box) noexcept;
     Done split_with_forced(std::uint32_t n, const RefineBox& box, std::uint32_t& budget) noexcept;

@@ -4,23 +4,46 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kFetchAhead = 6;  // turns
+// Turns ahead for which memory is called: a node and its state; what it names; what it needs.
+constexpr std::uint32_t kFirst = 18, kSecond = 12, kThird = 6;
 
 }  // namespace
 
-void Refinement::fetch(std::uint32_t n) const noexcept {
-    const ForestNode& node = forest_.node(n);
-    __builtin_prefetch(forest_.first_need_of(n));
-    __builtin_prefetch(&node + 1);
-    __builtin_prefetch(&node + (node.middle - node.first));
-    if (node.parent != kNoForestNode) __builtin_prefetch(&state_[node.parent]);
+// Each call is for what the one before has brought meanwhile.
+void Refinement::fetch_ahead(const Queue& queue, std::uint32_t i) const noexcept {
+    if (i + kFirst < queue.count) {
+        const std::uint32_t n = queue.node[i + kFirst];
+        __builtin_prefetch(&forest_.node(n));
+        __builtin_prefetch(&state_[n], 1);
+    }
+    if (i + kSecond < queue.count) {
+        const std::uint32_t n = queue.node[i + kSecond];
+        const ForestNode& node = forest_.node(n);
+        __builtin_prefetch(forest_.first_need_of(n));
+        if (!node.first_is_leaf()) {
+            __builtin_prefetch(&node + 1);
+            __builtin_prefetch(&state_[n + 1], 1);
+        }
+        if (!node.second_is_leaf()) {
+            __builtin_prefetch(&forest_.node(node.second_of(n)));
+            __builtin_prefetch(&state_[node.second_of(n)], 1);
+        }
+        if (node.parent != kNoForestNode) {
+            __builtin_prefetch(&forest_.node(node.parent));
+            __builtin_prefetch(&state_[node.parent], 1);
+        }
+    }
+    if (i + kThird < queue.count)
+        for (const std::uint32_t need : forest_.needs_of(queue.node[i + kThird])) {
+            __builtin_prefetch(&state_[need], 1);
+            __builtin_prefetch(&forest_.node(need));
+        }
 }
 
-// To be split, where it is wanted: puts it into one of the queues.
-void Refinement::ask(std::uint32_t n, const RefineBox& box) noexcept {
-    const ForestNode& node = forest_.node(n);
-    const bool full = box.distance_m(node.position_m) < node.reach_m + settings_.filter.radius_m();
-    (full ? ask_full_ : ask_rest_).put(n);
+// To be split, where it is wanted: puts what is at a place of the frontier into one of the queues.
+void Refinement::ask(std::uint32_t place, const RefineBox& box) noexcept {
+    const bool full = frontier_.reached(place, box, settings_.filter.radius_m());
+    (full ? ask_full_ : ask_rest_).put(frontier_.node(place));
 }
 
 void Refinement::hold(std::uint32_t n) noexcept {
@@ -43,7 +66,7 @@ void Refinement::split(std::uint32_t n, const RefineBox& box) noexcept {
     for (const std::uint32_t need : forest_.needs_of(n)) hold(need);
     const auto add = [&](std::uint32_t child) {
         list(frontier_, child);
-        if (frontier_.within(state_[child].place, box)) ask(child, box);
+        if (frontier_.within(state_[child].place, box)) ask(state_[child].place, box);
     };
     if (node.first_is_leaf())
         set_active(node.first, true);
@@ -92,7 +115,7 @@ Refinement::Done Refinement::split_with_forced(std::uint32_t n, const RefineBox&
 Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept {
     Done all = Done::yes;
     for (std::uint32_t i = 0; i < queue.count; ++i) {
-        if (i + kFetchAhead < queue.count) fetch(queue.node[i + kFetchAhead]);
+        fetch_ahead(queue, i);
         const std::uint32_t n = queue.node[i];
         if (is_split(n)) continue;  // forced by another one meanwhile
         const Done done = split_with_forced(n, box, budget);
@@ -128,7 +151,7 @@ std::uint32_t Refinement::merge_all(const RefineBox& box) noexcept {
     ask_merge_.full = false;
     mergeable_.each(box, false, [&](std::uint32_t i) { ask_merge_.put(mergeable_.node(i)); });
     for (; merges < ask_merge_.count; ++merges) {
-        if (merges + kFetchAhead < ask_merge_.count) fetch(ask_merge_.node[merges + kFetchAhead]);
+        fetch_ahead(ask_merge_, merges);
         merge(ask_merge_.node[merges], box);
     }
     return merges;
