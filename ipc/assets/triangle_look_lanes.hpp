@@ -22,9 +22,9 @@ TACT_LANE Lanes3 choose(const I& mask, const Lanes3& a, const Lanes3& b) {
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
-constexpr float kTiny = 1e-36F;  // of a square: below it a length is none
+inline constexpr float kTiny = 1e-36F;  // of a square: below it a length is none
 // Below it a square of a sine is none: of so thin a triangle the normal is mostly rounding, and its edges do.
-constexpr float kNeedle = 1e-8F;
+inline constexpr float kNeedle = 1e-8F;
 
 // Of the segment from a to a + ab, the point nearest to the origin.
 TACT_LANE Lanes3 nearest_of_edge(const Lanes3& a, const Lanes3& ab) {
