@@ -17,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kStepS = 1e-3;
 constexpr std::size_t kSlideSamples = 4000;
 constexpr int kPasses = 3;
 constexpr std::size_t kPathMax = 10'000'000;
@@ -99,7 +98,7 @@ std::string surface_work_csv(const SurfaceWork& work) {
     char row[200];
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const TouchStep& s = steps[i];
-        std::snprintf(row, sizeof row, "%.3f,%.6f,%.6f,%.6f,%.3f,%d\n", kStepS * static_cast<double>(i),
+        std::snprintf(row, sizeof row, "%.3f,%.6f,%.6f,%.6f,%.3f,%d\n", kTouchStepS * static_cast<double>(i),
                       s.force_n.x(), s.force_n.y(), s.force_n.z(), s.us, s.settled ? 1 : 0);
         text += row;
     }

@@ -9,7 +9,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr double kStepS = 1e-3, kInS = 0.25, kTapsHz = 3.0;
+constexpr double kInS = 0.25, kTapsHz = 3.0;
 constexpr double kTouchS = 2.0, kTurnRad = 0.03;  // of a wandering hand: from lift to lift, and a step
 
 // How far the surface is from the origin in a direction, seen from outside: steps by the clearance.
@@ -34,7 +34,7 @@ std::vector<Vec3> touch_path_m(const SurfaceMesh& surface, TouchWay way, double 
     path.reserve(samples);
     const double outside_m = 1.01 * std::max(surface.low_m().norm(), surface.high_m().norm());
     for (std::size_t i = 0; i < samples; ++i) {
-        const double real_s = kStepS * static_cast<double>(i), t = pace * real_s;
+        const double real_s = kTouchStepS * static_cast<double>(i), t = pace * real_s;
         Vec3 direction;
         double depth_m = 1.5e-3;
         if (way == TouchWay::slide) {
@@ -63,12 +63,12 @@ std::vector<Vec3> wander_m(const SurfaceMesh& surface, const Wander& how, std::s
     const auto any =
         static_cast<std::uint32_t>(random.uniform() * static_cast<double>(surface.triangles() - 1));
     SurfacePoint foot = surface.nearest(surface.position_m(surface.corners(any)[0]), 1e9);
-    const double step_m = kStepS * how.speed_m_s;
+    const double step_m = kTouchStepS * how.speed_m_s;
     Vec3 along = random.direction(), normal = surface.normal_at(foot);
     std::vector<Vec3> path;
     path.reserve(samples);
     for (std::size_t i = 0; i < samples; ++i) {
-        const double t = kStepS * static_cast<double>(i);
+        const double t = kTouchStepS * static_cast<double>(i);
         along = Eigen::AngleAxisd(kTurnRad * (2.0 * random.uniform() - 1.0), normal) * along;
         along = (along - along.dot(normal) * normal).normalized();
         const Vec3 before_m = foot.point_m;

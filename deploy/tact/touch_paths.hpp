@@ -17,6 +17,8 @@
 
 namespace tact::launch {
 
+inline constexpr double kTouchStepS = 1e-3;  // between two positions
+
 enum class TouchWay { slide, orbit, tap };
 
 // pace: how many times as fast.

@@ -7,12 +7,19 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/touch_paths.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::launch {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t kTendEvery = 4;  // steps: 250 times a second, as its thread does
+
+}  // namespace
 
 json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene) {
     const auto log = scene.parent_path() / "bake.json";
@@ -35,20 +42,27 @@ json bake_to_measure(const std::vector<std::string>& words, const std::filesyste
 }
 
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
-                                   const SurfaceSettings& settings, int passes, double world_per_model) {
+                                   const SurfaceSettings& settings, int passes, double world_per_model,
+                                   const VertexForest* forest) {
     SceneMeta meta{};
     meta.kind = SceneKind::surface;
     meta.world_per_model = world_per_model;
     std::vector<TouchStep> steps(path_model_m.size());
     for (int pass = 0; pass < passes && !path_model_m.empty(); ++pass) {
-        SurfaceModel model(meta, surface, settings);
+        SurfaceModel model(meta, surface, settings, forest);
         ToolState tool;
         tool.T_world_tool.p_m = world_per_model * path_model_m.front();
         model.reset(tool);
-        for (int i = 0; i < ForceFade::kRampSteps; ++i) (void)model.step(tool, {});
+        for (int i = 0; i < ForceFade::kRampSteps; ++i) {
+            (void)model.step(tool, {});
+            if (model.tended()) model.tend(tool, {});
+        }
         Vec3 before_m = model.contact().proxy_m;
         for (std::size_t i = 0; i < path_model_m.size(); ++i) {
             tool.T_world_tool.p_m = world_per_model * path_model_m[i];
+            if (i > 0)
+                tool.twist_world.linear_m_s =
+                    world_per_model / kTouchStepS * (path_model_m[i] - path_model_m[i - 1]);
             const Instant begin = Monotonic::now();
             const StepResult result = model.step(tool, {});
             const double us = to_us(Monotonic::now() - begin);
@@ -57,7 +71,9 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
             const bool nearer = (now_m - path_model_m[i]).norm() <
                                 (before_m - path_model_m[i]).norm() - 1e-7 / world_per_model;
             steps[i] = {result.wrench_world.force_n, std::min(us, steps[i].us), settled, !settled && !nearer};
+            steps[i].adaptive = model.regime() == SurfaceRegime::adaptive;
             before_m = now_m;
+            if (model.tended() && i % kTendEvery == 0) model.tend(tool, {});
         }
     }
     return steps;

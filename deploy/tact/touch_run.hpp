@@ -21,6 +21,7 @@ struct TouchStep {
     Vec3 force_n = Vec3::Zero();
     double us = 1e300;
     bool settled = true, stands = false;
+    bool adaptive = false;  // felt on the adaptive surface
 };
 
 inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand are a jam
@@ -28,9 +29,11 @@ inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand ar
 // Baked by tact-prep with the given words before -o, without a picture; what it said as JSON.
 nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);
 
-// world_per_model: 1 is as large as in its file. The force has faded in when the path begins.
+// world_per_model: 1 is as large as in its file. forest: for mode chr, whose surface is tended between every
+// fourth step and the next, and not counted. The force has faded in when the path begins.
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
-                                   const SurfaceSettings& settings, int passes, double world_per_model = 1.0);
+                                   const SurfaceSettings& settings, int passes, double world_per_model = 1.0,
+                                   const VertexForest* forest = nullptr);
 
 double percentile_us(const std::vector<TouchStep>& steps, double share);
 std::uint64_t jammed_cycles(const std::vector<TouchStep>& steps);

@@ -12,6 +12,7 @@
 #include "deploy/tact/reproduce/text.hpp"
 #include "deploy/tact/touch_paths.hpp"
 #include "ipc/assets/scene_meta.hpp"
+#include "ipc/assets/vertex_forest.hpp"
 #include "rt/force/surface/refine_filter.hpp"
 
 namespace tact::launch {
@@ -54,27 +55,46 @@ SurfaceSettings measured(double radius_m) {
             .force_n_max = 100.0};
 }
 
-// All tools and hands on one mesh.
+// As many steps as all triangles can be looked at in some seconds, three times each.
+std::size_t brute_steps(std::size_t triangles, std::size_t most) {
+    return std::clamp<std::size_t>(100'000'000 / std::max<std::size_t>(triangles, 1), 10, most);
+}
+
+// All tools, hands and modes on one mesh.
 std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path& scene, bool quick) {
     const SceneFile file = SceneFile::open(scene);
     const SurfaceMesh surface = read_surface(file);
+    const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
     const double world_per_model = read_meta(file).world_per_model;
     std::vector<TouchRow> rows;
     for (const Hand& hand : kHands) {
         const std::vector<Vec3> path = wander_m(
             surface, {hand.speed_m_s / world_per_model, 1.5e-3 / world_per_model, 7}, quick ? 2000 : 20000);
         for (const Tool& tool : kTools) {
-            TouchRow row = row_of(
-                touch_along(surface, path, measured(tool.radius_m), quick ? 1 : kPasses, world_per_model));
-            row.mesh = name;
-            row.triangles = surface.triangles();
-            row.tool = tool.name;
-            row.hand = hand.name;
-            row.mode = "off-tree";
-            rows.push_back(row);
-            std::printf("  %-24s %9zu  %-6s %-5s %8.0f Hz, %s\n", name.c_str(), row.triangles, tool.name,
-                        hand.name, row.rate_hz, quality(row).c_str());
-            std::fflush(stdout);
+            std::vector<TouchStep> by_tree;
+            for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
+                SurfaceSettings settings = measured(tool.radius_m);
+                settings.mode = mode;
+                std::vector<Vec3> way = path;
+                const bool brute = mode == SurfaceMode::off_brute;
+                if (brute) way.resize(brute_steps(surface.triangles(), path.size()));
+                const std::vector<TouchStep> steps = touch_along(
+                    surface, way, settings, quick || brute ? 1 : kPasses, world_per_model, &forest);
+                TouchRow row = row_of(steps);
+                if (mode == SurfaceMode::off_tree)
+                    by_tree = steps;
+                else
+                    compare(row, steps, by_tree);
+                row.mesh = name;
+                row.triangles = surface.triangles();
+                row.tool = tool.name;
+                row.hand = hand.name;
+                row.mode = kSurfaceModeNames[static_cast<std::size_t>(mode)];
+                rows.push_back(row);
+                std::printf("  %-24s %9zu  %-6s %-5s %-9s %8.0f Hz, %s\n", name.c_str(), row.triangles,
+                            tool.name, hand.name, row.mode.c_str(), row.rate_hz, quality(row).c_str());
+                std::fflush(stdout);
+            }
         }
     }
     return rows;
@@ -82,23 +102,27 @@ std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path
 
 // Rates of the seed's hand, the slow one, by size.
 plot::Plot table_figure(const std::vector<TouchRow>& rows) {
-    plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 2.0};
+    plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 0.0};
     plot::Panel times{.y_label = "99.9 % of steps take less, us", .goals = {{1000.0, "1 ms"}}};
-    for (const Tool& tool : kTools) {
-        for (const Hand& hand : kHands) {
-            plot::Curve rate{.name = std::string(tool.name) + ", " + hand.name}, time = rate;
+    // A point and the largest ball in each mode; without dashes: as the model is by default.
+    for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
+        const char* const mode_name = kSurfaceModeNames[static_cast<std::size_t>(mode)];
+        for (const Tool* const tool : {&kTools[0], &kTools[2]}) {
+            plot::Curve rate{.name = std::string(mode_name) + ", " + tool->name,
+                             .dashed = mode != SurfaceMode::off_tree},
+                time = rate;
             for (const TouchRow& r : rows) {
-                if (r.tool != tool.name || r.hand != hand.name) continue;
+                if (r.mode != mode_name || r.tool != tool->name || r.hand != kHands[0].name) continue;
                 const double x = std::log10(static_cast<double>(r.triangles));
                 rate.points.push_back({x, std::log10(r.rate_hz)});
-                time.points.push_back({x, r.p999_us});
+                if (mode != SurfaceMode::off_brute) time.points.push_back({x, r.p999_us});
             }
             rates.curves.push_back(rate);
-            times.curves.push_back(time);
+            if (mode != SurfaceMode::off_brute) times.curves.push_back(time);
         }
     }
     return {.title = "Table 1: force rate by the size of the mesh",
-            .remark = "one core; a point and balls, wandering at 55 mm/s (slow) and 220 mm/s (fast)",
+            .remark = "one core; a point and a ball, wandering at 55 mm/s",
             .x_label = "log10 of the number of triangles",
             .panels = {rates, times}};
 }
@@ -133,7 +157,7 @@ std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz,
 std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     std::vector<SummaryRow> table;
     for (const TouchRow& r : rows) {
-        if (r.hand != kHands[0].name) continue;
+        if (r.hand != kHands[0].name || r.tool != kTools[0].name) continue;
         if (table.empty() || table.back().quantity != r.mesh) {
             SummaryRow row{.figure = "T1", .quantity = r.mesh};
             for (const Size& size : kSizes) {
@@ -145,7 +169,7 @@ std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
             table.push_back(row);
         }
         std::string& ours = table.back().ours;
-        ours += (ours.empty() ? "" : "; ") + r.tool + ": " + rate_text(r);
+        ours += (ours.empty() ? "" : "; ") + r.mode + ": " + rate_text(r);
     }
     return table;
 }

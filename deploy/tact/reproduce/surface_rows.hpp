@@ -18,9 +18,15 @@ struct TouchRow {
     double touching = 0.0;  // share of the steps with a force
     double unsettled = 0.0;
     std::uint64_t jammed = 0;
+    double adaptive = 0.0;  // share of the steps that felt the adaptive surface
+    // Of the force, to the same steps of another way, in its own units: mean and largest difference by the mean force
+    // in contact, the angle that 99 % of the steps in contact stay below. Negative: not compared.
+    double error_mean = -1.0, error_max = -1.0, angle_p99_deg = -1.0;
 };
 
 TouchRow row_of(const std::vector<TouchStep>& steps);
+// reference: at least as many steps.
+void compare(TouchRow& row, const std::vector<TouchStep>& steps, const std::vector<TouchStep>& reference);
 
 // See surface.hpp, Quality.
 [[nodiscard]] std::string quality(const TouchRow& row);
