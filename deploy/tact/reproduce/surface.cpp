@@ -105,10 +105,12 @@ plot::Plot table_figure(const std::vector<TouchRow>& rows) {
     plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 0.0};
     plot::Panel times{.y_label = "99.9 % of steps take less, us", .goals = {{1000.0, "1 ms"}}};
     // A point and the largest ball in each mode; without dashes: as the model is by default.
+    int colour = 0;
     for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
         const char* const mode_name = kSurfaceModeNames[static_cast<std::size_t>(mode)];
         for (const Tool* const tool : {&kTools[0], &kTools[2]}) {
             plot::Curve rate{.name = std::string(mode_name) + ", " + tool->name,
+                             .colour = colour++,
                              .dashed = mode != SurfaceMode::off_tree},
                 time = rate;
             for (const TouchRow& r : rows) {
