@@ -6,10 +6,11 @@
 namespace tact {
 namespace {
 
-constexpr float kTurned = 0.02F;    // a smaller change of the fidelity is not followed
-constexpr double kFallsOff = 1.0;   // radii within which the bell rises
-constexpr double kFarError = 0.5;   // radii of error allowed far away
-constexpr double kKeepsFrom = 0.2;  // of what is asked for: nearer to the border a newer surface is taken
+constexpr float kTurned = 0.02F;        // a smaller change of the fidelity is not followed
+constexpr double kFallsOff = 1.0;       // radii within which the bell rises
+constexpr double kFarError = 0.5;       // radii of error allowed far away
+constexpr double kStepsLookS = 3.4e-3;  // times the speed: how far a step of 1 ms may look (contact.cpp)
+constexpr double kKeepsFrom = 0.2;      // of what is asked for: nearer to the border a newer surface is taken
 
 RefineFilter filter_of(double radius_m) {
     return RefineFilter::bell(static_cast<float>(radius_m), static_cast<float>(kFallsOff * radius_m),
@@ -64,12 +65,30 @@ void AdaptiveSurface::set_radius(float fidelity) noexcept {
     refinement_.set_near(radius_m(fidelity));
 }
 
+// Whether what was built last will do until the next turn and some more: it holds what a step may look at, from
+// here to half of the way that it was built for.
+bool AdaptiveSurface::still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) const noexcept {
+    const double need_m = settings_.least_m + kStepsLookS * velocity_m_s.norm();
+    const Vec3 half_way_m = 0.5 * settings_.look_ahead_s * velocity_m_s;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto axis = static_cast<Eigen::Index>(i);
+        const double here = tool_m[axis], there = here + half_way_m[axis];
+        if (std::min(here, there) - need_m < static_cast<double>(built_low_m_[i]) ||
+            std::max(here, there) + need_m > static_cast<double>(built_high_m_[i]))
+            return false;
+    }
+    return built_usable_;
+}
+
 RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity) noexcept {
     set_radius(fidelity);
-    const RefineStep done = refinement_.step(tool_m, velocity_m_s);
+    const RefineStep done = refinement_.step(tool_m, velocity_m_s, !still_holds(tool_m, velocity_m_s));
     const NearTriangles& near = refinement_.near();
     if (near.step == built_) return done;
     built_ = near.step;
+    built_low_m_ = near.low_m;
+    built_high_m_ = near.high_m;
+    built_usable_ = near.complete && near.full_detail;
     surface_.back().build(near, full_);
     surface_.publish();
     return done;

@@ -10,7 +10,7 @@
 //           after the constructor.
 #pragma once
 
-#include <memory>
+#include <array>
 
 #include "ipc/assets/surface_mesh.hpp"
 #include "ipc/assets/vertex_forest.hpp"
@@ -22,7 +22,7 @@ namespace tact {
 struct AdaptiveSettings {
     double least_m = 0.0, most_m = 0.0;  // radius of full detail, at fidelity 0 and 1
     std::uint32_t near_max = 1U << 16;   // triangles around the tool
-    double look_ahead_s = 0.015;
+    double look_ahead_s = 0.012;
 };
 
 class AdaptiveSurface {
@@ -45,6 +45,7 @@ public:
 
 private:
     void set_radius(float fidelity) noexcept;
+    [[nodiscard]] bool still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) const noexcept;
 
     const SurfaceMesh full_;  // views
     const VertexForest forest_;
@@ -52,7 +53,9 @@ private:
     double density_ = 0.0;  // triangles a square metre
     float fidelity_ = 1.0F;
     Refinement refinement_;
-    std::uint64_t built_ = 0;
+    std::uint64_t built_ = 0;  // step of the refinement; its box, and whether the servo can use it
+    std::array<float, 3> built_low_m_{}, built_high_m_{};
+    bool built_usable_ = false;
     TripleBuffer<NearSurface> surface_;
 };
 

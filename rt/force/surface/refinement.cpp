@@ -70,7 +70,7 @@ void Refinement::set_filter(const RefineFilter& filter) noexcept {
         for (std::uint32_t i = 0; i < in->size(); ++i) in->set_limit(i, limit_m(forest_.node(in->node(i))));
 }
 
-RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept {
+RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s, bool with_near) noexcept {
     RefineStep out;
     if (probe_m.allFinite() && velocity_m_s.allFinite()) {
         RefineBox box{};
@@ -94,7 +94,7 @@ RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexc
         out.full_detail = near == Done::yes;
         out.no_room = near == Done::no_room || far == Done::no_room;
         out.settled = near == Done::yes && far == Done::yes && out.splits == 0 && out.merges == 0;
-        collect(box, out);
+        if (with_near) collect(box, out);
     }
     out.vertices = vertices_;
     out.triangles = triangles_;

@@ -55,8 +55,8 @@ class Refinement {
 public:
     Refinement(const VertexForest& forest, const RefineSettings& settings);
 
-    // A probe that is not finite changes nothing.
-    RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept;
+    // A probe that is not finite changes nothing. with_near: near() is made anew, for the same box.
+    RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s, bool with_near = true) noexcept;
     void set_filter(const RefineFilter& filter) noexcept;
     void set_near(double near_m) noexcept { settings_.near_m = near_m; }
     [[nodiscard]] const RefineFilter& filter() const noexcept { return settings_.filter; }

@@ -65,7 +65,7 @@ public:
     static constexpr double kLostLimits = 2.0;
     static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
 
-    static constexpr double kLeastM = 2e-3,
+    static constexpr double kLeastM = 1e-3,
                             kMostM = 4e-3;  // of full detail beyond the tool, in the hand's world
 
     // The bytes behind mesh and forest must outlive the model. The forest is there for mode chr alone.

@@ -1,0 +1,124 @@
+// A ball that slides over a rough sphere: time of the servo's step in the modes off-tree and chr, on one path.
+//
+// Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
+//           where the environment variable TACT_BENCH_LARGE is set. chr is tended every fourth step by the same
+//           thread, or (Live) steps are 1 ms apart and a thread beside it tends every 4 ms, as in tact-rt.
+// Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
+//           surface; tend_us: of one tend(); near: triangles in it, predicted for this fidelity.
+// Measured  see rt/force/surface/README.md.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include "prep/surface/bake_surface.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/surface_model.hpp"
+
+namespace tact {
+namespace {
+
+constexpr int kSteps = 3000, kTendEvery = 4;
+
+struct Baked {
+    double ball_m = 0.05;
+    std::vector<std::byte> bytes = bake(ball_m);
+    SceneFile file = SceneFile::from_bytes(bytes, "sphere.tact");
+
+    static std::vector<std::byte> bake(double& ball_m) {
+        SceneWriter out;
+        SurfaceInput input;
+        input.mesh = rough_sphere(std::getenv("TACT_BENCH_LARGE") != nullptr ? 316 : 68);
+        input.picture = false;
+        ball_m *= bake_surface(std::move(input), out).meta.world_per_model;
+        return out.to_bytes();
+    }
+};
+
+ToolState tool_at(const Baked& on, const Vec3& middle, double radius_m, double speed_m_s, int i) {
+    const auto place = [&](double t) {
+        const double angle = speed_m_s * t / on.ball_m, up = 0.4 * std::sin(0.1 * angle);
+        const Vec3 out(std::cos(up) * std::sin(angle), std::sin(up), std::cos(up) * std::cos(angle));
+        return Vec3(middle + (on.ball_m + radius_m - 1e-3 + std::max(0.0, 0.005 - 0.02 * t)) * out);
+    };
+    ToolState tool;
+    tool.T_world_tool.p_m = place(1e-3 * i);
+    tool.twist_world.linear_m_s = (place(1e-3 * i + 1e-6) - place(1e-3 * i)) * 1e6;
+    return tool;
+}
+
+double percentile(std::vector<double> us, double part) {
+    std::sort(us.begin(), us.end());
+    return us.empty() ? 0.0 : us[static_cast<std::size_t>(part * static_cast<double>(us.size() - 1))];
+}
+
+void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live) {
+    static const Baked baked;
+    const double radius_m = 1e-3 * static_cast<double>(state.range(0));
+    std::vector<double> servo_us(kSteps, 1e300), tend_us;
+    double adaptive = 0.0, predicted = 0.0;
+    const int passes = live ? 1 : 2;
+    for (auto _ : state) {
+        for (int pass = 0; pass < passes; ++pass) {
+            const auto model = load_surface_model(baked.file, {.radius_m = radius_m, .mode = mode});
+            const Vec3 middle = model->meta().to_world(Vec3::Zero());
+            std::atomic<int> now{0}, stop{0};
+            const auto tend = [&](int i) {
+                const Instant begin = Monotonic::now();
+                model->tend(tool_at(baked, middle, radius_m, speed_m_s, i), {});
+                tend_us.push_back(to_us(Monotonic::now() - begin));
+            };
+            std::thread beside;
+            if (live && model->tended()) {
+                beside = std::thread([&] {
+                    for (auto next = std::chrono::steady_clock::now(); stop == 0;) {
+                        tend(now);
+                        next = std::max(next + std::chrono::milliseconds(kTendEvery),
+                                        std::chrono::steady_clock::now());
+                        std::this_thread::sleep_until(next);
+                    }
+                });
+            }
+            model->reset(tool_at(baked, middle, radius_m, speed_m_s, 0));
+            auto next = std::chrono::steady_clock::now();
+            for (int i = 0; i < kSteps; ++i) {
+                now = i;
+                if (!live && i % kTendEvery == 0) tend(i);
+                const ToolState tool = tool_at(baked, middle, radius_m, speed_m_s, i);
+                const Instant begin = Monotonic::now();
+                (void)model->step(tool, {.fidelity = 1.0F});
+                auto& least = servo_us[static_cast<std::size_t>(i)];
+                least = std::min(least, to_us(Monotonic::now() - begin));
+                adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
+                next += std::chrono::milliseconds(1);
+                if (live) std::this_thread::sleep_until(next);
+            }
+            stop = 1;
+            if (beside.joinable()) beside.join();
+            if (model->adaptive() != nullptr) predicted = model->adaptive()->predicted_triangles(1.0F);
+        }
+    }
+    state.counters["servo_us_p50"] = percentile(servo_us, 0.5);
+    state.counters["servo_us_p99"] = percentile(servo_us, 0.99);
+    state.counters["servo_us_p999"] = percentile(servo_us, 0.999);
+    state.counters["tend_us_p50"] = percentile(tend_us, 0.5);
+    state.counters["tend_us_p99"] = percentile(tend_us, 0.99);
+    state.counters["adaptive"] = adaptive;
+    state.counters["near_predicted"] = predicted;
+}
+
+void Tree(benchmark::State& state) { run(state, SurfaceMode::off_tree, 0.055, false); }
+void Chr(benchmark::State& state) { run(state, SurfaceMode::chr, 0.055, false); }
+void ChrFast(benchmark::State& state) { run(state, SurfaceMode::chr, 0.5, false); }
+void ChrFastLive(benchmark::State& state) { run(state, SurfaceMode::chr, 0.5, true); }
+BENCHMARK(Tree)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(Chr)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(ChrFast)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(ChrFastLive)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tact
