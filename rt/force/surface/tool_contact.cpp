@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kLeavesOfPoint = 1024, kBeyondAtOnce = 48;
+constexpr std::size_t kBeyondAtOnce = 48;
 constexpr int kMoveRounds = 12;
 constexpr double kGoneSteps = 1.5;   // a proxy on a slope travels farther than the goal
 constexpr double kLookedWays = 1.3;  // a look reaches so much farther than the way asks for
@@ -23,8 +23,7 @@ ToolContact::ToolContact(const SurfaceMesh& mesh, const TouchTool& tool, const T
       settings_(settings),
       points_(mesh, tool, settings.ball_m),
       kernel_(&best_look_kernel()),
-      leaf_(kLeavesOfPoint),
-      number_(4 * kLeavesOfPoint + kLooks),
+      lists_(mesh, points_.size()),
       beyond_(kBeyondAtOnce),
       // An arc of angle a leaves its tangent by a^2 / 2 of its radius.
       turn_max_rad_(std::min(std::sqrt(2.0 * settings.margin_m / points_.reach_m()), 0.2)) {}
@@ -53,31 +52,26 @@ bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) no
     TriangleLooks seen;
     for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
         ++touch.looked;
-        std::size_t leaves = 0, count = 0;
-        if (!mesh_.leaves_near(place, ball + reach_m, leaf_, leaves)) continue;
-        for (std::size_t l = 0; l < leaves; ++l) {
-            const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
-            for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaf_[l]); ++k)
-                number_[count++] = first + k;
-        }
+        const ToolLists::Near list = lists_.near(point, place, ball + reach_m);
+        if (!(list.radius_m > 0.0)) continue;
         job.limit = static_cast<float>(ball + reach_m);
-        float least = job.limit;
-        for (std::size_t first = 0; first < count; first += kLooks) {
-            const std::size_t lanes = std::min(kLooks, count - first);
-            for (std::size_t lane = lanes; lane < kLooks; ++lane) number_[first + lane] = number_[first];
-            job.triangle = &number_[first];
+        auto least = static_cast<float>(list.radius_m);
+        for (std::size_t first = 0; first < list.count; first += kLooks) {
+            const std::size_t lanes = std::min(kLooks, list.count - first);
+            job.triangle = list.triangle + first;
             kernel_->look(job, seen);
+            for (std::size_t lane = 0; lane < lanes; ++lane) least = std::min(least, seen.distance[lane]);
             std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
             for (; near != 0; near &= near - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(near));
                 const double distance = static_cast<double>(seen.distance[lane]),
                              height = static_cast<double>(seen.height[lane]) - ball;
-                least = std::min(least, seen.distance[lane]);
                 const bool over = (seen.over >> lane & 1U) != 0;
                 // Out again by no more than a margin a move.
                 const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
-                if (!guards_.add(point, number_[first + lane], lever, seen, lane, static_cast<float>(slack),
-                                 static_cast<float>(height), !over && height >= 0.0))
+                if (!guards_.add(point, list.triangle[first + lane], lever, seen, lane,
+                                 static_cast<float>(slack), static_cast<float>(height),
+                                 !over && height >= 0.0))
                     return false;
             }
         }

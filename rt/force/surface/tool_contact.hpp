@@ -21,6 +21,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "rt/force/surface/contact.hpp"
+#include "rt/force/surface/tool_lists.hpp"
 #include "rt/force/surface/tool_points.hpp"
 #include "rt/force/surface/twist_guards.hpp"
 
@@ -52,8 +53,8 @@ struct ToolTouch {
 
 class ToolContact {
 public:
-    static constexpr std::uint32_t kLooksMost = 160;    // of a step
-    static constexpr std::uint32_t kQueriesMost = 128;  // of a step, those that wake points not counted
+    static constexpr std::uint32_t kLooksMost = 320;    // of a step
+    static constexpr std::uint32_t kQueriesMost = 320;  // of a step, those that wake points not counted
     static constexpr std::uint32_t kWakeQueries = 24;   // of a step
     static constexpr std::uint32_t kSeatQueries = 96;   // of a step, until every point was tried once
 
@@ -92,7 +93,8 @@ private:
     ToolPoints points_;
     TwistGuards guards_;
     const LookKernel* kernel_;
-    std::vector<std::uint32_t> leaf_, number_, beyond_;
+    ToolLists lists_;
+    std::vector<std::uint32_t> beyond_;
     std::array<std::uint32_t, 6> held_{};  // points that held the last move
     std::size_t held_count_ = 0;
     double turn_max_rad_;

@@ -11,9 +11,7 @@ namespace {
 constexpr double kAskedShare = 0.75;
 constexpr double kFarAway = 1e9;
 constexpr int kQueryTries = 6;
-// A point that is asked should be known to be free for so many ways as it is about to go; more than kAtMost
-// is not asked for.
-constexpr double kEnough = 4.0, kAtMost = 200.0;
+constexpr double kAtMost = 16.0;           // ways of a point that it is asked about
 constexpr std::uint32_t kWayQueries = 24;  // of one way from point to point
 constexpr double kFreeShare = 0.5;         // of a ball's radius: nearer to the surface is not free
 constexpr std::uint32_t kRootsTried = 8;
@@ -326,22 +324,16 @@ double ToolPoints::share_in_room(const Vec3& v_m, const Vec3& w_rad) const noexc
 }
 
 void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
-    const Vec3 place = place_m(i);
-    // Boxes alone tell enough of what is far.
-    double distance = mesh_.clearance_m(place, kAtMost * (wanted_m + ball_m_), kVisits);
-    std::uint32_t hint = hint_[i];
-    if (distance < kEnough * wanted_m + ball_m_) {
-        const Seen seen = query(place, hint);
-        distance = std::max(distance, seen.distance_m);
-        hint = seen.triangle;
-    }
-    put(i, distance, hint);
-    room_[i] = static_cast<float>(std::max(distance - ball_m_, 0.0) * (1.0 - 1e-6));
+    const double distance = mesh_.clearance_m(place_m(i), kAtMost * wanted_m + ball_m_, kVisits);
+    // Boxes tell less than triangles did where those are large.
+    if (distance - ball_m_ <= room_m(i)) return;
+    put(i, distance, SurfacePoint::kNone);
+    room_[i] = static_cast<float>((distance - ball_m_) * (1.0 - 1e-6));
 }
 
 void ToolPoints::saw(std::uint32_t i, double distance_m, double guarded_m) noexcept {
     put(i, distance_m, SurfacePoint::kNone);
-    room_[i] = static_cast<float>(guarded_m);
+    room_[i] = static_cast<float>(std::max(guarded_m, distance_m - ball_m_));
 }
 
 }  // namespace tact

@@ -1,0 +1,103 @@
+// The triangles about those points of a tool that are near a surface, kept from move to move: looking at them is
+// cheaper than finding them.
+//
+// List      the triangles of all leaves whose boxes reach into a ball about where the point was; good as long as
+//           the ball that is asked for lies inside that one
+// Room      kLists lists of kEach triangles; the one not used for the longest goes. Where triangles are denser,
+//           they are found each time.
+// Unit      metres of the model.  Thread  made anywhere (it allocates); then servo, TACT_RT.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+class ToolLists {
+public:
+    static constexpr std::size_t kLists = 256, kEach = 8 * kLooks, kLeavesMost = 1024;
+
+    struct Near {
+        // Filled up to a multiple of kLooks by repetition; count of them count.
+        const std::uint32_t* triangle = nullptr;
+        std::size_t count = 0;
+        double radius_m = 0.0;  // every triangle nearer than this is there; 0: they are too many
+    };
+
+    ToolLists(const SurfaceMesh& mesh, std::uint32_t points)
+        : mesh_(mesh),
+          list_of_(points, kLists),
+          list_(kLists),
+          triangle_(kLists * kEach),
+          leaf_(kLeavesMost),
+          found_(4 * kLeavesMost + kLooks) {}
+
+    [[nodiscard]] Near near(std::uint32_t point, const Vec3& place_m, double radius_m) noexcept TACT_RT {
+        ++clock_;
+        const std::size_t known = list_of_[point];
+        if (known < kLists && list_[known].point == point) {
+            List& l = list_[known];
+            const double left_m = l.radius_m - (place_m - l.place_m).norm();
+            if (left_m >= radius_m) {
+                l.used = clock_;
+                return {&triangle_[known * kEach], l.count, left_m};
+            }
+        }
+        for (const double wider : {kWider, 1.0}) {
+            std::size_t leaves = 0;
+            if (!mesh_.leaves_near(place_m, wider * radius_m, leaf_, leaves)) continue;
+            const std::size_t count = spell_out(leaves);
+            if (count > kEach && wider > 1.0) continue;
+            if (count > kEach) return {found_.data(), count, radius_m};
+            return keep(point, place_m, wider * radius_m, count);
+        }
+        return {};
+    }
+
+private:
+    struct List {
+        std::uint32_t point = 0;
+        std::size_t count = 0;
+        std::uint64_t used = 0;
+        double radius_m = -1.0;
+        Vec3 place_m = Vec3::Zero();
+    };
+    static constexpr double kWider = 3.0;
+
+    std::size_t spell_out(std::size_t leaves) noexcept TACT_RT {
+        std::size_t count = 0;
+        for (std::size_t l = 0; l < leaves; ++l) {
+            const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
+            for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaf_[l]); ++k) found_[count++] = first + k;
+        }
+        for (std::size_t i = count; i % kLooks != 0; ++i) found_[i] = found_[0];
+        return count;
+    }
+    Near keep(std::uint32_t point, const Vec3& place_m, double radius_m, std::size_t count) noexcept TACT_RT {
+        std::size_t at = list_of_[point];
+        if (at >= kLists || list_[at].point != point) {
+            at = 0;
+            for (std::size_t i = 1; i < kLists; ++i) {
+                if (list_[i].used < list_[at].used) at = i;
+            }
+        }
+        list_of_[point] = at;
+        list_[at] = {point, count, clock_, radius_m, place_m};
+        const std::size_t filled = (count + kLooks - 1) / kLooks * kLooks;
+        std::copy_n(found_.begin(), filled, triangle_.begin() + static_cast<std::ptrdiff_t>(at * kEach));
+        return {&triangle_[at * kEach], count, radius_m};
+    }
+
+    SurfaceMesh mesh_;                  // a view
+    std::vector<std::size_t> list_of_;  // of each point; kLists: none
+    std::vector<List> list_;
+    std::vector<std::uint32_t> triangle_, leaf_, found_;
+    std::uint64_t clock_ = 0;
+};
+
+}  // namespace tact
