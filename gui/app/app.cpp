@@ -265,7 +265,18 @@ private:
                                                                             controller_.tool.force_model_n;
         const Vec3 tip(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
         if (!tip.allFinite() || !force.allFinite()) return std::nullopt;
-        return DrawnHand{{tip, Quat::Identity()}, force, false};
+        return DrawnHand{{tip, Quat::Identity()}, force, false, content_->tool == nullptr};
+    }
+
+    // A tool that is a mesh is drawn as it is, where the proxy is.
+    std::optional<Pose> touching_tool() const {
+        if (content_->tool == nullptr || !controller_.attached() || !controller_.have_bodies ||
+            controller_.bodies.count == 0)
+            return std::nullopt;
+        const auto& body = controller_.bodies.body[0];
+        const double *const p = body.pos_model_m, *const q = body.quat_model_body_xyzw;
+        const Pose pose{{p[0], p[1], p[2]}, Quat(q[3], q[0], q[1], q[2]).normalized()};
+        return pose.finite() ? std::optional(pose) : std::nullopt;
     }
 
     // Where the tool would be without the surface, and what holds it off.
@@ -334,6 +345,7 @@ private:
         if (controller_.attached()) view.second_hand = second_hand_.at(now_ns, content_->meta);
         state_.second_hand = view.second_hand.has_value();
         if (const auto pen = touching_pen()) view.second_hand = pen;
+        view.T_model_tool = touching_tool();
         if (view_options_.force && content_->meta.kind == SceneKind::surface) view.touch = touch_marks();
         state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
         state_.second_at_wall = view.second_hand && view.second_hand->at_wall;

@@ -50,6 +50,7 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
     content->note = read_note(file);
     if (file.count({'M', 'E', 'S', 'H'}) > 0)
         content->mesh = std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
+    if (has_touch_tool(file)) content->tool = std::make_unique<TouchTool>(read_touch_tool(file));
     if (file.count({'G', 'R', 'I', 'D'}) > 0) {
         content->grid = read_grid(file);
         content->scale = ContourScale(content->grid, content->meta.map_mean, content->meta.map_sigma);

@@ -15,6 +15,7 @@
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "ipc/assets/touch_tool.hpp"
 
 namespace tact {
 
@@ -24,6 +25,7 @@ struct SceneContent {
     SceneMeta meta{};
     std::string note;
     std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
+    std::unique_ptr<TouchTool> tool;        // null: none
     DensityGrid grid;                       // empty: none
     ContourScale scale;                     // what a level of it means
     std::vector<Structure> bodies;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gui/render/arrow.hpp"
+#include "gui/render/drawn_tool.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -70,6 +71,7 @@ SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& prog
             if ((k & bit) == 0) corners.edges.push_back({k, k | bit});
     }
     box_ = make_points(corners);
+    if (content_->tool) tool_.fill(build_drawn_tool(*content_->tool), GL_STATIC_DRAW);
 }
 
 SceneView::Points SceneView::make_points(const Codebook::Level& level) {
@@ -107,6 +109,7 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
+    if (frame.T_model_tool) draw_tool(pass);
     const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
     if (options.surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
     glEnable(GL_BLEND);
@@ -169,6 +172,14 @@ void SceneView::draw_force(const Pass& pass) {
     arrow_.fill(mesh, GL_STREAM_DRAW);
     programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
     arrow_.draw();
+}
+
+void SceneView::draw_tool(const Pass& pass) {
+    if (tool_.indices() == 0) return;
+    programs_.use_lit(
+        pass.eye_from_scene * scene_from_body(*pass.frame.T_model_tool, content_->centre_model_m),
+        pass.projection, pass.haze, {});
+    tool_.draw();
 }
 
 void SceneView::draw_second_hand(const Pass& pass) {

@@ -38,6 +38,7 @@ struct ViewFrame {
     Vec3 force_world_n = Vec3::Zero();
     std::optional<DrawnHand> second_hand;
     std::optional<DrawnTouch> touch;
+    std::optional<Pose> T_model_tool;  // of the tool that touches a surface
 };
 
 class SceneView {
@@ -78,6 +79,7 @@ private:
     void draw_force(const Pass& pass);
     void draw_second_hand(const Pass& pass);
     void draw_touch(const Pass& pass);
+    void draw_tool(const Pass& pass);
     void draw_box(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
@@ -86,7 +88,7 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
-    TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_;
+    TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_;
     Points box_;
 };
 

@@ -45,7 +45,7 @@ TubeMesh build_second_hand(const DrawnHand& hand, const Eigen::Vector3f& tip_a, 
                            float arrow_a_per_n) {
     TubeMesh mesh;
     if (!tip_a.allFinite() || !(size_a > 0.0F)) return mesh;
-    add_pen(mesh, tip_a, (hand.T_model_hand.q * kPenAxis).cast<float>().normalized(), size_a);
+    if (hand.pen) add_pen(mesh, tip_a, (hand.T_model_hand.q * kPenAxis).cast<float>().normalized(), size_a);
     const Eigen::Vector3f force = hand.force_world_n.cast<float>();
     const float size_n = force.norm();
     if (!std::isfinite(size_n) || size_n <= 0.0F) return mesh;

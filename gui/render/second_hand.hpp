@@ -15,6 +15,7 @@ struct DrawnHand {
     Pose T_model_hand;
     Vec3 force_world_n = Vec3::Zero();  // that it feels
     bool at_wall = false;
+    bool pen = true;  // false: the force alone, as something else is drawn there
 };
 
 inline constexpr Rgb8 kSecondHandColour{178, 132, 255};
