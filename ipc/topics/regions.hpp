@@ -35,8 +35,8 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, HeadTopic, HealthTopic, LatenessTopic, LevelsTopic,
-                             EventTopic, TraceTopic>;
+    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, HeadTopic, HealthTopic, LatenessTopic,
+                             LevelsTopic, EventTopic, TraceTopic>;
 };
 
 struct GuiRegion {
