@@ -15,7 +15,6 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kWider = 1.000001F;  // against rounding, at each step up
 
-
 float distance(const float* a, const float* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 // The largest of any run of numbers: a table of powers of two over blocks, and a look through two blocks.
