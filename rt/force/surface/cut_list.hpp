@@ -56,27 +56,27 @@ public:
     // removed meanwhile.
     template <class Visit>
     void each(const RefineBox& box, bool nearer, Visit&& visit) const {
-        using F4 [[gnu::vector_size(16)]] = float;
-        using I4 [[gnu::vector_size(16)]] = std::int32_t;
-        using L2 [[gnu::vector_size(16)]] = long long;
-        const auto over = [&](const F4& p, std::size_t axis) {
-            const F4 d = p - box.centre_m[axis];
+        using Four [[gnu::vector_size(16)]] = float;
+        using FourMask [[gnu::vector_size(16)]] = std::int32_t;
+        using Halves [[gnu::vector_size(16)]] = long long;
+        const auto over = [&](const Four& p, std::size_t axis) {
+            const Four d = p - box.centre_m[axis];
             return (d > 0.0F ? d : -d) - box.half_m[axis];
         };
         for (std::uint32_t i = 0; i < size_; i += 4) {
-            std::array<F4, 4> row;  // of each entry x, y, z, limit; then of each of these four entries
+            std::array<Four, 4> row;  // of each entry x, y, z, limit; then of each of these four entries
             for (std::uint32_t k = 0; k < 4; ++k) std::memcpy(&row[k], &entry_[i + k], sizeof row[k]);
-            const F4 xy01 = __builtin_shuffle(row[0], row[1], I4{0, 4, 1, 5}),
-                     xy23 = __builtin_shuffle(row[2], row[3], I4{0, 4, 1, 5}),
-                     zl01 = __builtin_shuffle(row[0], row[1], I4{2, 6, 3, 7}),
-                     zl23 = __builtin_shuffle(row[2], row[3], I4{2, 6, 3, 7});
-            const F4 x = over(__builtin_shuffle(xy01, xy23, I4{0, 1, 4, 5}), 0),
-                     y = over(__builtin_shuffle(xy01, xy23, I4{2, 3, 6, 7}), 1),
-                     z = over(__builtin_shuffle(zl01, zl23, I4{0, 1, 4, 5}), 2),
-                     limit = __builtin_shuffle(zl01, zl23, I4{2, 3, 6, 7});
-            const F4 xy = x > y ? x : y;
-            const I4 in = (xy > z ? xy : z) < limit;
-            const auto wanted = reinterpret_cast<L2>(nearer ? in : ~in);
+            const Four xy01 = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
+                       xy23 = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5),
+                       zl01 = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7),
+                       zl23 = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+            const Four x = over(__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), 0),
+                       y = over(__builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), 1),
+                       z = over(__builtin_shufflevector(zl01, zl23, 0, 1, 4, 5), 2),
+                       limit = __builtin_shufflevector(zl01, zl23, 2, 3, 6, 7);
+            const Four xy = x > y ? x : y;
+            const FourMask in = (xy > z ? xy : z) < limit;
+            const auto wanted = reinterpret_cast<Halves>(nearer ? in : ~in);
             if ((wanted[0] | wanted[1]) == 0) continue;
             for (std::uint32_t k = 0; k < 4 && i + k < size_; ++k)
                 if ((in[k] != 0) == nearer) visit(i + k);
