@@ -45,6 +45,7 @@ struct Hand {
 };
 constexpr Hand kHands[] = {{"slow", 0.055}, {"fast", 0.22}};
 constexpr int kPasses = 3;
+constexpr std::size_t kBruteMost = 600'000;  // triangles: beyond, a step takes tens of milliseconds and more
 
 SurfaceSettings measured(double radius_m) {
     return {.radius_m = radius_m,
@@ -77,6 +78,7 @@ std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path
                 settings.mode = mode;
                 std::vector<Vec3> way = path;
                 const bool brute = mode == SurfaceMode::off_brute;
+                if (brute && surface.triangles() > kBruteMost) continue;
                 if (brute) way.resize(brute_steps(surface.triangles(), path.size()));
                 const std::vector<TouchStep> steps = touch_along(
                     surface, way, settings, quick || brute ? 1 : kPasses, world_per_model, &forest);
