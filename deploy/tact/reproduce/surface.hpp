@@ -3,6 +3,7 @@
 // Meshes   a rough sphere and a rough terrain made here, by number of triangles the seed's 2 K, 8 K, 20 K and 92 K, and
 //          beyond; or those that are given
 // Hand     0.055 m/s, 1.5 mm deep, lifted every two seconds; fast: 0.22 m/s
+// Modes    off-tree, off-brute (to 0.6 million triangles, and fewer steps the more there are) and chr
 // Rate     what one core could do: one over the mean time of a step. The time of a step is the least of three
 //          passes, so what other programs of the machine take does not count.
 // Quality  breaks: below 1000 Hz on average. bad: above, but more than one step in a thousand takes more than 1 ms, or
