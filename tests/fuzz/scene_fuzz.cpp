@@ -4,7 +4,10 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "ipc/assets/bone_labels.hpp"
+#include "ipc/assets/bone_volume.hpp"
 #include "ipc/assets/density_map.hpp"
+#include "ipc/assets/distance_field.hpp"
 #include "ipc/assets/mesh_cut.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
@@ -26,7 +29,8 @@ namespace {
 
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
-                                {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}, {'T', 'O', 'O', 'L'}};
+                                {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}, {'T', 'O', 'O', 'L'},
+                                {'B', 'O', 'N', 'E'}, {'L', 'A', 'B', 'L'}, {'D', 'I', 'S', 'T'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -58,6 +62,23 @@ const Terrain& terrain() {
     return made;
 }
 
+// Ten voxels along x: two bricks.
+void write_bone(SceneWriter& out) {
+    const BoneBricks bricks{{10, 3, 2}, 1e-3, Vec3::Zero()};
+    std::vector<std::uint8_t> density(bricks.bytes()), label(bricks.bytes());
+    for (std::uint32_t x = 0; x < 10; ++x) {
+        density[bricks.voxel(x, 1, 1)] = static_cast<std::uint8_t>(20 * x);
+        label[bricks.voxel(x, 2, 0)] = static_cast<std::uint8_t>(x % 3);
+    }
+    BoneVolumeView volume;
+    volume.bricks = bricks;
+    volume.density = density;
+    write_bone_volume(out, volume);
+    write_bone_labels(out, bricks, {{{"nerve", {1, 2, 3, 4}, true}, {"incus", {}, false}}, label});
+    const std::vector<std::int16_t> quanta(12, 50);
+    write_distance_field(out, 0, {1, {3, 2, 2}, 4e-3, Vec3::Zero(), 1e-4, 4e-3, quanta});
+}
+
 // One good section per tag.
 const std::vector<Input>& good_sections() {
     static const std::vector<Input> sections = [] {
@@ -69,6 +90,7 @@ const std::vector<Input>& good_sections() {
         write_surface(scene, build_surface(octahedron));
         write_forest(scene, terrain().forest.data);
         write_touch_tool(scene, sample_tool(octahedron, {.points = 12}));
+        write_bone(scene);
         const Input bytes = scene.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
         std::vector<Input> good;
@@ -180,6 +202,26 @@ void use_tool(const SceneFile& file) {
     }
 }
 
+void use_bone(const SceneFile& file) {
+    const BoneVolumeView bone = read_bone_volume(file);
+    require(bone.density.size() == bone.bricks.bytes());
+    const auto& n = bone.bricks.size;
+    (void)bone.at(n[0] - 1, n[1] - 1, n[2] - 1);
+}
+
+// Over the bone of write_bone().
+void use_labels(const SceneFile& file) {
+    const BoneBricks bricks{{10, 3, 2}, 1e-3, Vec3::Zero()};
+    const BoneLabelsView labels = read_bone_labels(file, bricks);
+    for (const std::uint8_t l : labels.label) (void)labels.critical(l);
+}
+
+void use_distances(const SceneFile& file) {
+    for (const DistanceField& f : read_distance_fields(file, 2))
+        for (const Vec3& p : {Vec3(0, 0, 0), f.origin_m, Vec3(0.005, 0.001, 0.001), Vec3(1e300, -1e300, 0.0)})
+            (void)f.distance_m(p);
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
@@ -205,6 +247,9 @@ bool run(std::span<const std::byte> input) {
         sections += accepted([&] { use_surface(file); });
         sections += accepted([&] { use_forest(file); });
         sections += accepted([&] { use_tool(file); });
+        sections += accepted([&] { use_bone(file); });
+        sections += accepted([&] { use_labels(file); });
+        sections += accepted([&] { use_distances(file); });
     });
     return sections == std::size(kTags);
 }
