@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ipc/assets/bone_bricks.hpp"
+#include "ipc/assets/bone_volume.hpp"
 #include "ipc/assets/scene_file.hpp"
 
 namespace tact {
@@ -31,6 +32,18 @@ struct BoneLabelsView {
     std::span<const std::uint8_t> label;   // bricks.bytes()
 
     [[nodiscard]] bool critical(std::uint8_t l) const { return l > 0 && structure[l - 1U].critical; }
+};
+
+// What prep hands over and the sections hold.
+struct BoneData {
+    BoneBricks bricks;
+    float hu_at_0 = std::numeric_limits<float>::quiet_NaN();
+    float hu_at_255 = std::numeric_limits<float>::quiet_NaN();
+    std::vector<std::uint8_t> density;
+    std::vector<BoneStructure> structure;  // none: no labels
+    std::vector<std::uint8_t> label;       // empty, or as many as densities
+
+    [[nodiscard]] BoneVolumeView view() const { return {bricks, hu_at_0, hu_at_255, density}; }
 };
 
 bool has_bone_labels(const SceneFile& file);

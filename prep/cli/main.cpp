@@ -14,6 +14,7 @@
 #include "prep/bake/bake_docking.hpp"
 #include "prep/cli/bench_command.hpp"
 #include "prep/cli/console.hpp"
+#include "prep/cli/drill_command.hpp"
 #include "prep/cli/export_command.hpp"
 #include "prep/cli/scene_report.hpp"
 #include "prep/cli/simplify_command.hpp"
@@ -191,6 +192,7 @@ int run(int argc, char** argv) {
         demo->add_subcommand("dock", "a ring of six subunits and its 12 Å map; one subunit is free");
     output(demo_dock);
     add_touch(app, *demo);
+    add_drill(app, *demo);
     CLI::App *simplify_parsed = nullptr, *bench_parsed = nullptr;
     const auto simplify_file = add_simplify(app, simplify_parsed);
     const auto bench = add_bench(app, bench_parsed);

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "ipc/assets/bone_labels.hpp"
 #include "ipc/assets/density_map.hpp"
+#include "ipc/assets/distance_field.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
@@ -58,6 +60,22 @@ nlohmann::ordered_json scene_json(const SceneFile& file) {
                            {"triangles", surface.triangles()},
                            {"closed", surface.closed()},
                            {"bytes", surface.bytes()}};
+    }
+    if (meta.kind == SceneKind::drilling) {
+        const BoneVolumeView bone = read_bone_volume(file);
+        json["bone"] = {{"size", bone.bricks.size},
+                        {"voxel_m", bone.bricks.voxel_m},
+                        {"origin_m", triple(bone.bricks.origin_m)}};
+        if (bone.has_hu()) json["bone"]["hu_at_0_and_255"] = {bone.hu_at_0, bone.hu_at_255};
+        json["structures"] = nlohmann::ordered_json::array();
+        if (has_bone_labels(file)) {
+            const BoneLabelsView labels = read_bone_labels(file, bone.bricks);
+            for (const BoneStructure& s : labels.structure)
+                json["structures"].push_back({{"name", s.name}, {"rgba", s.rgba}, {"critical", s.critical}});
+            for (const DistanceField& f : read_distance_fields(file, labels.structure.size()))
+                json["structures"][f.label - 1]["distance"] = {{"spacing_m", f.spacing_m},
+                                                               {"error_m", f.error_m}};
+        }
     }
     if (file.count({'M', 'E', 'S', 'H'}) > 0) {
         const ProgressiveMesh mesh = read_mesh(file, 0);

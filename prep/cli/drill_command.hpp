@@ -1,0 +1,10 @@
+// tact-prep drill CT and tact-prep demo drill: scenes of bone to drill.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tact {
+
+void add_drill(CLI::App& app, CLI::App& demo);
+
+}  // namespace tact

@@ -1,0 +1,36 @@
+// Puts a drilling scene together: densities, labels, distances to critical structures, and where the hand is.
+//
+// Place     a hand's millimetre is a bone's. The middle of the hand's space lies kInFrontM in front of the bone's
+//           nearest point, the largest z, so that a hand at rest is outside.
+// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
+// Repeats   the same input gives the same sections.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ipc/assets/bone_labels.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/base/progress.hpp"
+
+namespace tact {
+
+struct BoneInput {
+    static constexpr double kInFrontM = 0.01;
+    std::string title;
+    BoneData bone;
+    std::vector<std::string> note;  // lines "key: value"
+};
+
+struct BakedBone {
+    SceneMeta meta{};
+    std::string note;
+    std::uint64_t bone_voxels = 0;  // of any density but 0
+    double bone_m3 = 0.0;           // as if all of it were solid: densities / 255, summed
+    std::uint32_t distance_fields = 0;
+};
+
+BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progress = {});
+
+}  // namespace tact

@@ -1,0 +1,165 @@
+// From scans to a scene of bone: what is made in code, distances, readers, errors.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "prep/synthetic/temporal_bone.hpp"
+#include "prep/volume/bake_bone.hpp"
+#include "prep/volume/distance.hpp"
+#include "tests/unit/assets_samples.hpp"
+
+namespace tact {
+namespace {
+
+// Distance of a point (in voxels) to the surface of all voxels, as cubes, with the label; the slow way.
+double slow_distance(const BoneData& b, std::uint8_t of, const Vec3& p) {
+    double outside = 1e30, inside = 1e30;
+    const auto& n = b.bricks.size;
+    for (std::uint32_t z = 0; z < n[2]; ++z)
+        for (std::uint32_t y = 0; y < n[1]; ++y)
+            for (std::uint32_t x = 0; x < n[0]; ++x) {
+                const Vec3 gap = ((p - Vec3(x, y, z)).cwiseAbs() - Vec3(0.5, 0.5, 0.5)).cwiseMax(0.0);
+                double& least = b.label[b.bricks.voxel(x, y, z)] == of ? outside : inside;
+                least = std::min(least, gap.norm());
+            }
+    return outside > 0.0 ? outside : -inside;
+}
+
+TEST(MadeTemporalBone, RepeatsAndHasAllItsParts) {
+    TemporalBone settings;
+    settings.voxels = 64;
+    settings.voxel_m = 0.3e-3;
+    const BoneData bone = make_temporal_bone(settings);
+    EXPECT_EQ(bone.density, make_temporal_bone(settings).density);
+    ASSERT_EQ(bone.structure.size(), 9U);
+    std::array<std::size_t, 10> count{};
+    for (const std::uint8_t l : bone.label) ++count.at(l);
+    for (std::size_t i = 1; i < count.size(); ++i) EXPECT_GT(count[i], 0U) << bone.structure[i - 1].name;
+    settings.seed = 2;
+    const BoneData other = make_temporal_bone(settings);
+    EXPECT_NE(bone.density, other.density);
+    // Soft structures are where they were: the seed is of cells and roughness.
+    for (std::size_t i = 0; i < bone.label.size(); ++i) {
+        if (bone.label[i] == static_cast<std::uint8_t>(EarPart::facial_nerve)) {
+            EXPECT_EQ(other.label[i], bone.label[i]);
+            EXPECT_LT(bone.density[i], 130) << "the nerve is not bone";
+        }
+    }
+}
+
+TEST(MadeTemporalBone, HasAHardShellOverCells) {
+    TemporalBone settings;
+    settings.voxels = 128;
+    const BoneData bone = make_temporal_bone(settings);
+    // Into the mastoid from the side, 10 mm behind and 6 mm below the ear canal's height.
+    const double mm = 128.0 / 50.0;
+    const auto x = static_cast<std::uint32_t>((25.0 - 6.0) * mm),
+               y = static_cast<std::uint32_t>((25.0 - 6.0) * mm);
+    std::uint32_t z = 127;
+    while (z > 0 && bone.density[bone.bricks.voxel(x, y, z)] < 128) --z;
+    EXPECT_NEAR(z / mm - 25.0, 14.0, 1.5) << "its surface";
+    for (std::uint32_t i = 1; i <= 3; ++i) EXPECT_GT(bone.density[bone.bricks.voxel(x, y, z - i)], 200);
+    std::size_t air = 0, walls = 0;
+    for (std::uint32_t i = 8; i < 28; ++i) {
+        const std::uint8_t d = bone.density[bone.bricks.voxel(x, y, z - i)];
+        air += d < 20 ? 1 : 0;
+        walls += d > 60 ? 1 : 0;
+    }
+    EXPECT_GT(air, 5U);
+    EXPECT_GT(walls, 1U);
+}
+
+TEST(MadeTemporalBone, ASizeThatCannotBeIsRefusedBeforeMemoryIsTaken) {
+    for (const std::uint32_t voxels : {0U, 15U, 1025U, 4000000000U}) {
+        TemporalBone settings;
+        settings.voxels = voxels;
+        EXPECT_THROW((void)make_temporal_bone(settings), StartupError);
+    }
+}
+
+TEST(MadeTemporalBone, CanBeCancelled) {
+    TemporalBone settings;
+    settings.voxels = 64;
+    EXPECT_THROW((void)make_temporal_bone(settings, [](double, const char*) { return false; }), Cancelled);
+}
+
+TEST(Distances, AreThoseOfTheSlowWayAtGridPointsAndWithinTheStatedErrorBetween) {
+    BoneData b;
+    b.bricks.size = {21, 13, 18};
+    b.bricks.voxel_m = 0.3e-3;
+    b.bricks.origin_m = Vec3(0.1, 0.2, -0.3);
+    b.label.resize(b.bricks.bytes());
+    for (std::uint32_t z = 3; z < 9; ++z)
+        for (std::uint32_t y = 2; y < 8; ++y)
+            for (std::uint32_t x = 5; x < 12; ++x)
+                if ((x + y) % 7 != 0) b.label[b.bricks.voxel(x, y, z)] = 2;
+    b.label[b.bricks.voxel(20, 12, 17)] = 2;
+    b.label[b.bricks.voxel(0, 0, 0)] = 1;
+    const BuiltDistances built = build_distances(b.bricks, b.label, 2);
+    const DistanceField f = built.view();
+    EXPECT_EQ(f.spacing_m, 0.6e-3);
+    std::size_t i = 0;
+    for (std::uint32_t z = 0; z < f.size[2]; ++z)
+        for (std::uint32_t y = 0; y < f.size[1]; ++y)
+            for (std::uint32_t x = 0; x < f.size[0]; ++x, ++i)
+                ASSERT_NEAR(built.quanta[i] * f.quantum_m,
+                            b.bricks.voxel_m * slow_distance(b, 2, 2.0 * Vec3(x, y, z)), 0.51 * f.quantum_m)
+                    << x << ' ' << y << ' ' << z;
+    double worst = 0.0;
+    for (double x = 0.0; x < 20.0; x += 1.7)
+        for (double y = 0.0; y < 12.0; y += 1.3)
+            for (double z = 0.0; z < 17.0; z += 1.9)
+                worst = std::max(worst, std::abs(f.distance_m(b.bricks.to_model(Vec3(x, y, z))) -
+                                                 b.bricks.voxel_m * slow_distance(b, 2, Vec3(x, y, z))));
+    EXPECT_LE(worst, f.error_m);
+    EXPECT_TRUE(build_distances(b.bricks, b.label, 3).quanta.empty()) << "no voxel has that label";
+    EXPECT_THROW((void)build_distances(b.bricks, b.label, 2, [](double, const char*) { return false; }),
+                 Cancelled);
+}
+
+TEST(BakedBone, HasEverySectionAndPutsTheHandInFrontOfTheBone) {
+    TemporalBone settings;
+    settings.voxels = 48;
+    settings.voxel_m = 1e-3;
+    BoneInput input;
+    input.title = "test";
+    input.bone = make_temporal_bone(settings);
+    const BoneBricks bricks = input.bone.bricks;
+    const std::vector<std::uint8_t> density = input.bone.density;
+    SceneWriter out;
+    const BakedBone baked = bake_bone(std::move(input), out);
+    const std::vector<std::byte> bytes = out.to_bytes();
+    const SceneFile file = SceneFile::from_bytes(bytes, "bone");
+    const SceneMeta meta = read_meta(file);
+    EXPECT_EQ(meta.kind, SceneKind::drilling);
+    EXPECT_EQ(meta.world_per_model, 1.0);
+    const BoneVolumeView bone = read_bone_volume(file);
+    EXPECT_TRUE(std::equal(bone.density.begin(), bone.density.end(), density.begin(), density.end()));
+    const BoneLabelsView labels = read_bone_labels(file, bone.bricks);
+    const std::vector<DistanceField> fields = read_distance_fields(file, labels.structure.size());
+    EXPECT_EQ(fields.size(), 8U) << "the malleus is not critical";
+    EXPECT_EQ(baked.distance_fields, 8U);
+    std::uint32_t front = 0;
+    std::uint64_t sum = 0;
+    for (std::uint32_t z = 0; z < 48; ++z)
+        for (std::uint32_t y = 0; y < 48; ++y)
+            for (std::uint32_t x = 0; x < 48; ++x)
+                if (const std::uint8_t d = bone.at(x, y, z); d > 0) {
+                    front = z;
+                    sum += d;
+                }
+    EXPECT_NEAR(meta.centre_model_m[2], bricks.to_model(Vec3(0, 0, front)).z() + 0.01, 1e-9);
+    EXPECT_NEAR(baked.bone_m3, static_cast<double>(sum) / 255.0 * 1e-9, 1e-15);
+    for (const DistanceField& f : fields)  // the hand at rest is outside of all
+        EXPECT_GT(f.distance_m(meta.to_model(Vec3::Zero())), 0.005);
+    BoneInput empty;
+    empty.bone.bricks.size = {8, 8, 8};
+    empty.bone.bricks.voxel_m = 1e-3;
+    empty.bone.density.resize(512);
+    EXPECT_NE(sample::error_of([&] { (void)bake_bone(std::move(empty), out); }).find("no voxel"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace tact
