@@ -24,6 +24,7 @@ BELOW = {
     "rt/force": ["ipc/base", "ipc/assets"],
     # Force models do not know each other.
     "rt/force/docking": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/drilling": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/surface": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],

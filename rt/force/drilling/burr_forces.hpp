@@ -1,0 +1,37 @@
+// What a burr in bone is pushed with: penetration, elastic force, friction and impact.
+//
+// Source   eqs 2, 3, 13 and 14 of Agus et al. F_mu = c_mu R^2 (h / R) (m1 / m0) x omega: the print loses the power of
+//          R; squared it scales as the elastic force does.
+// Unit     SI. Masses are volumes of solid bone: m0 in m^3, m1 in m^4, about the ball's centre.
+// Thread   any; no allocation
+#pragma once
+
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+struct BurrLaw {
+    double elastic_pa = 4e5;       // c_e
+    double friction_n_s_m3 = 5e3;  // c_mu
+    double impact_n_s_m3 = 1.5e5;  // c_i
+};
+
+// x = h / R of eq. 2, x^2 - x^3 / 3 = m0 / (pi R^3): closed, exact at both ends, and rising from 0 to 2, which is a
+// ball full of bone. What is more than full is taken as full.
+[[nodiscard]] double penetration_of(double m0_m3, double radius_m) noexcept TACT_RT;
+
+struct BurrForce {
+    double depth = 0.0;          // h / R
+    Vec3 normal = Vec3::Zero();  // away from the bone; shorter than 1 where bone is on all sides
+    Wrench wrench;               // at the ball's centre
+    double stiffness_n_m = 0.0;  // of the elastic force along the normal, for a flat surface
+};
+
+// Where bone is on all sides m1 vanishes and the normal has no direction: it shrinks to nothing as soon as m1 is less
+// than a quarter of what the same mass in a cap would have, so a burr in a slot is not thrown from wall to wall, and
+// one that is wholly inside solid bone (h = 2 R) feels friction and impact alone.
+[[nodiscard]] BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Vec3& m1_m4,
+                                   const Vec3& velocity_m_s, const Vec3& spin_rad_s) noexcept TACT_RT;
+
+}  // namespace tact
