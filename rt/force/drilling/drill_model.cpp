@@ -1,0 +1,249 @@
+#include "rt/force/drilling/drill_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kNoHandM = 1e3;  // no hand is there
+// Of the force of a level, by block over radius: bounds of what README.md's table measured.
+constexpr double kErrorLeast = 0.005, kErrorPerSquare = 0.6;
+
+bool hand_is_there(const Pose& pose) noexcept {
+    const double turn = pose.q.squaredNorm();
+    return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kNoHandM && turn > 0.25 && turn < 4.0;
+}
+
+void check_range(double value, double least, double most, const char* name) {
+    if (std::isfinite(value) && value >= least && value <= most) return;
+    throw StartupError("preparing the drill", std::string(name) + " is " + std::to_string(value),
+                       "choose from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+}  // namespace
+
+void check_drill_settings(const DrillSettings& s) {
+    check_range(s.law.elastic_pa, 1e3, 1e8, "elastic_pa");
+    check_range(s.law.friction_n_s_m3, 0.0, 1e6, "friction_n_s_m3");
+    check_range(s.law.impact_n_s_m3, 0.0, 1e7, "impact_n_s_m3");
+    check_range(s.rate_per_s, 0.0, 1e4, "rate_per_s");
+    check_range(s.rate_at_rad_s, 1.0, 1e5, "rate_at_rad_s");
+    check_range(s.soft, 1.0, 20.0, "soft");
+    check_range(s.force_n_max, 0.1, 100.0, "force_n_max");
+    check_range(s.vibration, 0.0, 0.5, "vibration");
+}
+
+DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings)
+    : meta_(meta),
+      bone_(bone),
+      settings_((check_drill_settings(settings), settings)),
+      tool_(make_drill_tool(settings.tool)),
+      kernels_(best_brick_kernels()),
+      erosion_(bone.octree, bone.density, bone.revision, settings.seed) {
+    per_voxel_m_ = meta.world_per_model * bone.octree.bricks().voxel_m;
+    if (!std::isfinite(per_voxel_m_) || !(per_voxel_m_ > 0.0))
+        throw StartupError("preparing the drill", "the scene has no scale", "bake it anew");
+    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+        const double radius_m = tool_.ball[i].radius_m;
+        if (radius_m < kRadiusLeast * per_voxel_m_)
+            throw StartupError(
+                "preparing the drill",
+                "a part of the tool has a radius of " + std::to_string(1e3 * radius_m) + " mm, below a voxel",
+                "choose a larger burr and shaft, or bake smaller voxels");
+        if (radius_m > kRadiusMost * per_voxel_m_)
+            throw StartupError("preparing the drill", "the burr is larger than 200 voxels",
+                               "choose a smaller one, or bake larger voxels");
+        const double full = settings.law.elastic_pa * radius_m * radius_m;
+        const double x = std::min(std::cbrt(std::pow(settings.force_n_max / full, 2.0)), 2.0);
+        stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * settings.law.elastic_pa * radius_m * std::sqrt(x));
+    }
+}
+
+void DrillModel::drive(const DrillDrive& drive) noexcept {
+    const bool right = std::isfinite(drive.burr_rad_s) && drive.burr_rad_s >= 0.0 && drive.burr_rad_s < 1e6 &&
+                       drive.step_s > 0.0 && std::isfinite(drive.step_s);
+    drive_ = right ? drive : DrillDrive{};
+    drive_.step_s = std::min(drive_.step_s, kStepSMost);
+}
+
+double DrillModel::block_of(float fidelity) noexcept {
+    const double level =
+        fidelity >= 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;  // NaN: the floor
+    return kBlockCoarse * std::pow(kBlockFine / kBlockCoarse, level);
+}
+
+KnobSpec DrillModel::knob() const noexcept {
+    // 0.3 R: log(0.3 / 0.5) / log(0.1 / 0.5)
+    return {.path = kKnobPath, .floor = 0.0F, .start = 0.3174F, .slew_per_s = 4.0F, .haptic = true};
+}
+
+std::uint32_t DrillModel::items(float fidelity) const noexcept {
+    const double block = block_of(fidelity);  // of a sphere's surface, half of which is in bone
+    return tool_.count * static_cast<std::uint32_t>(std::lround(2.0 * std::numbers::pi / (block * block)));
+}
+
+void DrillModel::reset(const ToolState& tool) noexcept {
+    asked_ = true;
+    led_ = false;
+    pending_s_ = 0.0;
+    fade_.cut();
+    ++grips_;
+    if (hand_is_there(tool.T_world_tool))
+        T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
+}
+
+ModelBodies DrillModel::bodies() const noexcept {
+    ModelBodies list;
+    list.count = 1;
+    list.T_model_body[0] = T_model_tool_;
+    list.id[0] = 1;
+    list.grips = grips_;
+    return list;
+}
+
+ModelTouch DrillModel::touch() const noexcept {
+    ModelTouch t;
+    t.there = true;
+    t.probe_m = t.proxy_m = T_model_tool_.p_m;
+    t.radius_m = tool_.ball[0].radius_m / meta_.world_per_model;
+    const double push_n = head_.wrench.force_n.norm();
+    if (depth_ > 0.0 && push_n > 0.0) {
+        t.planes = 1;
+        t.normal[0] = head_.wrench.force_n / push_n;
+        t.push_n[0] = push_n;
+    }
+    return t;
+}
+
+DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurried,
+                                  Instant deadline) noexcept {
+    Felt felt;
+    felt.late = hurried;
+    depth_ = 0.0;
+    head_ = {};
+    const Quat q = tool.T_world_tool.q.normalized();
+    const Twist& twist = tool.twist_world;
+    const bool known = twist.linear_m_s.allFinite() && twist.angular_rad_s.allFinite();
+    const Vec3 axis = q * Vec3::UnitZ();
+    const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
+    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+        const ToolBall& ball = tool_.ball[i];
+        if (!felt.late && i > 0 && deadline != Instant::max()) felt.late = Monotonic::now() >= deadline;
+        const double radius = ball.radius_m / per_voxel_m_;
+        const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius,
+                                           (felt.late ? kBlockCoarse : block) * radius);
+        if (!(m.m0 > 0.0)) continue;
+        const Vec3 arm_m = q * ball.centre_tool_m;
+        const Vec3 velocity_m_s =
+            known ? Vec3(twist.linear_m_s + twist.angular_rad_s.cross(arm_m)) : Vec3(Vec3::Zero());
+        const Vec3 spin_rad_s = ball.cuts ? Vec3(drive_.burr_rad_s * axis) : Vec3(Vec3::Zero());
+        const BurrForce f = burr_force(settings_.law, ball.radius_m, volume * m.m0,
+                                       volume * per_voxel_m_ * m.m1, velocity_m_s, spin_rad_s);
+        const Vec3 force_n = ball.weight * f.wrench.force_n;
+        felt.wrench.force_n += force_n;
+        felt.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
+        felt.elastic_n += ball.weight * settings_.law.elastic_pa * ball.radius_m * ball.radius_m * f.depth *
+                          std::sqrt(f.depth);
+        if ((ball.cuts || i == 0) && f.depth > depth_) {
+            depth_ = f.depth;
+            head_ = f;
+        }
+    }
+    return felt;
+}
+
+void DrillModel::erode(double gain) noexcept {
+    const double rate_per_s = settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s;
+    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+        const ToolBall& ball = tool_.ball[i];
+        if (!ball.cuts) continue;
+        erosion_.cut(kernels_, {.from_voxels = cut_voxels_[i],
+                                .to_voxels = now_voxels_[i],
+                                .radius_voxels = ball.radius_m / per_voxel_m_,
+                                .exposure = rate_per_s * pending_s_ * ball.weight * gain,
+                                .soft = settings_.soft});
+    }
+}
+
+// Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
+// a rattle and no sampling turns into something else.
+Vec3 DrillModel::shaken_n(const ToolState& tool, double elastic_n) noexcept {
+    if (!(settings_.vibration > 0.0) || !(drive_.burr_rad_s > 0.0)) return Vec3::Zero();
+    const double turn_rad = std::min(drive_.burr_rad_s * drive_.step_s, 0.2 * std::numbers::pi);
+    phase_rad_ = std::fmod(phase_rad_ + turn_rad, 2.0 * std::numbers::pi);
+    return settings_.vibration * std::min(elastic_n, settings_.force_n_max) *
+           (tool.T_world_tool.q.normalized() * Vec3(std::cos(phase_rad_), std::sin(phase_rad_), 0.0));
+}
+
+StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcept {
+    const Instant begin = Monotonic::now();
+    StepResult result;
+    result.load.items = items(budget.fidelity);
+    fade_.begin_step();
+    if (asked_) erosion_.begin();
+    if (!hand_is_there(tool.T_world_tool)) {
+        fade_.cut();
+        led_ = false;
+        pending_s_ = 0.0;
+        depth_ = 0.0;
+        result.status = StepStatus::out_of_range;
+    } else if (asked_) {
+        T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
+        double way_m = 0.0;
+        for (std::uint32_t i = 0; i < tool_.count; ++i) {
+            const Vec3 centre_world_m = tool.T_world_tool.p_m + T_model_tool_.q * tool_.ball[i].centre_tool_m;
+            now_voxels_[i] = bone_.octree.bricks().to_voxels(meta_.to_model(centre_world_m));
+            if (led_ && tool_.ball[i].cuts)
+                way_m = std::max(way_m, per_voxel_m_ * (now_voxels_[i] - cut_voxels_[i]).norm());
+        }
+        if (led_ && way_m > std::max(kJumpRadii * tool_.ball[0].radius_m, kJumpM)) {
+            led_ = false;
+            ++jumps_;
+        }
+        const bool clutch = (tool.buttons & 1U) != 0;
+        if (clutch)
+            fade_.fall();
+        else
+            fade_.rise();
+        const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+        const double block = block_of(budget.fidelity);
+        const Felt felt = feel(tool, block, hurried, budget.deadline);
+        Wrench wrench = felt.wrench;
+        wrench.force_n += shaken_n(tool, felt.elastic_n);
+        const double size_n = wrench.force_n.norm(),
+                     scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
+        const double gain = fade_.gain() * scale;
+        result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
+        const double share =
+            kErrorLeast + kErrorPerSquare * (felt.late ? kBlockCoarse * kBlockCoarse : block * block);
+        result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max);
+
+        const bool cuts = !clutch && drive_.burr_rad_s > 0.0;
+        const bool late =
+            felt.late || (budget.deadline != Instant::max() && Monotonic::now() >= budget.deadline);
+        if (late) result.status = StepStatus::out_of_time;
+        if (!cuts || !led_) {
+            cut_voxels_ = now_voxels_;
+            pending_s_ = 0.0;
+            led_ = true;
+        } else {
+            pending_s_ = std::min(pending_s_ + drive_.step_s, kStepSMost);
+            if (late) {
+                ++postponed_;
+            } else {
+                erode(fade_.gain());
+                cut_voxels_ = now_voxels_;
+                pending_s_ = 0.0;
+            }
+        }
+    }
+    result.load.cost = std::max(Monotonic::now() - begin, Duration(1));
+    return result;
+}
+
+}  // namespace tact

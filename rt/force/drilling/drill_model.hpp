@@ -1,0 +1,135 @@
+// Drilling bone with a burr, or feeling it with any tool that is a union of balls.
+//
+// Force    of each ball (burr_forces.hpp) from the mass in it, with its weight, at its centre; head and shaft alike. The
+//          whole wrench is scaled down to force_n_max.
+// Cutting  balls of the head that cut take bone along their way since the last step (erosion.hpp), after the force of
+//          the step. a is in proportion to the burr's speed; a burr that stands takes nothing. Harder pressed it
+//          goes deeper, and so takes more: eq. 12 knows no other pressure.
+// Knob     "drilling.force": smallest block looked at, 0.5 R to 0.1 R (eq. 8; the default is 0.3 R). Turning it is smooth.
+// Late     past the deadline the remaining balls are felt at 0.5 R and nothing is cut; the next step in time cuts along
+//          the straight way from the last place that was cut, for all the time since, so nothing is left out.
+// Error    of a level: its share of the force, measured (README.md).
+// Jumps    a tool that goes farther in a step than kJumpRadii of its radius, and 5 mm, was not led there by a hand: it
+//          cuts nothing on the way; counted.
+// Clutch   held, the force fades out and nothing is cut. Reset: the force fades in from zero, and cutting with it.
+// Repeats  the same poses, drives and seed give the same forces and densities, bit by bit, where no step was late.
+// Bodies   one, the tool; orders are refused.
+// Frames   tool and wrench in world, the bone in model; SceneMeta maps one to the other.
+// Thread   constructed anywhere (may throw StartupError); then servo. Models of one bone belong to one thread. No
+//          allocation.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "ipc/assets/scene_meta.hpp"
+#include "rt/force/drilling/ball_moments.hpp"
+#include "rt/force/drilling/burr_forces.hpp"
+#include "rt/force/drilling/burr_shapes.hpp"
+#include "rt/force/drilling/erosion.hpp"
+#include "rt/force/force_fade.hpp"
+#include "rt/force/force_model.hpp"
+
+namespace tact {
+
+// The bone that the tools of a scene share. The memory behind the spans must outlive it: densities in brick order, and
+// one revision a brick, which rises after each change of it (store: release).
+struct DrillBone {
+    DrillBone(const BoneBricks& bricks, std::span<std::uint8_t> densities, std::span<std::uint32_t> revisions)
+        : octree(bricks, densities), density(densities), revision(revisions) {}
+    MomentOctree octree;
+    std::span<std::uint8_t> density;
+    std::span<std::uint32_t> revision;
+};
+
+struct DrillSettings {
+    DrillToolSettings tool;
+    BurrLaw law;
+    double rate_per_s = 40.0;  // a of eq. 12 of solid bone, at this speed of the burr:
+    double rate_at_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
+    double soft = 2.0;  // a of the softest bone over that of solid bone; linear between
+    double force_n_max = 3.3;
+    double vibration = 0.0;  // of the running burr, over the elastic force; 0 to 0.5
+    std::uint64_t seed = 1;
+};
+
+// Fails by StartupError where one is out of range.
+void check_drill_settings(const DrillSettings& settings);
+
+// What drives the burr; until it is told, it stands.
+struct DrillDrive {
+    double burr_rad_s = 0.0;  // about the shaft's axis
+    double step_s = 1e-3;     // that the next step stands for
+};
+
+class DrillModel final : public ForceModel {
+public:
+    static constexpr const char* kKnobPath = "drilling.force";
+    static constexpr double kBlockFine = 0.1, kBlockDefault = 0.3,
+                            kBlockCoarse = kBlockMost;  // of the radius
+    static constexpr double kJumpRadii = 4.0, kJumpM = 5e-3;
+    static constexpr double kRadiusMost = 200.0;  // voxels
+    static constexpr double kStepSMost = 0.1;     // that a step, or steps that were late, can stand for
+
+    // The bone must outlive the model.
+    DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings);
+
+    // Before a step, as often as wished. What is not finite or negative is taken as a burr that stands.
+    void drive(const DrillDrive& drive) noexcept TACT_RT;
+
+    [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    void reset(const ToolState& tool) noexcept TACT_RT override;
+    // On a flat surface, at force_n_max.
+    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return stiffness_n_m_; }
+    StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
+    [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
+    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+
+    // Of the last step.
+    [[nodiscard]] const ErosionPass& cut() const noexcept TACT_RT { return erosion_.pass(); }
+    [[nodiscard]] std::span<const BoneDust> dust() const noexcept TACT_RT { return erosion_.dust(); }
+    [[nodiscard]] double depth() const noexcept TACT_RT {
+        return depth_;
+    }  // h / R of the head, its deepest ball
+    // Since it was made.
+    [[nodiscard]] std::uint64_t removed_levels() const noexcept TACT_RT { return erosion_.removed(); }
+    [[nodiscard]] std::uint64_t postponed() const noexcept TACT_RT { return postponed_; }  // steps
+    [[nodiscard]] std::uint64_t jumps() const noexcept TACT_RT { return jumps_; }
+
+    [[nodiscard]] const SceneMeta& meta() const { return meta_; }
+    [[nodiscard]] const DrillTool& tool() const { return tool_; }
+    // Smallest block looked at, over the radius.
+    [[nodiscard]] static double block_of(float fidelity) noexcept TACT_RT;
+
+private:
+    struct Felt {
+        Wrench wrench;           // at the tool's origin, world, before limits
+        double elastic_n = 0.0;  // sum of sizes
+        bool late = false;
+    };
+    [[nodiscard]] Felt feel(const ToolState& tool, double block, bool hurried,
+                            Instant deadline) noexcept TACT_RT;
+    void erode(double gain) noexcept TACT_RT;
+    [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
+
+    SceneMeta meta_;
+    DrillBone& bone_;
+    DrillSettings settings_;
+    DrillTool tool_;
+    const BrickKernels& kernels_;
+    Erosion erosion_;
+    ForceFade fade_;
+    DrillDrive drive_;
+    double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;                 // world metres of a voxel edge
+    std::array<Vec3, DrillTool::kMax> now_voxels_{}, cut_voxels_{};  // centres; as last cut
+    bool asked_ = false;                                             // reset() was called
+    bool led_ = false;      // cut_voxels_ are of a tool that was led here
+    double pending_s_ = 0;  // not cut yet
+    double depth_ = 0.0, phase_rad_ = 0.0;
+    BurrForce head_;  // of the deepest ball of the head
+    Pose T_model_tool_;
+    std::uint64_t grips_ = 0, postponed_ = 0, jumps_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,375 @@
+// Erosion, and the model that feels and cuts.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "ipc/base/error.hpp"
+#include "rt/force/drilling/drill_model.hpp"
+#include "tests/contract/force_model_contract.hpp"
+#include "tests/support/bone_block.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kVoxelM = 3e-4;
+
+std::uint64_t mass_of(const BoneBlock& bone) {
+    return std::accumulate(bone.density.begin(), bone.density.end(), std::uint64_t{0});
+}
+BoneBlock solid(std::uint32_t edge, double level = 1.0) {
+    return BoneBlock(
+        edge, kVoxelM, [=](const Vec3&) { return level; }, 1);
+}
+Vec3 along(const Vec3& from, const Vec3& to, double s) { return from + s * (to - from); }
+
+// What eq. 12 leaves of solid bone after a straight stroke, by Simpson's rule along it.
+double removed_by_theory(const BoneBlock& bone, const Vec3& from, const Vec3& to, double radius,
+                         double exposure) {
+    constexpr int kParts = 100;
+    double removed = 0.0;
+    const auto& n = bone.bricks.size;
+    for (std::uint32_t z = 0; z < n[2]; ++z) {
+        for (std::uint32_t y = 0; y < n[1]; ++y) {
+            for (std::uint32_t x = 0; x < n[0]; ++x) {
+                double sum = 0.0;
+                for (int i = 0; i <= kParts; ++i) {
+                    const double weight = i == 0 || i == kParts ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+                    const double r2 =
+                        (Vec3(x, y, z) - along(from, to, i / static_cast<double>(kParts))).squaredNorm();
+                    sum += weight * std::max(0.0, 1.0 - r2 / (radius * radius));
+                }
+                if (sum > 0.0)
+                    removed += bone.density[bone.bricks.voxel(x, y, z)] *
+                               -std::expm1(-exposure * sum / (3.0 * kParts));
+            }
+        }
+    }
+    return removed;
+}
+
+TEST(Erosion, TakesWhatItsEquationSaysAtAnyServoRateAndStrokeSpeed) {
+    const double radius = 4.0, rate_per_s = 30.0;
+    const Vec3 from(9.2, 10.1, 11.4), to(17.7, 13.9, 12.2);
+    const double way_m = kVoxelM * (to - from).norm();
+    for (const double speed_m_s : {5e-3, 30e-3, 200e-3}) {
+        const double time_s = way_m / speed_m_s;
+        const double right = removed_by_theory(solid(24), from, to, radius, rate_per_s * time_s);
+        for (const double servo_hz : {500.0, 1000.0, 4000.0}) {
+            BoneBlock bone = solid(24);
+            MomentOctree octree(bone.bricks, bone.density);
+            Erosion erosion(octree, bone.density, bone.revision, 3);
+            const int steps = std::max(1, static_cast<int>(std::lround(time_s * servo_hz)));
+            for (int i = 0; i < steps; ++i) {
+                erosion.begin();
+                erosion.cut(best_brick_kernels(),
+                            {.from_voxels = along(from, to, i / static_cast<double>(steps)),
+                             .to_voxels = along(from, to, (i + 1.0) / steps),
+                             .radius_voxels = radius,
+                             .exposure = rate_per_s * time_s / steps});
+            }
+            EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 0.01 * right)
+                << speed_m_s << " m/s at " << servo_hz << " Hz";
+        }
+    }
+}
+
+TEST(Erosion, SlowOrSoftBoneIsRoundedRightInExpectation) {
+    // So little a step that a voxel seldom loses a level; and one step that takes nearly all.
+    for (const double exposure : {1e-5, 1e-3, 0.09, 0.11, 3.0}) {
+        for (const double soft : {1.0, 3.0}) {
+            BoneBlock bone = solid(32, 100.0 / 255.0);
+            MomentOctree octree(bone.bricks, bone.density);
+            Erosion erosion(octree, bone.density, bone.revision, 5);
+            const double rate = exposure * (1.0 + (soft - 1.0) * 155.0 / 255.0), radius = 14.0;
+            const Vec3 at = Vec3::Constant(15.6);
+            const double right = removed_by_theory(bone, at, at, radius, rate);
+            erosion.begin();
+            erosion.cut(best_brick_kernels(), {at, at, radius, exposure, soft});
+            // Each voxel rounds at most one level: the sum scatters by the root of their sum at most.
+            EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 5.0 * std::sqrt(right) + 1e-3 * right)
+                << exposure;
+        }
+    }
+}
+
+TEST(Erosion, NoMassIsLost) {
+    BoneBlock bone = solid(144, 0.9);
+    const std::vector<std::uint8_t> before = bone.density;
+    MomentOctree octree(bone.bricks, bone.density);
+    const std::uint64_t mass = mass_of(bone);
+    EXPECT_EQ(static_cast<std::uint64_t>(octree.total().m0), mass);
+    Erosion erosion(octree, bone.density, bone.revision, 9);
+    std::uint64_t listed = 0, unlisted = 0;
+    const auto cut = [&](const CuttingBall& ball) {
+        const std::uint64_t was = mass_of(bone);
+        erosion.begin();
+        EXPECT_TRUE(erosion.dust().empty());
+        erosion.cut(best_brick_kernels(), ball);
+        std::uint64_t of_dust = 0;
+        for (const BoneDust& d : erosion.dust()) {
+            of_dust += d.levels;
+            const std::uint32_t n = bone.bricks.bricks()[0];
+            const std::uint32_t place[3] = {d.brick % n, d.brick / n % n, d.brick / n / n};
+            for (int a = 0; a < 3; ++a) {
+                EXPECT_GE(d.centre_voxels[a], 8.0F * static_cast<float>(place[a]) - 1e-3F);
+                EXPECT_LE(d.centre_voxels[a], 8.0F * static_cast<float>(place[a]) + 7.001F);
+            }
+        }
+        EXPECT_EQ(of_dust + erosion.pass().unlisted, erosion.pass().removed);
+        EXPECT_EQ(was - mass_of(bone), erosion.pass().removed);
+        listed += of_dust;
+        unlisted += erosion.pass().unlisted;
+    };
+    for (int i = 0; i < 20; ++i) cut({Vec3(70.0, 70.0, 140.0 - i), Vec3(70.3, 70.0, 139.0 - i), 12.5, 0.05});
+    EXPECT_EQ(unlisted, 0U);
+    cut({Vec3::Constant(-5.0), Vec3::Constant(150.0), 90.0, 0.4});  // more bricks than the list has room for
+    EXPECT_GT(unlisted, 0U);
+    cut({Vec3(-60.0, 1000.0, 3.0), Vec3(-50.0, 2000.0, 3.0), 30.0, 1.0});  // beside the volume
+    EXPECT_EQ(erosion.pass().removed, 0U);
+    EXPECT_EQ(listed + unlisted, erosion.removed());
+    EXPECT_EQ(mass - mass_of(bone), erosion.removed());
+    EXPECT_EQ(static_cast<std::uint64_t>(octree.total().m0), mass_of(bone));
+    const MomentOctree anew(bone.bricks, bone.density);
+    EXPECT_EQ(octree.total().m1, anew.total().m1);
+    for (std::size_t i = 0; i < bone.bricks.brick_count(); ++i) {
+        const auto first = static_cast<std::ptrdiff_t>(i * BoneBricks::kVoxels), last = first + 512;
+        const bool same =
+            std::equal(before.begin() + first, before.begin() + last, bone.density.begin() + first);
+        EXPECT_EQ(same, bone.revision[i] == 0) << i;
+        EXPECT_EQ(octree.brick(i).m0, anew.brick(i).m0);
+    }
+}
+
+// Bone below z = 0 of the world, the tool's shaft upward.
+struct Bench {
+    BoneBlock bone;
+    SceneMeta meta{};
+    std::unique_ptr<DrillBone> shared;
+    std::unique_ptr<DrillModel> model;
+
+    explicit Bench(const DrillSettings& settings, std::uint32_t edge = 56)
+        : bone(
+              edge, kVoxelM, [=](const Vec3& p) { return p.z() < 0.5 * edge - 0.5 ? 1.0 : 0.0; }, 1) {
+        meta.kind = SceneKind::drilling;
+        meta.world_per_model = 1.0;
+        bone.bricks.origin_m = -kVoxelM * Vec3::Constant(0.5 * edge - 0.5);
+        shared = std::make_unique<DrillBone>(bone.bricks, bone.density, bone.revision);
+        model = std::make_unique<DrillModel>(meta, *shared, settings);
+    }
+    static ToolState at(double x_m, double y_m, double z_m) {
+        ToolState tool;
+        tool.T_world_tool.p_m = Vec3(x_m, y_m, z_m);
+        return tool;
+    }
+    StepResult step(const ToolState& tool, Instant deadline = Instant::max()) {
+        Budget budget;
+        budget.fidelity = 0.32F;
+        budget.deadline = deadline;
+        return model->step(tool, budget);
+    }
+};
+
+DrillSettings burr(double radius_m = 2e-3) {
+    DrillSettings s;
+    s.tool.radius_m = radius_m;
+    return s;
+}
+constexpr double kFullRadS = 6283.0;
+
+TEST(DrillModel, AScriptedStrokeRepeatsBitByBit) {
+    const auto run = [](std::uint64_t seed, std::vector<Vec3>& forces) {
+        DrillSettings s = burr();
+        s.seed = seed;
+        s.vibration = 0.1;
+        Bench b(s);
+        b.model->drive({kFullRadS, 1e-3});
+        b.model->reset(Bench::at(0.0, 0.0, 3e-3));
+        for (int i = 0; i < 700; ++i) {
+            const double t = 1e-3 * i;
+            ToolState tool = Bench::at(2e-3 * std::sin(20.0 * t), 1e-3 * std::sin(13.0 * t),
+                                       std::max(1e-3, 3e-3 - 5e-3 * t));
+            tool.T_world_tool.q = Quat(Eigen::AngleAxisd(0.3 * std::sin(5.0 * t), Vec3::UnitX()));
+            forces.push_back(b.step(tool).wrench_world.force_n);
+        }
+        EXPECT_GT(b.model->removed_levels(), 255U * 50U);
+        return b.bone.density;
+    };
+    std::vector<Vec3> first, again, other;
+    const auto left = run(4, first), left_again = run(4, again), left_other = run(5, other);
+    EXPECT_EQ(left, left_again);
+    EXPECT_EQ(first, again);
+    EXPECT_NE(left, left_other);
+}
+
+TEST(DrillModel, TheForceIsContinuousWhileBoneVanishes) {
+    for (const auto shape : {BurrShape::sphere, BurrShape::cylinder}) {
+        DrillSettings s = burr();
+        s.tool.shape = shape;
+        Bench b(s);
+        const double z_m = (shape == BurrShape::sphere ? 2e-3 : 4e-3) - 6e-4;  // 0.6 mm deep
+        b.model->reset(Bench::at(0.0, 0.0, z_m));
+        StepResult before{};
+        for (int i = 0; i < 400; ++i) before = b.step(Bench::at(0.0, 0.0, z_m));
+        const double pressed_n = before.wrench_world.force_n.z();
+        EXPECT_GT(pressed_n, 0.1);
+        b.model->drive({0.5 * kFullRadS, 1e-3});
+        double turning_n = 0.0;
+        for (int i = 0; i < 1500; ++i) {
+            const StepResult now = b.step(Bench::at(0.0, 0.0, z_m));
+            // The first turning step adds friction, which lies across.
+            if (i == 0) turning_n = now.wrench_world.force_n.z();
+            EXPECT_NEAR(now.wrench_world.force_n.z(), i == 0 ? turning_n : before.wrench_world.force_n.z(),
+                        0.03 * pressed_n)
+                << i;
+            before = now;
+        }
+        EXPECT_LT(before.wrench_world.force_n.z(), 0.5 * pressed_n);  // eq. 12 takes little at the rim
+    }
+}
+
+TEST(DrillModel, StepsThatWereLateAreMadeUpFor) {
+    const auto removed = [](int late_every) {
+        Bench b(burr());
+        b.model->drive({kFullRadS, 1e-3});
+        b.model->reset(Bench::at(-4e-3, 0.0, 1.2e-3));
+        for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-6e-3, 0.0, 1.2e-3 + 8e-3));
+        for (int i = 0; i <= 200; ++i) {
+            const bool late = late_every > 0 && i % late_every != 0;
+            const StepResult r =
+                b.step(Bench::at(-6e-3 + 6e-5 * i, 0.0, 1.2e-3), late ? instant_from_ns(0) : Instant::max());
+            EXPECT_EQ(r.status, late ? StepStatus::out_of_time : StepStatus::ok);
+        }
+        if (late_every > 0) {
+            EXPECT_GT(b.model->postponed(), 100U);
+        }
+        return static_cast<double>(b.model->removed_levels());
+    };
+    const double on_time = removed(0);
+    EXPECT_GT(on_time, 255.0 * 20.0);
+    EXPECT_NEAR(removed(4), on_time, 0.02 * on_time);
+}
+
+TEST(DrillModel, OnlyATurningHeadCutsAndNotWhileTheClutchIsHeld) {
+    Bench b(burr());
+    const ToolState in = Bench::at(0.0, 0.0, 1.2e-3);
+    const std::uint64_t mass = mass_of(b.bone);
+    b.model->drive({kFullRadS, 1e-3});
+    for (int i = 0; i < 100; ++i) (void)b.step(in);  // before a reset
+    EXPECT_EQ(mass_of(b.bone), mass);
+    b.model->reset(in);
+    for (const DrillDrive& drive :
+         {DrillDrive{0.0, 1e-3}, DrillDrive{std::nan(""), 1e-3}, DrillDrive{-5.0, 1e-3},
+          DrillDrive{kFullRadS, -1.0}, DrillDrive{kFullRadS, std::nan("")}}) {
+        b.model->drive(drive);
+        for (int i = 0; i < 300; ++i) (void)b.step(in);
+        EXPECT_EQ(mass_of(b.bone), mass);
+    }
+    b.model->drive({kFullRadS, 1e-3});
+    ToolState held = in;
+    held.buttons = 1;
+    for (int i = 0; i < 300; ++i) (void)b.step(held);
+    EXPECT_EQ(mass_of(b.bone), mass);
+    // Upside down the shaft is in the bone, and the head outside.
+    ToolState turned = Bench::at(0.0, 0.0, 2.6e-3);
+    turned.T_world_tool.q = Quat(0.0, 1.0, 0.0, 0.0);
+    b.model->reset(turned);
+    StepResult felt;
+    for (int i = 0; i < 300; ++i) felt = b.step(turned);
+    EXPECT_GT(felt.wrench_world.force_n.norm(), 0.1);
+    EXPECT_EQ(mass_of(b.bone), mass);
+    b.model->reset(in);
+    for (int i = 0; i < 300; ++i) (void)b.step(in);
+    EXPECT_LT(mass_of(b.bone), mass);
+    EXPECT_EQ(mass - mass_of(b.bone), b.model->removed_levels());
+}
+
+TEST(DrillModel, AJumpCutsNothingOnItsWay) {
+    Bench b(burr());
+    b.model->drive({kFullRadS, 1e-3});
+    b.model->reset(Bench::at(-20e-3, 0.0, 0.0));
+    for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-20e-3, 0.0, 0.0));
+    (void)b.step(Bench::at(20e-3, 0.0, 0.0));
+    EXPECT_EQ(b.model->jumps(), 1U);
+    EXPECT_EQ(b.model->removed_levels(), 0U);
+}
+
+TEST(DrillModel, ARunningBurrRattlesWithinItsShareAndAroundTheSameForce) {
+    DrillSettings s = burr();
+    s.rate_per_s = 0.0;
+    s.law.friction_n_s_m3 = 0.0;
+    Bench still(s);
+    s.vibration = 0.2;
+    Bench shaken(s);
+    const ToolState in = Bench::at(0.0, 0.0, 1.3e-3);
+    Vec3 sum = Vec3::Zero(), before = Vec3::Zero(), calm = Vec3::Zero();
+    for (Bench* b : {&still, &shaken}) {
+        b->model->drive({kFullRadS, 1e-3});
+        b->model->reset(in);
+        for (int i = 0; i < 400; ++i) before = b->step(in).wrench_world.force_n;
+        if (b == &still) calm = before;
+    }
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 now = shaken.step(in).wrench_world.force_n;
+        EXPECT_LT((now - calm).norm(), 0.21 * calm.norm());
+        EXPECT_LT((now - before).norm(), 0.2 * 0.66 * calm.norm());  // a tenth of a turn a step, at most
+        sum += now;
+        before = now;
+    }
+    EXPECT_LT((sum / 1000.0 - calm).norm(), 0.01 * calm.norm());
+    EXPECT_GT(calm.norm(), 0.1);
+}
+
+TEST(DrillModel, RefusesWhatItCannotRender) {
+    const auto refused = [](const auto& spoil) {
+        DrillSettings s = burr();
+        spoil(s);
+        EXPECT_THROW(Bench{s}, StartupError);
+    };
+    refused([](DrillSettings& s) { s.tool.radius_m = 2e-4; });  // below a voxel
+    refused([](DrillSettings& s) { s.tool.shaft_radius_m = 2e-4; });
+    refused([](DrillSettings& s) { s.law.elastic_pa = -1.0; });
+    refused([](DrillSettings& s) { s.rate_per_s = std::nan(""); });
+    refused([](DrillSettings& s) { s.force_n_max = 0.0; });
+    refused([](DrillSettings& s) { s.vibration = 2.0; });
+    Bench b(burr());
+    std::vector<std::uint32_t> few(3);
+    EXPECT_THROW(Erosion(b.shared->octree, b.bone.density, few, 1), StartupError);
+}
+
+// The model of the contract's suite owns its bone.
+class OwnBone final : public ForceModel {
+public:
+    explicit OwnBone(const DrillSettings& s) : bench_(s) {}
+    KnobSpec knob() const noexcept override { return bench_.model->knob(); }
+    std::uint32_t items(float f) const noexcept override { return bench_.model->items(f); }
+    void reset(const ToolState& t) noexcept override { bench_.model->reset(t); }
+    StepResult step(const ToolState& t, const Budget& b) noexcept override {
+        return bench_.model->step(t, b);
+    }
+    ModelBodies bodies() const noexcept override { return bench_.model->bodies(); }
+
+private:
+    Bench bench_;
+};
+
+ForceModelCase contract_case(const char* name, BurrShape shape, double z_m) {
+    ForceModelCase c;
+    c.name = name;
+    DrillSettings s = burr();
+    s.tool.shape = shape;
+    c.make = [s] { return std::make_unique<OwnBone>(s); };
+    c.grip.p_m = Vec3(0.0, 0.0, z_m + 3e-3);
+    c.touch.p_m = Vec3(1e-4, 2e-4, z_m);
+    c.touch.q = Quat(Eigen::AngleAxisd(0.4, Vec3(0.6, 0.8, 0.0)));
+    c.force_n_min = 0.1;
+    return c;
+}
+INSTANTIATE_TEST_SUITE_P(Drilling, ForceModelContract,
+                         testing::Values(contract_case("sphere", BurrShape::sphere, 1.3e-3),
+                                         contract_case("cone", BurrShape::cone, 3.0e-3)),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace tact
