@@ -1,5 +1,5 @@
 // tact demo dock: a synthetic ring of six, started away from its place, is drawn into its 12 A map.
-// tact demo touch: a hand strokes a rough terrain or sphere.
+// tact demo touch: a hand strokes a rough terrain, or a rough or smooth sphere.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"
@@ -26,11 +26,11 @@ void add_demo(CLI::App& app, int& exit_code) {
         const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
     });
-    auto* const touch = demo->add_subcommand("touch", "a rough terrain, or a dense rough sphere, is felt");
+    auto* const touch = demo->add_subcommand("touch", "a rough terrain, or a dense sphere, is felt");
     const auto touch_options = std::make_shared<RunOptions>();
     const auto shape = std::make_shared<std::string>("terrain");
-    touch->add_option("--shape", *shape, "terrain or sphere")
-        ->check(CLI::IsMember({"terrain", "sphere"}))
+    touch->add_option("--shape", *shape, "terrain, sphere (rough) or smooth-sphere")
+        ->check(CLI::IsMember({"terrain", "sphere", "smooth-sphere"}))
         ->capture_default_str();
     const auto tool = add_tool_options(*touch);
     add_run_options(*touch, *touch_options);

@@ -104,10 +104,10 @@ SurfaceInput touch_file(const TouchSettings& o, Console& console) {
 
 SurfaceInput touch_made(const TouchSettings& o) {
     SurfaceInput input;
-    const bool sphere = o.shape == "sphere";
-    const std::uint32_t parts = o.parts > 0 ? o.parts : sphere ? 158 : 300;
-    input.mesh = sphere ? rough_sphere(parts) : rough_terrain(parts);
-    input.title = sphere ? "rough sphere" : "rough terrain";
+    const bool terrain = o.shape == "terrain", smooth = o.shape == "smooth-sphere";
+    const std::uint32_t parts = o.parts > 0 ? o.parts : terrain ? 300 : 158;
+    input.mesh = terrain ? rough_terrain(parts) : smooth ? smooth_sphere(parts) : rough_sphere(parts);
+    input.title = terrain ? "rough terrain" : smooth ? "smooth sphere" : "rough sphere";
     input.note = {"mesh: made by tact-prep demo touch, " + input.title + " of " + std::to_string(parts) +
                   " parts"};
     return input;
@@ -201,9 +201,9 @@ void add_touch(CLI::App& app, CLI::App& demo) {
         ->capture_default_str();
     both(from_file);
     from_file->callback([o] { touch(*o, false); });
-    CLI::App* const made = demo.add_subcommand("touch", "a rough terrain, or a rough sphere");
-    made->add_option("--shape", o->shape, "terrain or sphere")
-        ->check(CLI::IsMember({"terrain", "sphere"}))
+    CLI::App* const made = demo.add_subcommand("touch", "a rough terrain, or a rough or smooth sphere");
+    made->add_option("--shape", o->shape, "terrain, sphere (rough) or smooth-sphere")
+        ->check(CLI::IsMember({"terrain", "sphere", "smooth-sphere"}))
         ->capture_default_str();
     made->add_option("--parts", o->parts,
                      "of the side of the terrain (2 parts^2 triangles; default 300) or of an edge of the "

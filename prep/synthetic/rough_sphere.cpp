@@ -50,13 +50,8 @@ void put(TriangleMesh& mesh, const Vec3& p) {
     for (const double x : {p.x(), p.y(), p.z()}) mesh.position_m.push_back(static_cast<float>(x));
 }
 
-}  // namespace
-
-double rough_radius_m(const Vec3& direction) { return kRoughSphereM + 0.0025 * octaves(4.0 * direction); }
-
-double rough_height_m(double x_m, double z_m) { return 0.006 * octaves(Vec3(35.0 * x_m, 0.5, 35.0 * z_m)); }
-
-TriangleMesh rough_sphere(std::uint32_t parts) {
+template <class RadiusM>
+TriangleMesh sphere_of(std::uint32_t parts, RadiusM&& radius_m) {
     const double t = 0.5 * (1.0 + std::sqrt(5.0));
     const std::array<Vec3, 12> corner{Vec3(-1, t, 0), Vec3(1, t, 0), Vec3(-1, -t, 0), Vec3(1, -t, 0),
                                       Vec3(0, -1, t), Vec3(0, 1, t), Vec3(0, -1, -t), Vec3(0, 1, -t),
@@ -96,7 +91,7 @@ TriangleMesh rough_sphere(std::uint32_t parts) {
             const Vec3 direction =
                 (weight[0] * corner[face[0]] + weight[1] * corner[face[1]] + weight[2] * corner[face[2]])
                     .normalized();
-            put(mesh, rough_radius_m(direction) * direction);
+            put(mesh, radius_m(direction) * direction);
             return next;
         };
         row_before.assign(1, vertex(0, 0));
@@ -111,6 +106,18 @@ TriangleMesh rough_sphere(std::uint32_t parts) {
         }
     }
     return mesh;
+}
+
+}  // namespace
+
+double rough_radius_m(const Vec3& direction) { return kRoughSphereM + 0.0025 * octaves(4.0 * direction); }
+
+double rough_height_m(double x_m, double z_m) { return 0.006 * octaves(Vec3(35.0 * x_m, 0.5, 35.0 * z_m)); }
+
+TriangleMesh rough_sphere(std::uint32_t parts) { return sphere_of(parts, rough_radius_m); }
+
+TriangleMesh smooth_sphere(std::uint32_t parts) {
+    return sphere_of(parts, [](const Vec3&) { return kRoughSphereM; });
 }
 
 TriangleMesh rough_terrain(std::uint32_t parts) {

@@ -1,4 +1,4 @@
-// Surfaces made in code to be touched: a rough sphere and a rough terrain, of any number of triangles.
+// Surfaces made in code to be touched: a rough sphere, a smooth one and a rough terrain, of any number of triangles.
 //
 // Roughness  value noise in five octaves, each half as high and about twice as fine as the one before, so that
 //            there are bumps of all sizes down to some triangles. It repeats exactly.
@@ -17,6 +17,8 @@ double rough_radius_m(const Vec3& direction);
 
 // An icosahedron with its edges cut into so many parts: 20 parts^2 triangles, closed.
 TriangleMesh rough_sphere(std::uint32_t parts);
+// The same without roughness: all vertices lie kRoughSphereM from the origin.
+TriangleMesh smooth_sphere(std::uint32_t parts);
 
 // A square of 0.12 m, y up, parts x parts cells of two triangles, open. Hills of up to some 12 mm.
 TriangleMesh rough_terrain(std::uint32_t parts);

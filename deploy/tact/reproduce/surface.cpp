@@ -8,6 +8,7 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/plot.hpp"
 #include "deploy/tact/reproduce/summary.hpp"
+#include "deploy/tact/reproduce/surface_direction.hpp"
 #include "deploy/tact/reproduce/surface_rows.hpp"
 #include "deploy/tact/reproduce/text.hpp"
 #include "deploy/tact/touch_paths.hpp"
@@ -102,6 +103,36 @@ std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path
     return rows;
 }
 
+// On smooth spheres of the seed's smallest size and of one that is dense.
+constexpr int kSmoothParts[] = {10, 158};
+
+std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool quick) {
+    const SceneFile file = SceneFile::open(scene);
+    const SurfaceMesh surface = read_surface(file);
+    const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
+    std::vector<DirectionRow> rows;
+    for (const double pace : {1.0, 4.0}) {
+        const std::vector<Vec3> path = touch_path_m(surface, TouchWay::slide, pace, quick ? 2000 : 10000);
+        for (const Tool& tool : kTools) {
+            for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::chr}) {
+                SurfaceSettings settings = measured(tool.radius_m);
+                settings.mode = mode;
+                settings.friction = 0.0;
+                DirectionRow row = direction_of(touch_along(surface, path, settings, 1, 1.0, &forest), path);
+                row.triangles = surface.triangles();
+                row.tool = tool.name;
+                row.mode = kSurfaceModeNames[static_cast<std::size_t>(mode)];
+                row.speed_mm_s = 55.0 * pace;
+                rows.push_back(row);
+                std::printf("  smooth sphere %9zu  %-6s %3.0f mm/s %-9s direction off by %.3f deg (99 %%)\n",
+                            row.triangles, tool.name, row.speed_mm_s, row.mode.c_str(), row.p99_deg);
+                std::fflush(stdout);
+            }
+        }
+    }
+    return rows;
+}
+
 // Rates of the seed's hand, the slow one, by size.
 plot::Plot table_figure(const std::vector<TouchRow>& rows) {
     plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 0.0};
@@ -178,6 +209,22 @@ std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     return table;
 }
 
+// By size, the tool and hand that are farthest off.
+std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
+    std::vector<SummaryRow> table;
+    double worst_deg = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        worst_deg = std::max(worst_deg, rows[i].p99_deg);
+        if (i + 1 < rows.size() && rows[i + 1].triangles == rows[i].triangles) continue;
+        table.push_back({.figure = "-",
+                         .quantity = text("direction, sphere of %zu", rows[i].triangles),
+                         .ours = text("off by %.2f degrees at the most, 99 %% of steps", worst_deg),
+                         .differs = "the seed gives none"});
+        worst_deg = 0.0;
+    }
+    return table;
+}
+
 }  // namespace
 
 int reproduce_surface(const SurfaceExperiment& e) {
@@ -198,11 +245,23 @@ int reproduce_surface(const SurfaceExperiment& e) {
         if (!e.meshes.empty() || size.triangles > (e.quick ? 100'000 : e.triangles_max)) continue;
         add(size.name, {"demo", "touch", "--shape", size.shape, "--parts", std::to_string(size.parts)});
     }
+    std::vector<DirectionRow> smooth;
+    for (const int parts : kSmoothParts) {
+        if (!e.meshes.empty()) break;
+        static_cast<void>(bake_to_measure(
+            {"demo", "touch", "--shape", "smooth-sphere", "--parts", std::to_string(parts)}, scene));
+        const std::vector<DirectionRow> more = directions(scene, e.quick);
+        smooth.insert(smooth.end(), more.begin(), more.end());
+        if (e.quick) break;
+    }
     write_whole(e.out / "table1.csv", csv_of(rows));
+    if (!smooth.empty()) write_whole(e.out / "direction.csv", csv_of(smooth));
     save(table_figure(rows), e.out / "table1.png");
     save(filter_figure(), e.out / "fig3_filters.png");
-    const std::vector<SummaryRow> table = summary_of(rows);
-    const nlohmann::json report{{"rows", json_of(rows)}, {"summary", json_of(table)}};
+    std::vector<SummaryRow> table = summary_of(rows);
+    for (const SummaryRow& row : summary_of(smooth)) table.push_back(row);
+    const nlohmann::json report{
+        {"rows", json_of(rows)}, {"direction", json_of(smooth)}, {"summary", json_of(table)}};
     write_whole(e.out / "surface.json", report.dump(2) + "\n");
     std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
                 (e.out / "surface.json").c_str());

@@ -6,9 +6,10 @@
 // Modes    off-tree, off-brute (to 0.6 million triangles, and fewer steps the more there are) and chr
 // Rate     what one core could do: one over the mean time of a step. The time of a step is the least of three
 //          passes, so what other programs of the machine take does not count.
+// Direction  of the force, against the true normal of smooth spheres (surface_direction.hpp)
 // Quality  breaks: below 1000 Hz on average. bad: above, but more than one step in a thousand takes more than 1 ms, or
 //          the proxy stands still. good: neither.
-// Writes   CSV and PNG of the table and the figures, surface.json
+// Writes   CSV and PNG of the table and the figures, direction.csv, surface.json
 // Thread   one; some minutes and, for the largest mesh, 4 GB. Fails by StartupError; leaves no process behind.
 #pragma once
 
