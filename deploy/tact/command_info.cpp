@@ -1,9 +1,11 @@
 // tact info SCENE: all that another program needs to compute the same force from the same files.
+// The force of a docking scene is spelled out here, of a surface in info_surface.cpp.
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/commands.hpp"
+#include "deploy/tact/info_surface.hpp"
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_report.hpp"
 #include "ipc/base/error.hpp"
@@ -48,23 +50,21 @@ constexpr const char* kFormulas[] = {
 json vec(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 json vec_a(const Vec3& v) { return vec(v / kAngstromM); }
 
-json info(const std::filesystem::path& path) {
-    const SceneFile file = SceneFile::open(path);
-    if (read_meta(file).kind != SceneKind::docking)
-        throw StartupError("tell the force of " + path.string(), "it is no docking scene",
-                           "tact-prep info " + path.string() + " tells what it holds");
-    const Places places(file);
-    const SceneMeta& m = places.meta();
-    const DensityGrid& g = places.grid();
-    char checksum[20];
-    std::snprintf(checksum, sizeof checksum, "%016llx", static_cast<unsigned long long>(file.checksum()));
+json note_lines(const SceneFile& file) {
     json note = json::array();
-    std::string text = read_note(file);
+    const std::string text = read_note(file);
     for (std::size_t at = 0; at < text.size();) {
         const auto end = std::min(text.find('\n', at), text.size());
         if (end > at) note.push_back(text.substr(at, end - at));
         at = end + 1;
     }
+    return note;
+}
+
+json docking_info(const SceneFile& file) {
+    const Places places(file);
+    const SceneMeta& m = places.meta();
+    const DensityGrid& g = places.grid();
     json bodies = json::array();
     for (std::uint32_t i = 0; i < m.body_count; ++i) {
         const Structure& s = places.structures()[i];
@@ -82,11 +82,7 @@ json info(const std::filesystem::path& path) {
                           {"file_place_quat_xyzw", {0, 0, 0, 1}},
                           {"codebook", levels}});
     }
-    return {{"path", std::filesystem::absolute(path).string()},
-            {"checksum", checksum},
-            {"title", std::string(m.title)},
-            {"kind", m.kind == SceneKind::docking ? "docking" : "other"},
-            {"world_per_model", m.world_per_model},
+    return {{"world_per_model", m.world_per_model},
             {"centre_model_m", {m.centre_model_m[0], m.centre_model_m[1], m.centre_model_m[2]}},
             {"energy_j_per_sigma", m.energy_j_per_sigma},
             {"force_n_per_sigma_per_model_m", m.energy_j_per_sigma / m.world_per_model},
@@ -101,8 +97,26 @@ json info(const std::filesystem::path& path) {
               {"contour_sigma", (m.contour - m.map_mean) / m.map_sigma},
               {"resolution_a", m.resolution_m > 0.0 ? json(m.resolution_m / kAngstromM) : json(nullptr)}}},
             {"bodies", bodies},
-            {"formulas", kFormulas},
-            {"note", note}};
+            {"formulas", kFormulas}};
+}
+
+json info(const std::filesystem::path& path) {
+    const SceneFile file = SceneFile::open(path);
+    const SceneMeta m = read_meta(file);
+    if (m.kind != SceneKind::docking && m.kind != SceneKind::surface)
+        throw StartupError("tell the force of " + path.string(),
+                           "it is neither a map to dock into nor a surface",
+                           "tact-prep info " + path.string() + " tells what it holds");
+    const bool docking = m.kind == SceneKind::docking;
+    char checksum[20];
+    std::snprintf(checksum, sizeof checksum, "%016llx", static_cast<unsigned long long>(file.checksum()));
+    json all = docking ? docking_info(file) : surface_info(file);
+    all["path"] = std::filesystem::absolute(path).string();
+    all["checksum"] = checksum;
+    all["title"] = std::string(m.title);
+    all["kind"] = docking ? "docking" : "surface";
+    all["note"] = note_lines(file);
+    return all;
 }
 
 std::string plain(const json& j) {
@@ -154,8 +168,8 @@ void show(const json& j, const std::string& indent) {
 }  // namespace
 
 void add_info(CLI::App& app, int& exit_code) {
-    auto* const command =
-        app.add_subcommand("info", "what a baked scene holds: transform, gains, map, structures");
+    auto* const command = app.add_subcommand(
+        "info", "what a baked scene holds: transform, gains, map, structures; or mesh, tree, forest");
     const auto scene = std::make_shared<std::filesystem::path>();
     const auto as_json = std::make_shared<bool>(false);
     command->add_option("SCENE", *scene, "file written by tact-prep")->required()->check(CLI::ExistingFile);
