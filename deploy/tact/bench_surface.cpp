@@ -56,6 +56,7 @@ json bench_surface() {
             all[tool + "_us_p99_" + key] = percentile_us(steps, 0.99);
             all[tool + "_us_p999_" + key] = percentile_us(steps, 0.999);
             all[tool + "_us_max_" + key] = percentile_us(steps, 1.0);
+            all[tool + "_jammed_" + key] = jammed_cycles(steps);
             jammed += jammed_cycles(steps);
             unsettled += unsettled_cycles(steps);
         };

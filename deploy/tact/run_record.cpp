@@ -23,7 +23,7 @@ std::optional<Sample> take_sample(const RtRegion& region, const Places* places, 
             s.level_mesh = mesh->level;
             s.vertices_asked = mesh->items;
         }
-        if (const auto force = level_of(*levels, kDockingPath)) {
+        if (const auto force = force_level(*levels)) {
             s.level_force = force->level;
             s.points = force->items;
         }

@@ -22,7 +22,7 @@ enum class EventCode : std::uint16_t {
     gui_detached,
     gui_silent,     // a: heartbeat age in ms
     command_done,   // a: CommandKind, b: CommandResult
-    level_changed,  // a: path index, b: new level
+    level_changed,  // a: index in LevelsTopic::path, b: new level
     input_refused,  // a: count so far
     model_swapped,
     hand_present,

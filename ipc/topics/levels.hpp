@@ -42,6 +42,9 @@ struct alignas(64) LevelsTopic {
 };
 static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);
 
+// Places in LevelsTopic::path that are always theirs.
+inline constexpr std::size_t kPicturePathIndex = 0, kForcePathIndex = 1;
+
 inline constexpr char kMeshPath[] = "gui.mesh";
 inline constexpr char kDockingPath[] = "docking.force";
 

@@ -25,6 +25,12 @@ std::string number(double value) {
     return text;
 }
 
+std::string path_text(double index) {
+    if (index == static_cast<double>(kPicturePathIndex)) return "picture";
+    if (index == static_cast<double>(kForcePathIndex)) return "force";
+    return "path " + number(index);
+}
+
 }  // namespace
 
 const char* run_state_text(RunState state) noexcept {
@@ -288,7 +294,7 @@ std::string event_text(const EventTopic& event) {
             return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
                    command_result_text(code_of<CommandResult>(event.b));
         case EventCode::level_changed:
-            return what + ": path " + a + " to " + b;
+            return what + ": " + path_text(event.a) + " to " + b;
         case EventCode::input_refused:
             return what + ": " + a + " so far";
         case EventCode::stopping:

@@ -34,6 +34,8 @@ constexpr double kPictureTolerance = 0.05;  // of a frame's time above its goal
 constexpr double kPictureRoom = 0.85;       // of its goal, up to which a frame may grow
 // Below this elasticity half of the picture would save less than a fourteenth of a frame: it stays.
 constexpr double kWorthwhile = 0.1;
+// A level is a factor: below this one it would need many steps to come back, and nothing is cheaper there.
+constexpr double kLeastLevel = 1e-3;
 constexpr double kShareLeast = 0.02, kShareMost = 0.9;
 
 bool possible(const KnobSpec& knob) noexcept {
@@ -191,10 +193,10 @@ bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
         if (!p.present || p.knob.haptic != haptic) continue;
-        // A knob with floor 0 has to find its way back up from it.
         const double before = static_cast<double>(p.level);
-        const double base = factor > 1.0 ? std::max(before, 1e-3) : before;
-        double wanted = std::clamp(base * factor, static_cast<double>(p.knob.floor), 1.0);
+        const double base = factor > 1.0 ? std::max(before, kLeastLevel) : before;
+        const double least = std::max(static_cast<double>(p.knob.floor), std::min(before, kLeastLevel));
+        double wanted = std::clamp(base * factor, least, 1.0);
         if (factor > 1.0) wanted = std::min(wanted, before + static_cast<double>(p.knob.slew_per_s) * dt_s);
         const auto level = static_cast<float>(wanted);
         moved = moved || level != p.level;

@@ -80,8 +80,8 @@ public:
     // For the last health, read by the servo thread itself after its last cycle.
     void publish_end(std::uint64_t page_faults) noexcept;
 
-    static constexpr std::size_t kMeshIndex = 0;
-    static constexpr std::size_t kForceIndex = 1;
+    static constexpr std::size_t kMeshIndex = kPicturePathIndex;
+    static constexpr std::size_t kForceIndex = kForcePathIndex;
 
 private:
     // The stages, in order.

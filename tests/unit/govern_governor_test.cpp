@@ -49,6 +49,22 @@ TEST(Governor, gives_the_picture_up_first_and_the_force_last) {
     EXPECT_EQ(governor.paths()[1].reason, LevelReason::at_floor);
 }
 
+TEST(Governor, a_knob_whose_floor_is_zero_stays_where_it_comes_back_from_in_a_few_steps) {
+    constexpr KnobSpec kNoFloor{.path = "force", .floor = 0.0F, .start = 1.0F, .haptic = true};
+    for (const Law law : {Law::sensitus, Law::elastic}) {
+        Governor governor = with({.law = law, .goal_hz = 1000.0}, {kNoFloor});
+        for (int i = 0; i < 1000; ++i) static_cast<void>(governor.step(10.0, kStep));
+        EXPECT_NEAR(governor.level(0), 1e-3, 1e-6);
+        EXPECT_EQ(governor.paths()[0].reason, LevelReason::at_floor);
+        int steps = 0;
+        while (governor.level(0) < 1.0F && steps < 1000) {
+            static_cast<void>(governor.step(5000.0, kStep));
+            ++steps;
+        }
+        EXPECT_LT(steps, 60);
+    }
+}
+
 TEST(Governor, restores_the_force_before_the_picture_and_no_faster_than_its_slew) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     for (int i = 0; i < 200; ++i) static_cast<void>(governor.step(100.0, kStep));

@@ -96,7 +96,7 @@ void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
 }
 
 KnobSpec SurfaceModel::knob() const noexcept {
-    return {.path = kKnobPath, .floor = 0.0F, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
+    return {.path = kKnobPath, .floor = kLeastLevel, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
 }
 
 std::uint32_t SurfaceModel::items(float fidelity) const noexcept {

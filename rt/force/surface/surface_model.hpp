@@ -59,6 +59,7 @@ void check_surface_settings(const SurfaceSettings& settings);
 class SurfaceModel final : public ForceModel {
 public:
     static constexpr const char* kKnobPath = "surface.force";
+    static constexpr float kLeastLevel = 0.05F;
     static constexpr double kPointM = 4e-6;
     static constexpr double kDampedDepthM = 5e-4;
     static constexpr double kGlideN = 0.05;  // what a step may change the force by, besides what the hand did

@@ -37,8 +37,11 @@ ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const Touch
       torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {}
 
 KnobSpec ToolModel::knob() const noexcept {
-    return {
-        .path = SurfaceModel::kKnobPath, .floor = 0.0F, .start = 0.5F, .slew_per_s = 4.0F, .haptic = true};
+    return {.path = SurfaceModel::kKnobPath,
+            .floor = SurfaceModel::kLeastLevel,
+            .start = 0.5F,
+            .slew_per_s = 4.0F,
+            .haptic = true};
 }
 
 std::uint32_t ToolModel::items(float fidelity) const noexcept {
