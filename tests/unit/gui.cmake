@@ -2,6 +2,7 @@
 if(TACT_GUI)
     find_package(CLI11 REQUIRED)
     tact_test(unit/gui_plot_series_test.cpp USES gui_panels)
+    tact_test(unit/gui_particles_test.cpp USES gui_particles assets base)
     tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
     tact_test(unit/gui_link_test.cpp USES gui_link gui_panels topics shm base)
     tact_test(unit/gui_history_test.cpp USES gui_fit base SYSTEM rapidcheck)

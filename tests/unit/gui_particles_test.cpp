@@ -1,0 +1,282 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "gui/particles/particles.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kPlenty = 1.0;  // seconds of budget: every particle is moved in every step
+
+// A box of 40 cells of 0.5 mm with a floor of bone, eight cells thick, at the bottom.
+struct Box {
+    BoneBricks bricks{.size = {40, 40, 40}, .voxel_m = 5e-4, .origin_m = Vec3(0.01, -0.02, 0.03)};
+    std::vector<std::uint8_t> density;
+
+    Box() : density(bricks.bytes(), 0) {
+        for (std::uint32_t z = 0; z < 40; ++z)
+            for (std::uint32_t y = 0; y < 8; ++y)
+                for (std::uint32_t x = 0; x < 40; ++x) density[bricks.voxel(x, y, z)] = 255;
+    }
+    [[nodiscard]] Vec3 at(double x, double y, double z) const { return bricks.to_model(Vec3(x, y, z)); }
+};
+
+ParticleSettings few() { return {.most = 20000, .margin = 4}; }
+
+std::uint64_t carried(const Particles& p) {
+    return std::accumulate(p.all().begin(), p.all().end(), std::uint64_t{0},
+                           [](std::uint64_t sum, const Particle& each) { return sum + each.mass; });
+}
+
+// One a cell, that cell says so, and none is in bone.
+void expect_one_a_cell(const Particles& particles) {
+    std::set<Cell> seen;
+    for (const Particle& p : particles.all()) {
+        const Cell c = {static_cast<int>(p.at[0]), static_cast<int>(p.at[1]), static_cast<int>(p.at[2])};
+        ASSERT_TRUE(particles.cells().inside(c));
+        ASSERT_NE(particles.cells().state(c), CellState::free);
+        ASSERT_FALSE(particles.cells().bone(c));
+        ASSERT_TRUE(seen.insert(c).second);
+    }
+    const Cell n = particles.cells().size();
+    std::size_t taken = 0;
+    for (int z = 0; z < n[2]; ++z)
+        for (int y = 0; y < n[1]; ++y)
+            for (int x = 0; x < n[0]; ++x)
+                taken += particles.cells().state({x, y, z}) != CellState::free ? 1 : 0;
+    EXPECT_EQ(taken, particles.all().size());
+}
+
+void settle(Particles& particles, int steps) {
+    for (int i = 0; i < steps; ++i) static_cast<void>(particles.step(0.01, kPlenty, Vec3::Zero(), {}));
+}
+
+TEST(SpeedGroups, HoldWhatTheLawSays) {
+    EXPECT_EQ(speed_group(1.0F), 0U);
+    EXPECT_EQ(speed_group(0.51F), 0U);
+    EXPECT_EQ(speed_group(0.5F), 1U);  // 2^-(j+1) is left out, 2^-j is in
+    EXPECT_EQ(speed_group(0.26F), 1U);
+    EXPECT_EQ(speed_group(0.25F), 2U);
+    EXPECT_EQ(speed_group(1e-9F), kSpeedGroups - 1);
+    EXPECT_EQ(speed_group(0.0F), kSpeedGroups - 1);
+    EXPECT_EQ(speed_group(7.0F), 0U);
+    EXPECT_EQ(speed_group(std::nanf("")), kSpeedGroups - 1);
+}
+
+TEST(SpeedGroups, EachIsMovedHalfAsOftenAsTheOneBefore) {
+    const GroupCounts held = {40000, 80000, 64000, 128000, 0, 512000, 0, 0, 0, 512000};
+    const GroupCounts moves = moves_by_group(held, 60000.0);
+    const auto share = [&](std::size_t j) {
+        return static_cast<double>(moves[j]) / static_cast<double>(held[j]);
+    };
+    EXPECT_NEAR(share(1), share(0) / 2.0, 1e-3);
+    EXPECT_NEAR(share(2), share(1) / 2.0, 1e-3);
+    EXPECT_NEAR(share(3), share(2) / 2.0, 1e-3);
+    EXPECT_NEAR(share(5), share(3) / 4.0, 1e-3);
+    EXPECT_NEAR(share(9), share(5) / 16.0, 1e-3);
+    const auto sum = std::accumulate(moves.begin(), moves.end(), std::size_t{0});
+    EXPECT_NEAR(static_cast<double>(sum), 60000.0, 1.0);
+}
+
+TEST(SpeedGroups, AGroupThatIsMovedWholeLeavesItsShareToTheSlower) {
+    const GroupCounts held = {100, 100, 100, 100, 100, 100, 100, 100, 100, 100};
+    for (const double moves : {0.0, 1.0, 150.0, 420.0, 999.0, 1000.0, 5000.0}) {
+        const GroupCounts made = moves_by_group(held, moves);
+        const auto sum = std::accumulate(made.begin(), made.end(), std::size_t{0});
+        EXPECT_NEAR(static_cast<double>(sum), std::min(moves, 1000.0), 1.0) << moves;
+        for (std::size_t j = 1; j < kSpeedGroups; ++j) EXPECT_LE(made[j], made[j - 1] + 1) << moves;
+    }
+    const GroupCounts none = moves_by_group({}, 10.0);
+    EXPECT_EQ(std::accumulate(none.begin(), none.end(), std::size_t{0}), 0U);
+}
+
+TEST(Particles, FallAsFarAsGravityTakesThem) {
+    const Box box;
+    ParticleSettings settings = few();
+    settings.drag_per_s = 0.0;
+    Particles particles(box.bricks, {}, settings);  // no bone
+    ASSERT_TRUE(particles.emit(Matter::dust, box.at(20, 38, 20), Vec3::Zero()));
+    const double from = particles.place_m(particles.all()[0]).y();
+    particles.step(0.0, kPlenty, Vec3::Zero(), {});  // it hangs in the air: lets go
+    double fallen = 0.0;
+    for (int i = 1; i <= 40; ++i) {
+        particles.step(1e-3, kPlenty, Vec3::Zero(), {});
+        ASSERT_EQ(particles.all().size(), 1U);
+        fallen = from - particles.place_m(particles.all()[0]).y();
+    }
+    EXPECT_NEAR(fallen, 0.5 * 9.81 * 0.04 * 0.04, 2.0 * box.bricks.voxel_m);
+}
+
+TEST(Particles, LeaveThroughTheBottomOfTheSite) {
+    const Box box;
+    Particles particles(box.bricks, {}, few());
+    for (int i = 0; i < 100; ++i)
+        ASSERT_TRUE(particles.emit(Matter::water, box.at(20, 20, 20), Vec3::Zero()));
+    settle(particles, 200);
+    EXPECT_TRUE(particles.all().empty());
+    expect_one_a_cell(particles);
+}
+
+TEST(Particles, DustMakesAPileAndWaterALake) {
+    const Box box;
+    const auto height = [&](Matter matter) {
+        Particles particles(box.bricks, box.density, few());
+        for (int i = 0; i < 250; ++i) {
+            EXPECT_TRUE(particles.emit(matter, box.at(20, 30, 20), Vec3::Zero()));
+            settle(particles, 8);
+        }
+        settle(particles, 400);
+        EXPECT_EQ(particles.all().size(), 250U);
+        expect_one_a_cell(particles);
+        float top = 0.0F;
+        for (const Particle& p : particles.all()) top = std::max(top, p.at[1]);
+        return static_cast<int>(top) - 12 +
+               1;  // layers above the floor: the margin and the bone are 12 thick
+    };
+    // A square pyramid of 250 cells with a slope of 45 degrees along the axes is about seven high.
+    EXPECT_GE(height(Matter::dust), 4);
+    EXPECT_LE(height(Matter::dust), 9);
+    EXPECT_LE(height(Matter::water), 2);
+}
+
+TEST(Particles, DustAndWaterMakePaste) {
+    const Box box;
+    Particles particles(box.bricks, box.density, few());
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(particles.emit(Matter::water, box.at(20, 9, 20), Vec3::Zero()));
+    settle(particles, 50);
+    for (int i = 0; i < 60; ++i) {
+        particles.drilled(20, 20, 20, 255, Vec3::Zero());
+        settle(particles, 5);
+    }
+    settle(particles, 300);
+    std::array<int, 4> of{};
+    for (const Particle& p : particles.all()) ++of[static_cast<std::size_t>(p.matter)];
+    EXPECT_GT(of[static_cast<std::size_t>(Matter::paste)], 20);
+    EXPECT_EQ(particles.ledger().carried, 60U * 255U);
+    expect_one_a_cell(particles);
+}
+
+TEST(Particles, SuctionTakesWhatIsNearUnlessItsTipIsInBone) {
+    const Box box;
+    Particles particles(box.bricks, box.density, few());
+    for (int i = 0; i < 100; ++i) particles.drilled(i % 2 == 0 ? 19 : 21, 9, 20, 255, Vec3::Zero());
+    settle(particles, 100);
+    ASSERT_EQ(particles.all().size(), 100U);
+    const Suction in_bone{.tip_m = box.at(20, 3, 20), .radius_m = 1.5e-3};
+    EXPECT_TRUE(particles.step(0.01, kPlenty, Vec3::Zero(), in_bone).suction_blocked);
+    EXPECT_EQ(particles.ledger().sucked, 0U);
+    const Suction above{.tip_m = box.at(20, 10, 20), .radius_m = 1.5e-3};
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(particles.step(0.01, kPlenty, Vec3::Zero(), above).suction_blocked);
+    EXPECT_LT(particles.all().size(), 10U);
+    EXPECT_GE(particles.ledger().sucked, 90U * 255U);
+    EXPECT_TRUE(particles.ledger().balances());
+}
+
+TEST(Particles, LoseNoLevelOfBone) {
+    const Box box;
+    Particles particles(box.bricks, box.density, few());
+    SeededRandom random(3);
+    for (int i = 0; i < 400; ++i) {
+        for (int k = 0; k < 20; ++k)
+            particles.drilled(static_cast<std::uint32_t>(10 + random.below(20)), 8,
+                              static_cast<std::uint32_t>(10 + random.below(20)),
+                              static_cast<std::uint32_t>(random.below(256)), 0.4 * random.direction());
+        if (i % 3 == 0) particles.emit(Matter::water, box.at(15, 25, 15), Vec3(0.1, 0, 0));
+        if (i % 7 == 0) particles.emit(Matter::blood, box.at(25, 9, 25), Vec3(0.0, 0.1, 0.0));
+        const Suction suction{.tip_m = box.at(25, 12, 25), .radius_m = 1e-3};
+        // From plenty to next to nothing, so that some are given up.
+        particles.step(0.01, i < 300 ? kPlenty : 2e-6, box.at(20, 20, 20), suction);
+        ASSERT_TRUE(particles.ledger().balances());
+        ASSERT_EQ(particles.ledger().carried, carried(particles));
+    }
+    EXPECT_GT(particles.ledger().drilled, 900000U);
+    EXPECT_GT(particles.ledger().sucked, 0U);
+    EXPECT_GT(particles.ledger().given_up, 0U);
+    EXPECT_GT(particles.ledger().left, 0U);
+    expect_one_a_cell(particles);
+}
+
+TEST(Particles, AreTheSameForTheSameSeed) {
+    const Box box;
+    const auto run = [&] {
+        Particles particles(box.bricks, box.density, few());
+        for (int i = 0; i < 60; ++i) {
+            particles.drilled(20, 8, 20, 700, Vec3(0.1, 0.3, 0.0));
+            particles.emit(Matter::water, box.at(15, 25, 15), Vec3(0.1, 0, 0));
+            particles.step(0.01, kPlenty, Vec3::Zero(), {});
+        }
+        std::vector<float> places;
+        for (const Particle& p : particles.all()) places.insert(places.end(), p.at.begin(), p.at.end());
+        return places;
+    };
+    EXPECT_EQ(run(), run());
+}
+
+// A clock on which a look takes 1.6 us, as sixteen moves of 100 ns would.
+std::int64_t slow_ns = 0;
+Instant slow_now() {
+    slow_ns += 1600;
+    return instant_from_ns(slow_ns);
+}
+
+TEST(Particles, ArePutIntoTheTimeThereIs) {
+    const Box box;
+    ParticleSettings settings = few();
+    settings.now = &slow_now;
+    Particles particles(box.bricks, box.density, settings);
+    for (int i = 0; i < 12000; ++i) {
+        const Vec3 at = box.at(2 + i % 36, 10 + i / 36 % 28, 2 + i / 1008);
+        ASSERT_TRUE(particles.emit(Matter::dust, at, Vec3(0.1, 0.2, 0.1)));
+    }
+    double cost = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        const ParticleStep step = particles.step(1e-4, 400e-6, Vec3::Zero(), {});
+        EXPECT_LE(step.cost_s, 1.1 * 400e-6);
+        if (i >= 10) cost += step.cost_s / 10.0;
+    }
+    EXPECT_NEAR(cost, 400e-6, 40e-6);
+}
+
+TEST(Particles, ThatMatterLeastAreGivenUpWhereTimeIsShort) {
+    const Box box;
+    Particles particles(box.bricks, {}, few());
+    for (int i = 0; i < 12000; ++i) {
+        const Vec3 at = box.at(2 + i % 36, 2 + i / 36 % 28, 2 + i / 1008);
+        ASSERT_TRUE(particles.emit(Matter::dust, at, Vec3::Zero()));
+    }
+    const Vec3 looked_at = box.at(20, 15, 7);
+    const auto mean_m = [&] {
+        double sum = 0.0;
+        for (const Particle& p : particles.all()) sum += (particles.place_m(p) - looked_at).norm();
+        return sum / static_cast<double>(particles.all().size());
+    };
+    const double before_m = mean_m();
+    std::uint32_t given_up = 0;
+    for (int i = 0; i < 10; ++i) given_up += particles.step(0.0, 60e-6, looked_at, {}).given_up;
+    EXPECT_GT(given_up, 500U);
+    EXPECT_GT(particles.all().size(), 100U);
+    EXPECT_LT(mean_m(), before_m);
+}
+
+TEST(Particles, RefuseWhatCannotBe) {
+    const Box box;
+    Particles particles(box.bricks, box.density, few());
+    EXPECT_FALSE(particles.emit(Matter::water, Vec3(std::nan(""), 0, 0), Vec3::Zero()));
+    EXPECT_FALSE(particles.emit(Matter::water, Vec3(9, 9, 9), Vec3::Zero()));
+    EXPECT_FALSE(particles.emit(Matter::water, box.at(20, 4, 20), Vec3::Zero()));  // deep in bone
+    BoneBricks huge = box.bricks;
+    huge.size[1] = 100000;
+    EXPECT_THROW(Particles(huge, {}, few()), StartupError);
+    EXPECT_THROW(Particles(box.bricks, std::span(box.density).first(64), few()), StartupError);
+    ParticleSettings none = few();
+    none.most = 0;
+    EXPECT_THROW(Particles(box.bricks, {}, none), StartupError);
+}
+
+}  // namespace
+}  // namespace tact
