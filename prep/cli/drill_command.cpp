@@ -1,16 +1,20 @@
 #include "prep/cli/drill_command.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "ipc/base/error.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/target.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 #include "prep/volume/bake_bone.hpp"
+#include "prep/volume/import_bone.hpp"
 
 namespace tact {
 namespace {
@@ -18,16 +22,52 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DrillSettings {
-    std::string scene;
+    std::string scan, labels, label_names, scene, crop, unit = "mm", face = "front";
+    std::vector<double> spacing_mm;
+    std::vector<unsigned> bone_colour;
+    std::optional<double> threshold, solid;
+    BoneImport import;
+    bool synthetic = false;
     TemporalBone made;
     double made_voxel_mm = 0.0;
     bool json = false;
 };
 
+constexpr std::pair<const char*, double> kDrillUnits[] = {
+    {"m", 1e3}, {"cm", 10.0}, {"mm", 1.0}, {"um", 1e-3}};
+constexpr std::pair<const char*, BoneFace> kDrillFaces[] = {
+    {"front", BoneFace::front}, {"back", BoneFace::back}, {"left", BoneFace::left},
+    {"right", BoneFace::right}, {"top", BoneFace::top},   {"bottom", BoneFace::bottom}};
+
+template <class T, std::size_t n>
+std::set<std::string> drill_names(const std::pair<const char*, T> (&table)[n]) {
+    std::set<std::string> names;
+    for (const auto& row : table) names.insert(row.first);
+    return names;
+}
+template <class T, std::size_t n>
+T drill_value(const std::pair<const char*, T> (&table)[n], const std::string& name) {
+    return std::find_if(std::begin(table), std::end(table),
+                        [&](const auto& row) { return name == row.first; })
+        ->second;
+}
+
+// "0:256,0:256,10:90"
+ScanCrop parse_crop(const std::string& text) {
+    ScanCrop crop;
+    int end = 0;
+    const int read = std::sscanf(text.c_str(), "%9u:%9u,%9u:%9u,%9u:%9u%n", &crop.low[0], &crop.high[0],
+                                 &crop.low[1], &crop.high[1], &crop.low[2], &crop.high[2], &end);
+    if (read != 6 || static_cast<std::size_t>(end) != text.size() || text.find('-') != std::string::npos)
+        throw StartupError("--crop " + text, "it is not three times first:end",
+                           "give columns, rows and slices, as in --crop 0:256,0:256,10:90");
+    return crop;
+}
+
 // Volume, labels, what is computed from them, the sections and the file's bytes, the most that lie side by side.
 void say_memory(double voxels, double bytes_a_voxel) {
-    std::fprintf(stderr, "%.0f million voxels; about %.1f GB of memory are needed\n", 1e-6 * voxels,
-                 1e-9 * voxels * bytes_a_voxel);
+    std::fprintf(stderr, "%.0f million voxels; about %.0f MB of memory are needed\n", 1e-6 * voxels,
+                 1e-6 * voxels * bytes_a_voxel);
 }
 
 BoneInput drill_made(const DrillSettings& o, Console& console) {
@@ -44,11 +84,39 @@ BoneInput drill_made(const DrillSettings& o, Console& console) {
     return input;
 }
 
-void drill(const DrillSettings& o) {
-    check_target("write scene", o.scene, {});
+BoneInput drill_scan(const DrillSettings& o, Console& console) {
+    BoneImport settings = o.import;
+    settings.scan = o.scan;
+    settings.labels = o.labels;
+    settings.label_names = o.label_names;
+    settings.threshold = o.threshold;
+    settings.solid = o.solid;
+    if (!o.crop.empty()) settings.crop = parse_crop(o.crop);
+    settings.unit_mm = drill_value(kDrillUnits, o.unit);
+    settings.face = drill_value(kDrillFaces, o.face);
+    if (o.spacing_mm.size() == 1 || o.spacing_mm.size() == 3)
+        for (std::size_t a = 0; a < 3; ++a)
+            settings.spacing_mm[static_cast<int>(a)] = o.spacing_mm[o.spacing_mm.size() == 1 ? 0 : a];
+    else if (!o.spacing_mm.empty())
+        throw StartupError("--spacing-mm", "there are two numbers",
+                           "give one, or one for columns, rows and slices");
+    for (std::size_t c = 0; c < 3 && o.bone_colour.size() == 3; ++c)
+        settings.bone_colour[c] = static_cast<std::uint8_t>(o.bone_colour[c]);
+    settings.announce = [](double voxels, double bytes) { say_memory(voxels, bytes / voxels); };
+    settings.warn = [&console](const std::string& line) {
+        console.clear();
+        std::fprintf(stderr, "warning: %s\n", line.c_str());
+    };
+    return import_bone(settings, console.progress());
+}
+
+void drill(const DrillSettings& o, bool made) {
+    if (!made && o.scan.empty())
+        throw StartupError("tact-prep drill", "there is no scan", "give a file or a folder, or --synthetic");
+    check_target("write scene", o.scene, {o.scan, o.labels, o.label_names});
     const auto started = std::chrono::steady_clock::now();
     Console console;
-    BoneInput input = drill_made(o, console);
+    BoneInput input = made ? drill_made(o, console) : drill_scan(o, console);
     input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
     const BoneBricks bricks = input.bone.bricks;
     const std::size_t structures = input.bone.structure.size();
@@ -77,19 +145,65 @@ void drill(const DrillSettings& o) {
 }  // namespace
 
 void add_drill(CLI::App& app, CLI::App& demo) {
-    static_cast<void>(app);
     const auto o = std::make_shared<DrillSettings>();
+    const auto both = [&](CLI::App* sub) {
+        sub->add_option("-o,--output", o->scene, "the scene to write")->required();
+        sub->add_option("--voxels", o->made.voxels, "of the synthetic bone along each axis")
+            ->check(CLI::Range(16U, 1024U))
+            ->capture_default_str();
+        sub->add_option("--seed", o->made.seed, "of the synthetic bone's air cells and roughness")
+            ->capture_default_str();
+        sub->add_option("--voxel-mm", o->made_voxel_mm,
+                        "edge of a voxel; if absent the scan's finest, and the synthetic bone is 50 mm wide")
+            ->check(CLI::Range(0.001, 100.0));
+        sub->add_flag("--json", o->json, "print what was baked as JSON");
+    };
+    CLI::App* const from_scan = app.add_subcommand("drill", "bone to drill, from a CT scan");
+    from_scan->add_option(
+        "scan", o->scan, "a folder of DICOM files or of PNG pictures, or NRRD, NIfTI or MetaImage, also .gz");
+    from_scan->add_flag("--synthetic", o->synthetic, "no scan: a temporal bone made here, as demo drill");
+    from_scan->add_option("--labels", o->labels,
+                          "which structure each voxel is of: NRRD, NIfTI or MetaImage");
+    from_scan->add_option("--label-names", o->label_names,
+                          "what they are called: a list as ITK-SNAP writes it");
+    from_scan->add_option(
+        "--critical", o->import.critical,
+        "words in the names of structures to keep away from, besides nerve, sinus, dura, artery, ...");
+    from_scan->add_option(
+        "--threshold-hu", o->threshold,
+        "no bone here and below, in the file's values where they are not HU; 300 HU if absent");
+    from_scan->add_option("--solid-hu", o->solid, "solid bone here and above; 1800 HU if absent");
+    from_scan->add_option(
+        "--crop", o->crop,
+        "first:end of columns, rows and slices, counted from 0, slices by position: 0:256,0:256,10:90");
+    from_scan->add_option("--series", o->import.series,
+                          "which DICOM series, where there are several: 1, 2, ...");
+    from_scan->add_option("--unit", o->unit, "of lengths in files that do not say: m, cm, mm or um")
+        ->check(CLI::IsMember(drill_names(kDrillUnits)))
+        ->capture_default_str();
+    from_scan
+        ->add_option("--spacing-mm", o->spacing_mm,
+                     "of PNG pictures: between columns, rows and slices, or one for all")
+        ->delimiter(',')
+        ->check(CLI::Range(0.001, 100.0));
+    from_scan
+        ->add_option("--bone-colour", o->bone_colour, "of PNG pictures in colour: red,green,blue of bone")
+        ->delimiter(',')
+        ->expected(3)
+        ->check(CLI::Range(0U, 255U));
+    from_scan
+        ->add_option("--face", o->face,
+                     "the patient's side that looks at the user: front, back, left, right, top or bottom")
+        ->check(CLI::IsMember(drill_names(kDrillFaces)))
+        ->capture_default_str();
+    both(from_scan);
+    from_scan->callback([o] {
+        o->import.voxel_mm = o->made_voxel_mm;
+        drill(*o, o->synthetic);
+    });
     CLI::App* const made = demo.add_subcommand("drill", "a temporal bone of the right side");
-    made->add_option("-o,--output", o->scene, "the scene to write")->required();
-    made->add_option("--voxels", o->made.voxels, "along each axis")
-        ->check(CLI::Range(16U, 1024U))
-        ->capture_default_str();
-    made->add_option("--voxel-mm", o->made_voxel_mm, "edge of one; 0: the whole is 50 mm wide")
-        ->check(CLI::Range(0.0, 10.0))
-        ->capture_default_str();
-    made->add_option("--seed", o->made.seed, "of the air cells and the roughness")->capture_default_str();
-    made->add_flag("--json", o->json, "print what was baked as JSON");
-    made->callback([o] { drill(*o); });
+    both(made);
+    made->callback([o] { drill(*o, true); });
 }
 
 }  // namespace tact

@@ -23,3 +23,5 @@ add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(save_pairs_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_test(unit/prep_volume_test.cpp USES prep_volume prep_synthetic assets)
+find_package(PNG REQUIRED)
+tact_test(unit/prep_scan_test.cpp USES prep_volume SYSTEM PNG::PNG ZLIB::ZLIB)

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "ipc/base/error.hpp"
+#include "prep/volume/dicom.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kVolumeSlices = 8;  // fewer are a planning view
+constexpr double kUneven = 0.01, kMissing = 1.5, kTiltRad = 2e-3;
+
+bool same_picture(const DicomSlice& a, const DicomSlice& b) {
+    return a.series_uid == b.series_uid && a.columns == b.columns && a.rows == b.rows &&
+           a.placed == b.placed && (a.along_row - b.along_row).norm() < 1e-3 &&
+           (a.down_rows - b.down_rows).norm() < 1e-3 && std::abs(a.column_mm - b.column_mm) < 1e-3 &&
+           std::abs(a.row_mm - b.row_mm) < 1e-3;
+}
+
+using DicomGroup = std::vector<DicomSlice>;
+
+std::string told(const DicomGroup& g) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%.16s, series number %d, %zu slices of %u x %u pixels of %.3g mm",
+                  g[0].modality.c_str(), g[0].series_number, g.size(), g[0].columns, g[0].rows,
+                  g[0].column_mm);
+    return text;
+}
+
+DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::string& attempt, Scan& scan) {
+    std::string list;
+    for (std::size_t i = 0; i < groups.size() && i < 40; ++i)
+        list += "\n  " + std::to_string(i + 1) + ": " + told(groups[i]);
+    if (series > groups.size())
+        throw StartupError(attempt, "there is no series " + std::to_string(series) + " among these:" + list,
+                           "choose one with --series");
+    if (series > 0) return std::move(groups[series - 1]);
+    if (groups.size() == 1) return std::move(groups[0]);
+    std::size_t volumes = 0, chosen = 0;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        if (groups[i].size() < kVolumeSlices || !groups[i][0].placed) continue;
+        ++volumes;
+        chosen = i;
+    }
+    if (volumes != 1)
+        throw StartupError(attempt,
+                           "there are " + std::to_string(groups.size()) +
+                               " series, or pictures of several sizes or directions:" + list,
+                           "choose one with --series");
+    scan.note.push_back("series: " + std::to_string(chosen + 1) + " of " + std::to_string(groups.size()) +
+                        ", the only one that is a volume");
+    return std::move(groups[chosen]);
+}
+
+void check_pictures(const DicomGroup& g, const std::string& attempt) {
+    const auto fail = [&](const std::string& why, const char* mend) {
+        throw StartupError(attempt, why, mend);
+    };
+    for (const DicomSlice& s : g) {
+        const std::string name = s.path.filename().string();
+        if (s.frames > 1)
+            fail(name + " has " + std::to_string(s.frames) + " frames in one file, which is not read",
+                 "save the series as one file a slice, or as NRRD or NIfTI");
+        if (!s.placed)
+            fail(name + " does not say where its slice lies (image position, orientation, pixel spacing)",
+                 "export the original slices again, with their positions");
+        if (s.samples != 1 || s.photometric != "MONOCHROME2")
+            fail(name + " is a picture of kind \"" + s.photometric.substr(0, 16) + "\", not of grey values",
+                 "choose the series of original slices with --series");
+        if (!(s.slope != 0.0 && std::isfinite(s.slope) && std::isfinite(s.intercept)))
+            fail(name + ": its slope and intercept cannot be", "export the series again");
+    }
+    if (g.size() < 2) fail("there is one slice alone", "give the folder with all slices of the series");
+}
+
+void check_gaps(const DicomGroup& g, const Eigen::Matrix3d& axes, const std::string& attempt, Scan& scan) {
+    std::vector<double> gap;
+    for (std::size_t i = 0; i + 1 < scan.slice.size(); ++i)
+        gap.push_back(scan.slice[i + 1].s_mm - scan.slice[i].s_mm);
+    std::vector<double> sorted = gap;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    const double typical = sorted[sorted.size() / 2];
+    char text[240];
+    std::size_t missing = 0;
+    std::string where;
+    for (std::size_t i = 0; i < gap.size(); ++i) {
+        if (gap[i] < 1e-3 || gap[i] < 0.02 * typical)
+            throw StartupError(attempt,
+                               g[i].path.filename().string() + " and " + g[i + 1].path.filename().string() +
+                                   " lie at the same place: the series holds several scans",
+                               "keep one of them in the folder");
+        if (gap[i] < kMissing * typical) continue;
+        missing += static_cast<std::size_t>(std::lround(gap[i] / typical)) - 1;
+        if (where.size() < 120) {
+            std::snprintf(text, sizeof text, "%s%.2f and %.2f mm", where.empty() ? "" : ", ",
+                          scan.slice[i].s_mm, scan.slice[i + 1].s_mm);
+            where += text;
+        }
+    }
+    if (missing > 0) {
+        std::snprintf(text, sizeof text, "%zu slices are missing; they are %.3g mm apart, but not between ",
+                      missing, typical);
+        throw StartupError(attempt, text + where, "add them, or move the slices on one side of the gap away");
+    }
+    const auto [low, high] = std::minmax_element(gap.begin(), gap.end());
+    if (*high - *low > kUneven * typical) {
+        std::snprintf(text, sizeof text, "slices are %.4g to %.4g mm apart: resampled between them", *low,
+                      *high);
+        scan.warning.emplace_back(text);
+    }
+    const Vec3 way = axes.transpose() * (g.back().position_mm - g.front().position_mm);
+    const double tilt = std::atan2(std::hypot(way.x(), way.y()), way.z());
+    if (tilt > kTiltRad) {
+        std::snprintf(text, sizeof text,
+                      "the gantry was tilted by %.1f degrees: each slice is taken from where it is",
+                      tilt * 57.29577951308232);
+        scan.warning.emplace_back(text);
+        if (tilt > 0.6)
+            throw StartupError(attempt, "slices are shifted against each other by " + std::string(text + 22),
+                               "export the original slices again");
+    }
+}
+
+// Words in the names of cone-beam scanners and their makers.
+bool cone_beam(const std::string& maker) {
+    for (const char* word :
+         {"cbct",     "cone",    "newtom",          "i-cat",    "icat",   "imaging sciences",
+          "planmeca", "promax",  "accuitomo",       "veraview", "morita", "carestream",
+          "cs 9",     "sirona",  "galileos",        "vatech",   "kavo",   "orthophos",
+          "scanora",  "soredex", "instrumentarium", "gendex",   "xcat",   "minicat"})
+        if (maker.find(word) != std::string::npos) return true;
+    return false;
+}
+
+}  // namespace
+
+Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt) {
+    if (slices.empty())
+        throw StartupError(attempt, "there is no DICOM picture in it",
+                           "give the folder of a series, or another format");
+    // The same list in whatever order the folder is read.
+    std::sort(slices.begin(), slices.end(), [](const DicomSlice& a, const DicomSlice& b) {
+        return std::tie(a.series_number, a.series_uid, a.path) <
+               std::tie(b.series_number, b.series_uid, b.path);
+    });
+    std::vector<DicomGroup> groups;
+    for (DicomSlice& s : slices) {
+        const auto found = std::find_if(groups.begin(), groups.end(),
+                                        [&](const DicomGroup& g) { return same_picture(g[0], s); });
+        if (found != groups.end())
+            found->push_back(std::move(s));
+        else
+            groups.emplace_back().push_back(std::move(s));
+    }
+    Scan scan;
+    DicomGroup g = choose(std::move(groups), series, attempt, scan);
+    check_pictures(g, attempt);
+    const Vec3 u = g[0].along_row, v = g[0].down_rows, n = u.cross(v).normalized();
+    std::sort(g.begin(), g.end(), [&](const DicomSlice& a, const DicomSlice& b) {
+        return a.position_mm.dot(n) < b.position_mm.dot(n);
+    });
+    // The geometry's own checks, on the first two axes; slices are placed by what each says.
+    const double rise = std::max(1e-3, (g[1].position_mm - g[0].position_mm).dot(n));
+    std::vector<std::uint32_t> order;
+    Scan shape = scan_of({{g[0].columns, g[0].rows, g.size()},
+                          {g[0].column_mm * u, g[0].row_mm * v, std::min(rise, 100.0) * n},
+                          g[0].position_mm,
+                          true},
+                         attempt, order);
+    shape.note = std::move(scan.note);
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const Vec3 at = shape.axes.transpose() * (g[i].position_mm - g[0].position_mm);
+        shape.slice[i] = {at.x(), at.y(), at.z()};
+    }
+    check_gaps(g, shape.axes, attempt, shape);
+    shape.format = "DICOM";
+    const bool hounsfield = g[0].modality == "CT" && (g[0].rescale_type.empty() || g[0].rescale_type == "HU");
+    shape.values = hounsfield ? ScanValues::hounsfield : ScanValues::number;
+    if (cone_beam(g[0].maker))
+        shape.warning.emplace_back(
+            "it is from a cone-beam scanner: its values are no true Hounsfield units, so look at the bone "
+            "and "
+            "choose --threshold-hu and --solid-hu by eye");
+    auto kept = std::make_shared<const DicomGroup>(std::move(g));
+    shape.read = [kept](std::uint32_t slice, std::span<float> pixels) {
+        read_dicom_pixels(kept->at(slice), pixels);
+    };
+    return shape;
+}
+
+}  // namespace tact

@@ -1,0 +1,129 @@
+#include "prep/volume/png_stack.hpp"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kStackMax = Scan::kEdgeMax;
+
+struct PngPicture {
+    png_image image{};
+    PngPicture(const fs::path& path, const std::string& attempt) {
+        image.version = PNG_IMAGE_VERSION;
+        if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
+            throw StartupError(attempt, path.filename().string() + ": " + image.message,
+                               "export the pictures again");
+    }
+    PngPicture(const PngPicture&) = delete;
+    PngPicture& operator=(const PngPicture&) = delete;
+    ~PngPicture() { png_image_free(&image); }
+};
+
+}  // namespace
+
+std::vector<std::string> stack_order(std::vector<std::string> names, const std::string& attempt) {
+    const auto fail = [&](const std::string& why) {
+        throw StartupError(attempt, why, "give a folder of pictures of one stack, numbered without gaps");
+    };
+    std::map<std::uint64_t, std::string> by_number;
+    std::string word;
+    for (std::string& name : names) {
+        if (name.size() < 5 || !(name.ends_with(".png") || name.ends_with(".PNG"))) continue;
+        const std::size_t end = name.size() - 4;
+        std::size_t begin = end;
+        while (begin > 0 && name[begin - 1] >= '0' && name[begin - 1] <= '9') --begin;
+        if (begin == end || end - begin > 9) fail(name + " has no number before .png, or a very long one");
+        if (by_number.empty()) word = name.substr(0, begin);
+        if (name.compare(0, begin, word) != 0 || begin != word.size())
+            fail("pictures of two names are in it: " + by_number.begin()->second + " and " + name);
+        const std::uint64_t number = std::stoull(name.substr(begin, end - begin));
+        const auto [at, fresh] = by_number.emplace(number, name);
+        if (!fresh) fail(at->second + " and " + name + " have the same number");
+        if (by_number.size() > kStackMax)
+            fail("there are more than " + std::to_string(kStackMax) + " pictures");
+    }
+    if (by_number.empty()) fail("there is no .png picture in it");
+    std::vector<std::string> order;
+    std::uint64_t expected = by_number.begin()->first;
+    for (auto& [number, name] : by_number) {
+        if (number != expected)
+            fail("slices are missing: after number " + std::to_string(expected - 1) + " comes " +
+                 std::to_string(number));
+        ++expected;
+        order.push_back(std::move(name));
+    }
+    return order;
+}
+
+PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
+    const std::string attempt = "read the pictures in " + folder.string();
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+    names = stack_order(std::move(names), attempt);
+    PngStack stack;
+    ScanAxes axes;
+    bool colour = false;
+    {
+        const PngPicture first(folder / names[0], attempt);
+        axes.size = {first.image.width, first.image.height, names.size()};
+        colour = (first.image.format & (PNG_FORMAT_FLAG_COLOR | PNG_FORMAT_FLAG_COLORMAP)) != 0;
+    }
+    for (int a = 0; a < 3; ++a) axes.step_mm[static_cast<std::size_t>(a)][a] = spacing_mm[a];
+    std::vector<std::uint32_t> order;
+    stack.scan = scan_of(axes, attempt, order);
+    stack.scan.format = colour ? "PNG pictures, a colour a structure" : "PNG pictures, grey";
+    stack.scan.values = colour ? ScanValues::label : ScanValues::grey;
+    if (colour) stack.palette = std::make_shared<StackPalette>();
+    stack.scan.read = [folder, attempt, names = std::move(names), palette = stack.palette,
+                       wide = stack.scan.columns,
+                       high = stack.scan.rows](std::uint32_t slice, std::span<float> pixels) {
+        const std::string& name = names.at(slice);
+        PngPicture picture(folder / name, attempt);
+        if (picture.image.width != wide || picture.image.height != high)
+            throw StartupError(attempt,
+                               name + " is " + std::to_string(picture.image.width) + " x " +
+                                   std::to_string(picture.image.height) + " pixels, others are " +
+                                   std::to_string(wide) + " x " + std::to_string(high),
+                               "give a folder of pictures of one stack");
+        picture.image.format = palette ? PNG_FORMAT_RGBA : PNG_FORMAT_GRAY;
+        std::vector<png_byte> bytes(PNG_IMAGE_SIZE(picture.image));
+        if (png_image_finish_read(&picture.image, nullptr, bytes.data(), 0, nullptr) == 0)
+            throw StartupError(attempt, name + ": " + picture.image.message, "export the pictures again");
+        if (!palette) {
+            std::copy(bytes.begin(), bytes.end(), pixels.begin());
+            return;
+        }
+        std::uint32_t last = 0;
+        float last_number = -1.0F;
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            std::uint32_t bits = 0;
+            std::memcpy(&bits, bytes.data() + 4 * i, 4);
+            if (last_number < 0.0F || bits != last) {
+                std::array<std::uint8_t, 4> rgba;
+                std::memcpy(rgba.data(), &bits, 4);
+                if (rgba[3] == 0) rgba = {};  // what cannot be seen has no colour
+                const auto found = std::find(palette->rgba.begin(), palette->rgba.end(), rgba);
+                if (found == palette->rgba.end() && palette->rgba.size() == 256)
+                    throw StartupError(attempt,
+                                       name + ": there are more than 256 colours, so they are no labels",
+                                       "save labels without smoothing, or a grey picture");
+                last = bits;
+                last_number = static_cast<float>(found - palette->rgba.begin());
+                if (found == palette->rgba.end()) palette->rgba.push_back(rgba);
+            }
+            pixels[i] = last_number;
+        }
+    };
+    return stack;
+}
+
+}  // namespace tact

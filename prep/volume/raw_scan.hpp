@@ -1,0 +1,47 @@
+// Scans in one piece, as NRRD, MetaImage and NIfTI files hold them: a header, then numbers, plain or packed.
+//
+// Memory    plain numbers are mapped where they lie; packed ones are unpacked whole, at the most kScanBytesMax. What a
+//           header declares is compared with the bytes that are there before any memory is taken.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "prep/input/input_bytes.hpp"
+#include "prep/volume/scan.hpp"
+
+namespace tact {
+
+inline constexpr std::uint64_t kScanBytesMax = std::uint64_t{4} << 30;
+
+enum class RawType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+enum class RawPacking : std::uint8_t { plain, deflate };  // zlib or gzip, whichever is there
+
+struct RawHeader {
+    ScanAxes axes;
+    RawType type = RawType::i16;
+    bool big_endian = false;
+    RawPacking packing = RawPacking::plain;
+    std::uint64_t offset = 0;  // of the numbers in their file
+    bool from_end = false;     // the numbers are the last of the file, wherever that is
+    double slope = 1.0, intercept = 0.0;
+    std::string data_file;  // in the header's folder; empty: the same file
+    std::vector<ScanLabel> label;
+};
+
+// Of a header alone, for tests and fuzzing: it throws StartupError or the header can be used. `unit_mm`: what a
+// length in the file is, where the file does not say.
+RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double unit_mm);
+RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, double unit_mm);
+RawHeader nifti_header(std::string_view bytes, const std::string& attempt, double unit_mm);
+
+using RawHeaderReader = RawHeader (*)(std::string_view, const std::string&, double);
+Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHeaderReader reader,
+                   double unit_mm);
+// The numbers of a scan whose header is known; `bytes` lives as long as `owner`.
+Scan raw_scan(RawHeader header, std::string_view bytes, std::shared_ptr<const void> owner,
+              const std::string& attempt);
+
+}  // namespace tact

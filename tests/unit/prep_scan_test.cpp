@@ -1,0 +1,510 @@
+// Readers of scans: the same bone out of every format and axis order, and what is wrong is said.
+#include <gtest/gtest.h>
+#include <png.h>
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "ipc/base/error.hpp"
+#include "prep/volume/import_bone.hpp"
+#include "prep/volume/png_stack.hpp"
+#include "tests/support/says.hpp"
+#include "tests/unit/prep_scan_samples.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+using sample::ScanFolder;
+
+std::string numbered(std::string name, int number, const char* ending = "") {
+    name += std::to_string(number);
+    name += ending;
+    return name;
+}
+
+template <class Call>
+std::string told(Call&& call) {
+    try {
+        call();
+    } catch (const StartupError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+BoneImport of(const fs::path& scan) {
+    BoneImport o;
+    o.scan = scan;
+    return o;
+}
+std::string refusal(const BoneImport& o) {
+    return told([&] { (void)import_bone(o); });
+}
+
+// The front of the patient to the user: x to their left, y up, z forward.
+void expect_bone(const BoneData& bone) {
+    ASSERT_EQ(bone.bricks.size, (std::array<std::uint32_t, 3>{sample::kLeft, sample::kUp, sample::kBack}));
+    EXPECT_NEAR(bone.bricks.voxel_m, 1e-3, 1e-9);
+    for (int l = 0; l < sample::kLeft; ++l)
+        for (int b = 0; b < sample::kBack; ++b)
+            for (int u = 0; u < sample::kUp; ++u)
+                ASSERT_EQ(bone.density[bone.bricks.voxel(static_cast<std::uint32_t>(l),
+                                                         static_cast<std::uint32_t>(u),
+                                                         static_cast<std::uint32_t>(sample::kBack - 1 - b))],
+                          sample::bone_density(l, b, u))
+                    << l << ' ' << b << ' ' << u;
+}
+BoneImport hu(BoneImport o) {  // no voxel of the bone is air, so its unit has to be told
+    o.threshold = 300.0;
+    o.solid = 1800.0;
+    return o;
+}
+
+std::string gzip(const std::string& plain) {
+    std::string out(plain.size() + 200, '\0');
+    z_stream z{};
+    deflateInit2(&z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
+    z.avail_in = static_cast<uInt>(plain.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    return out;
+}
+
+const std::string kNrrd = "NRRD0004\n# a remark\ntype: short\ndimension: 3\nendian: little\n";
+
+TEST(Scans, NrrdInAnyAxisOrderIsTheSameBone) {
+    const ScanFolder f;
+    expect_bone(import_bone(hu(of(f.write("a.nrrd", kNrrd +
+                                                        "sizes: 6 5 4\nspace: left-posterior-superior\n"
+                                                        "space directions: (1,0,0) (0,1,0) (0,0,1)\n"
+                                                        "space origin: (1,2,3)\nencoding: raw\n\n" +
+                                                        sample::bone_numbers({0, 1, 2})))))
+                    .bone);
+    // Up first, then right, then front, and packed: every axis is another, two are reversed.
+    expect_bone(import_bone(hu(of(f.write("b.nrrd", kNrrd +
+                                                        "sizes: 4 6 5\nspace: RAS\n"
+                                                        "space directions: (0,0,1) (1,0,0) (0,1,0)\n"
+                                                        "encoding: gzip\n\n" +
+                                                        gzip(sample::bone_numbers({2, 3, 4}))))))
+                    .bone);
+    f.write("c.raw", "skip" + sample::bone_numbers({0, 4, 5}));
+    expect_bone(
+        import_bone(hu(of(f.write("c.nhdr", kNrrd + "sizes: 6 5 4\nspace: lps\n"
+                                                    "space directions: (1,0,0) (0,-1,0) (0,0,-1)\n"
+                                                    "encoding: raw\nbyte skip: 4\ndata file: c.raw\n\n"))))
+            .bone);
+}
+
+TEST(Scans, MetaImagePlainPackedAndOfTheOtherByteOrder) {
+    const ScanFolder f;
+    const std::string head =
+        "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 6 5 4\n"
+        "ElementSpacing = 1 1 1\nElementType = MET_SHORT\n";
+    expect_bone(import_bone(hu(of(f.write("a.mha", head + "ElementDataFile = LOCAL\n" +
+                                                       sample::bone_numbers({0, 1, 2})))))
+                    .bone);
+    expect_bone(import_bone(hu(of(f.write("b.mha",
+                                          head +
+                                              "CompressedData = True\nTransformMatrix = -1 0 0 0 1 0 0 0 -1\n"
+                                              "Offset = 5 0 3\nElementDataFile = LOCAL\n" +
+                                              gzip(sample::bone_numbers({3, 1, 5}))))))
+                    .bone);
+    f.write("c.raw", sample::bone_numbers({0, 1, 2}, true));
+    expect_bone(import_bone(hu(of(f.write(
+                                "c.mhd", head + "BinaryDataByteOrderMSB = True\nElementDataFile = c.raw\n"))))
+                    .bone);
+}
+
+std::string nifti(bool big, bool sform, const std::string& numbers) {
+    std::string h(352, '\0');
+    const auto at = [&](std::size_t offset, auto value) {
+        std::string raw;
+        sample::put(raw, value, big);
+        std::memcpy(h.data() + offset, raw.data(), raw.size());
+    };
+    at(0, std::int32_t{348});
+    const std::int16_t dim[] = {3, 6, 5, 4, 1, 1, 1, 1};
+    for (std::size_t i = 0; i < 8; ++i) at(40 + 2 * i, dim[i]);
+    at(70, std::int16_t{4});
+    at(72, std::int16_t{16});
+    for (std::size_t i = 0; i < 4; ++i) at(76 + 4 * i, 1.0F);
+    at(108, 352.0F);
+    h[123] = 2;
+    if (sform) {  // columns to the right, rows to the front, slices up
+        at(254, std::int16_t{1});
+        for (std::size_t i = 0; i < 3; ++i) at(280 + 20 * i, 1.0F);
+    } else {  // half a turn about the way up: to the left, to the back, up
+        at(252, std::int16_t{1});
+        at(264, 1.0F);
+    }
+    std::memcpy(h.data() + 344, "n+1", 4);
+    return h + numbers;
+}
+
+TEST(Scans, NiftiByMatrixAndByQuaternion) {
+    const ScanFolder f;
+    expect_bone(
+        import_bone(hu(of(f.write("a.nii", nifti(false, true, sample::bone_numbers({3, 4, 2})))))).bone);
+    expect_bone(import_bone(hu(of(f.write("b.nii.gz",
+                                          gzip(nifti(true, false, sample::bone_numbers({0, 1, 2}, true)))))))
+                    .bone);
+}
+
+TEST(Scans, WhatAHeaderDeclaresIsComparedWithWhatIsThere) {
+    const ScanFolder f;
+    const auto nrrd = [&](const std::string& fields) {
+        return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
+    };
+    const std::string unit = "\nspacings: 1 1 1\nencoding: raw";
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "mend:"}));
+    EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "mend: crop"}));
+    EXPECT_TRUE(says(nrrd("sizes: 99999 5 4" + unit), {"99999 x 5 x 4", "8192"}));
+    EXPECT_TRUE(says(nrrd("sizes: 1000 1000 1000\nspacings: 1 1 1\nencoding: gzip"),
+                     {"than 3 packed ones can hold"}));
+    EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"no whole number"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5" + unit), {"axes"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"how far its voxels are apart"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"no number"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 0 1\nencoding: raw"), {"axis 1", "--unit"}));
+    EXPECT_TRUE(
+        says(nrrd("sizes: 6 5 4\nencoding: raw\nspace: lps\nspace directions: (1,0,0) (1,1,0) (0,0,1)"),
+             {"right angles"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 1 1\nencoding: bzip2"), {"bzip2"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\ndata file: ../../etc/passwd"),
+                     {"one file"}));
+    EXPECT_TRUE(says(refusal(of(f.write("y.mha", "NDims = 3\nDimSize = 6 5 4\nElementDataFile = LOCAL\n"))),
+                     {"ElementSpacing"}));
+    EXPECT_TRUE(says(refusal(of(f.write("z.nii", std::string(400, 'x')))), {"NIfTI-1"}));
+    EXPECT_TRUE(says(refusal(of(f.write("z.txt", "hello"))), {"no format that is known", ".nrrd"}));
+    EXPECT_TRUE(says(refusal(of(f.path / "absent.nrrd")), {"does not exist"}));
+}
+
+TEST(Scans, ValuesOfAnUnknownKindAreNotGuessed) {
+    const ScanFolder f;
+    const fs::path file = f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
+                                                sample::bone_numbers({0, 1, 2}));
+    EXPECT_TRUE(says(refusal(of(file)), {"unknown kind", "--threshold-hu"}));
+    BoneImport o = hu(of(file));
+    EXPECT_TRUE(std::isnan(import_bone(o).bone.hu_at_0));
+    o.solid = 200.0;
+    EXPECT_TRUE(says(refusal(o), {"threshold is 300"}));
+}
+
+TEST(Scans, CropVoxelAndMemoryAreHeeded) {
+    const ScanFolder f;
+    BoneImport o = hu(of(f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
+                                               sample::bone_numbers({0, 1, 2}))));
+    double voxels = 0.0, bytes = 0.0;
+    o.announce = [&](double v, double b) {
+        voxels = v;
+        bytes = b;
+    };
+    o.crop = ScanCrop{{1, 2, 1}, {4, 5, 3}};
+    const BoneData cropped = import_bone(o).bone;
+    ASSERT_EQ(cropped.bricks.size, (std::array<std::uint32_t, 3>{3, 2, 3}));
+    EXPECT_EQ(cropped.density[cropped.bricks.voxel(0, 0, 2)], sample::bone_density(1, 2, 1));
+    EXPECT_EQ(voxels, 512.0);
+    EXPECT_GE(bytes, 1024.0);
+    o.crop = ScanCrop{{1, 2, 1}, {4, 6, 3}};
+    EXPECT_TRUE(says(refusal(o), {"rows 2:6", "0:5"}));
+    o.crop.reset();
+    o.voxel_mm = 0.5;
+    const BoneData fine = import_bone(o).bone;  // densities are linear along each axis, and stay so
+    ASSERT_EQ(fine.bricks.size, (std::array<std::uint32_t, 3>{11, 7, 9}));
+    EXPECT_NEAR(fine.density[fine.bricks.voxel(3, 5, 8 - 3)], 1 + 1.5 + 6 * 1.5 + 30 * 2.5, 1.0);
+    o.voxel_mm = 2.0;
+    const BoneData coarse = import_bone(o).bone;
+    ASSERT_EQ(coarse.bricks.size, (std::array<std::uint32_t, 3>{3, 2, 3}));
+    EXPECT_NEAR(coarse.density[coarse.bricks.voxel(1, 1, 2 - 1)], sample::bone_density(2, 2, 2), 9.0);
+    o.voxel_mm = 0.001;
+    EXPECT_TRUE(says(refusal(o), {"voxels long", "--voxel-mm", "--crop"}));
+    o.voxel_mm = 0.0;
+    EXPECT_THROW((void)import_bone(o, [](double, const char*) { return false; }), Cancelled);
+}
+
+void write_series(const ScanFolder& f, std::initializer_list<int> slices, const std::string& name = "s") {
+    for (const int u : slices)  // names in another order than places
+        f.write(numbered(name, 9 - u, ".dcm"), sample::dicom_bytes(sample::bone_slice(u)));
+}
+
+TEST(Dicom, SlicesAreSortedByPlaceAndScaledToHounsfieldUnits) {
+    const ScanFolder f;
+    write_series(f, {0, 1, 2, 3});
+    f.write("notes.txt", "no picture");
+    std::string broken(200, '\0');
+    std::memcpy(broken.data() + 128, "DICM", 4);
+    f.write("broken.dcm", broken);
+    const BoneInput input = import_bone(of(f.path));
+    expect_bone(input.bone);
+    EXPECT_EQ(input.bone.hu_at_0, 300.0F);
+    expect_bone(import_bone(of(f.path / "s9.dcm")).bone);  // one of its files stands for the series
+}
+
+TEST(Dicom, NothingOfThePersonGoesOn) {
+    const ScanFolder f;
+    write_series(f, {0, 1, 2, 3}, "Doe^Jane-");
+    std::vector<std::string> warned;
+    BoneImport o = of(f.path);
+    o.warn = [&](const std::string& line) { warned.push_back(line); };
+    BoneInput input = import_bone(o);
+    SceneWriter out;
+    (void)bake_bone(std::move(input), out);
+    const std::vector<std::byte> bytes = out.to_bytes();
+    const std::string all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (const char* secret : {"Doe", "Jane", "4711", "Secrets", "1971", "1950", "tact-scan"})
+        EXPECT_EQ(all.find(secret), std::string::npos) << secret;
+    EXPECT_TRUE(warned.empty());
+}
+
+TEST(Dicom, MissingDoubledAndBrokenSlicesAreNamed) {
+    {
+        const ScanFolder f;
+        for (int u = 0; u < 8; ++u)
+            if (u != 3 && u != 4) f.write(numbered("s", u), sample::dicom_bytes(sample::bone_slice(u)));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"2 slices are missing", "2.00 and 5.00 mm", "mend:"}));
+    }
+    {
+        const ScanFolder f;
+        write_series(f, {0, 1, 2});
+        write_series(f, {1}, "again");
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s8.dcm", "again8.dcm", "same place"}));
+    }
+    {
+        const ScanFolder f;
+        write_series(f, {0, 1, 2, 3});
+        const std::string whole = sample::dicom_bytes(sample::bone_slice(2));
+        f.write("s7.dcm", whole.substr(0, whole.size() - 30));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "cut short"}));
+    }
+    const ScanFolder f;
+    EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM picture"}));
+    write_series(f, {0});
+    EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
+}
+
+TEST(Dicom, OfSeveralSeriesOneIsChosenOrAllAreListed) {
+    const ScanFolder f;
+    write_series(f, {0, 1, 2, 3});
+    for (int u = 0; u < 3; ++u) {
+        sample::DicomSample other = sample::bone_slice(u);
+        other.series = 2;
+        other.series_uid = "1.2.3.2";
+        f.write(numbered("other", u), sample::dicom_bytes(other));
+    }
+    EXPECT_TRUE(
+        says(refusal(of(f.path)), {"2 series", "1: CT, series number 1, 4 slices", "2: CT", "--series"}));
+    BoneImport o = of(f.path);
+    o.series = 1;
+    expect_bone(import_bone(o).bone);
+    o.series = 3;
+    EXPECT_TRUE(says(refusal(o), {"no series 3"}));
+    // A planning view beside a volume needs no choice.
+    const ScanFolder g;
+    for (int u = 0; u < 9; ++u) g.write(numbered("v", u), sample::dicom_bytes(sample::bone_slice(u)));
+    sample::DicomSample wide = sample::bone_slice(0);
+    wide.columns = 5;
+    wide.rows = 6;
+    g.write("scout", sample::dicom_bytes(wide));
+    const BoneInput chosen = import_bone(of(g.path));
+    EXPECT_NE(
+        std::find_if(chosen.note.begin(), chosen.note.end(),
+                     [](const std::string& l) { return l.find("of 2, the only one") != std::string::npos; }),
+        chosen.note.end());
+}
+
+TEST(Dicom, UnevenSlicesAndATiltedGantryAreSaidAndEachSliceIsTakenFromWhereItIs) {
+    // A bone that is denser upwards and backwards: 20 + 4 z + 6 y, whatever slices see of it.
+    const auto at = [](double y, double z) { return 20.0 + 4.0 * z + 6.0 * y; };
+    for (const bool tilted : {false, true}) {
+        const ScanFolder f;
+        int i = 0;
+        for (const double z : {0.0, 1.0, 2.2, 3.2, 4.0, 5.0}) {
+            const double place = tilted ? i : z, shift = tilted ? 0.2 * place : 0.0;
+            sample::DicomSample s =
+                sample::dicom_slice(place, [&](int, int b) { return at(b + shift, place); });
+            s.position.y() += shift;
+            f.write(numbered("s", i++), sample::dicom_bytes(s));
+        }
+        BoneImport o = of(f.path);
+        o.voxel_mm = 1.0;
+        std::string warned;
+        o.warn = [&](const std::string& line) { warned += line; };
+        const BoneData bone = import_bone(o).bone;
+        EXPECT_TRUE(says(warned, {tilted ? "tilted by 11.3 degrees" : "0.8 to 1.2 mm apart"})) << warned;
+        ASSERT_EQ(bone.bricks.size, (std::array<std::uint32_t, 3>{6, 6, tilted ? 6U : 5U}));
+        const std::uint32_t front = bone.bricks.size[2] - 1;
+        for (std::uint32_t z = 1; z < 5; ++z)
+            for (std::uint32_t y = 1; y < 4; ++y)
+                EXPECT_NEAR(bone.density[bone.bricks.voxel(2, z, front - y)], at(y, z), 1.1) << y << ' ' << z;
+    }
+}
+
+TEST(Dicom, WhatIsNoGreyScanIsRefused) {
+    const auto with = [](const std::function<void(sample::DicomSample&)>& change) {
+        const ScanFolder f;
+        for (int u = 0; u < 4; ++u) {
+            sample::DicomSample s = sample::bone_slice(u);
+            change(s);
+            f.write(numbered("s", u), sample::dicom_bytes(s));
+        }
+        std::string warned;
+        BoneImport o = of(f.path);
+        o.warn = [&](const std::string& line) { warned += line; };
+        const std::string why = told([&] { (void)import_bone(o); });
+        return why + warned;
+    };
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.photometric = "RGB"; }), {"RGB"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.photometric = "MONOCHROME1"; }), {"MONOCHROME1"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.slope = 0.0; }), {"slope"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) {
+                         s.rows = 65535;
+                         s.columns = 65535;
+                     }),
+                     {"65535 x 65535"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) {
+                         s.rows = 4096;
+                         s.columns = 4096;
+                     }),
+                     {"mend:"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.spacing = 0.0; }), {"mm"}));
+    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unknown kind"}));
+    EXPECT_TRUE(
+        says(with([](sample::DicomSample& s) { s.maker = "NewTom VGi"; }), {"no error", "cone-beam"}));
+}
+
+TEST(Labels, NamesComeFromTheFileOrAListAndCriticalOnesAreDenseEnoughToBeMet) {
+    const ScanFolder f;
+    std::string numbers;
+    for (int i = 0; i < 120; ++i) numbers += static_cast<char>(i < 6 ? 7 : i < 12 ? 3 : 0);
+    BoneImport o = hu(of(f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
+                                               sample::bone_numbers({0, 1, 2}))));
+    const std::string head =
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n";
+    o.labels = f.write("l.seg.nrrd", head +
+                                         "Segment0_Name:=Facial nerve\nSegment0_LabelValue:=7\n"
+                                         "Segment0_Color:=1 0.5 0\n\n" +
+                                         numbers);
+    BoneData bone = import_bone(o).bone;
+    ASSERT_EQ(bone.structure.size(), 2U);
+    EXPECT_EQ(bone.structure[0].name, "label 3");
+    EXPECT_EQ(bone.structure[1].name, "Facial nerve");
+    EXPECT_EQ(bone.structure[1].rgba[1], 127);
+    EXPECT_TRUE(bone.structure[1].critical && !bone.structure[0].critical);
+    const std::size_t nerve = bone.bricks.voxel(2, 0, 4), other = bone.bricks.voxel(2, 0, 3);
+    EXPECT_EQ(bone.label[nerve], 2);
+    EXPECT_EQ(bone.label[other], 1);
+    EXPECT_EQ(bone.density[nerve], kLabelDensity);
+    EXPECT_EQ(bone.density[other], sample::bone_density(2, 1, 0));
+    o.label_names =
+        f.write("names.txt", "# remark\n0 0 0 0 0 0 0 \"Clear Label\"\n3 255 0 9 1 1 1 \"my bone\"\n");
+    o.critical = {"BONE"};
+    bone = import_bone(o).bone;
+    EXPECT_EQ(bone.structure[0].name, "my bone");
+    EXPECT_TRUE(bone.structure[0].critical);
+    EXPECT_EQ(bone.structure[1].name, "label 7");
+    o.label_names = f.write("names.txt", "3 255 0 \"my bone\"\n");
+    EXPECT_TRUE(says(refusal(o), {"ITK-SNAP"}));
+    o.label_names.clear();
+    o.labels = o.scan;
+    EXPECT_TRUE(says(refusal(o), {"no whole number from 0 to 255"}));
+    o.labels = f.write("small.nrrd",
+                       "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 2\nspacings: 1 1 1\n"
+                       "encoding: raw\n\n" +
+                           numbers);
+    EXPECT_TRUE(says(refusal(o), {"6 x 5 x 2", "6 x 5 x 4"}));
+    o.labels = f.write("none.nrrd", head + "\n" + std::string(120, '\0'));
+    EXPECT_TRUE(says(refusal(o), {"none of them lies in the volume"}));
+}
+
+void write_png(const fs::path& path, std::uint32_t wide,
+               const std::vector<std::array<std::uint8_t, 4>>& pixels) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = wide;
+    image.height = static_cast<std::uint32_t>(pixels.size() / wide);
+    image.format = PNG_FORMAT_RGBA;
+    ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr), 0);
+}
+
+TEST(Pictures, AreOrderedByNumberWithoutGaps) {
+    EXPECT_EQ(stack_order({"a10.png", "a9.png", "readme.txt", "a008.png"}, "t"),
+              (std::vector<std::string>{"a008.png", "a9.png", "a10.png"}));
+    EXPECT_EQ(stack_order({"plane000.png", "plane0010.png", "plane001.png", "plane002.png", "plane003.png",
+                           "plane004.png", "plane005.png", "plane006.png", "plane007.png", "plane008.png",
+                           "plane009.png"},
+                          "t")
+                  .back(),
+              "plane0010.png");
+    const auto why = [](std::vector<std::string> names) {
+        return told([&] { (void)stack_order(std::move(names), "read"); });
+    };
+    EXPECT_TRUE(says(why({"a1.png", "a2.png", "a5.png"}), {"after number 2 comes 5"}));
+    EXPECT_TRUE(says(why({"a1.png", "a01.png"}), {"same number"}));
+    EXPECT_TRUE(says(why({"a1.png", "b2.png"}), {"two names"}));
+    EXPECT_TRUE(says(why({"a.png"}), {"no number"}));
+    EXPECT_TRUE(says(why({"a99999999999999999999.png"}), {"very long"}));
+    EXPECT_TRUE(says(why({}), {"no .png"}));
+}
+
+TEST(Pictures, ColoursAreStructuresAndOneOfThemIsBone) {
+    const ScanFolder f;
+    const std::array<std::uint8_t, 4> bone{255, 249, 219, 255}, nerve{9, 8, 7, 255}, empty{1, 2, 3, 0};
+    for (int k = 0; k < 3; ++k)
+        write_png(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
+    BoneImport o = of(f.path);
+    EXPECT_TRUE(says(refusal(o), {"--spacing-mm"}));
+    o.spacing_mm = Vec3(0.2, 0.2, 0.2);
+    o.label_names = f.write("names.txt", "1 9 8 7 1 1 1 \"nerve\"\n");
+    const BoneData b = import_bone(o).bone;
+    ASSERT_EQ(b.structure.size(), 1U);
+    EXPECT_EQ(b.structure[0].name, "nerve");
+    ASSERT_EQ(b.bricks.size, (std::array<std::uint32_t, 3>{3, 3, 2}));
+    EXPECT_EQ(b.density[b.bricks.voxel(1, 0, 1)], 255);
+    EXPECT_EQ(b.label[b.bricks.voxel(1, 0, 1)], 0);
+    EXPECT_EQ(b.label[b.bricks.voxel(0, 2, 1)], 1);
+    EXPECT_EQ(b.density[b.bricks.voxel(0, 2, 1)], kLabelDensity);
+    EXPECT_EQ(b.density[b.bricks.voxel(2, 2, 1)], 0);
+    EXPECT_TRUE(zero_beyond_size(b.bricks, b.density) && zero_beyond_size(b.bricks, b.label));
+    o.bone_colour = {1, 1, 1};
+    EXPECT_TRUE(says(refusal(o), {"1,1,1", "--bone-colour"}));
+    write_png(f.path / "p2.png", 2, {bone, bone, bone, bone});
+    EXPECT_TRUE(says(refusal(o), {"p2.png is 2 x 2", "3 x 2"}));
+    f.write("p2.png", "no picture");
+    EXPECT_TRUE(says(refusal(o), {"p2.png"}));
+}
+
+TEST(RealScans, AllAreRead) {
+    const char* const shared = std::getenv("TACT_SHARED");
+    const fs::path ct = fs::path(shared != nullptr ? shared : "../shared") / "data" / "ct";
+    if (!fs::is_directory(ct)) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
+    const auto share = [&](const char* name, double threshold, double solid, double voxel_mm) {
+        BoneImport o = of(ct / name);
+        o.voxel_mm = voxel_mm;
+        o.spacing_mm = Vec3(0.4, 0.4, 0.4);
+        if (solid > 0.0) {
+            o.threshold = threshold;
+            o.solid = solid;
+        }
+        const BoneInput in = import_bone(o);
+        const auto& n = in.bone.bricks.size;
+        return static_cast<double>(std::count_if(in.bone.density.begin(), in.bone.density.end(),
+                                                 [](std::uint8_t d) { return d > 0; })) /
+               (double{1} * n[0] * n[1] * n[2]);
+    };
+    EXPECT_NEAR(share("head_phantom_bone_crop.nrrd", 0, 0, 0.9), 0.111, 0.01);  // as its description says
+    EXPECT_NEAR(share("head_ct_example.nii.gz", 0, 0, 2.5), 0.05, 0.02);
+    EXPECT_NEAR(share("headsq_quarter.mhd", 1150, 2600, 3.2), share("headsq_quarter.nhdr", 1150, 2600, 3.2),
+                1e-12);
+    EXPECT_NEAR(share("engine.nii.gz", 100, 255, 2.0), 0.1, 0.1);
+    EXPECT_GT(share("hand_lowres", 80, 255, 1.6), 0.01);
+    // All that is not empty: 10444030 of 256 x 256 x 253 voxels are.
+    EXPECT_NEAR(share("temporal_bone_ear3_256", 0, 0, 0.8), 1.0 - 10444030.0 / (256.0 * 256.0 * 253.0), 0.02);
+}
+
+}  // namespace
+}  // namespace tact
