@@ -75,6 +75,32 @@ TEST(Erosion, TakesWhatItsEquationSaysAtAnyServoRateAndStrokeSpeed) {
     }
 }
 
+TEST(Erosion, BricksThatTakeTurnsLoseTheSame) {
+    const double radius = 13.0, exposure = 1.5;
+    const Vec3 from(17.2, 20.1, 18.4), to(27.7, 23.9, 25.2);
+    constexpr int kSteps = 80;
+    constexpr std::uint32_t kGroups = 4;
+    BoneBlock bone = solid(46);
+    const double right = removed_by_theory(bone, from, to, radius, exposure);
+    MomentOctree octree(bone.bricks, bone.density);
+    Erosion erosion(octree, bone.density, bone.revision, 3);
+    std::array<int, kGroups> last{};
+    for (int i = 1; i < kSteps + static_cast<int>(kGroups); ++i) {
+        const std::uint32_t group = static_cast<std::uint32_t>(i) % kGroups;
+        const int now = std::min(i, kSteps);
+        erosion.begin();
+        erosion.cut(best_brick_kernels(),
+                    {.from_voxels = along(from, to, last[group] / static_cast<double>(kSteps)),
+                     .to_voxels = along(from, to, now / static_cast<double>(kSteps)),
+                     .radius_voxels = radius,
+                     .exposure = exposure * (now - last[group]) / kSteps,
+                     .groups = kGroups,
+                     .group = group});
+        last[group] = now;
+    }
+    EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 0.005 * right);
+}
+
 TEST(Erosion, SlowOrSoftBoneIsRoundedRightInExpectation) {
     // So little a step that a voxel seldom loses a level; and one step that takes nearly all.
     for (const double exposure : {1e-5, 1e-3, 0.09, 0.11, 3.0}) {
@@ -230,15 +256,16 @@ TEST(DrillModel, TheForceIsContinuousWhileBoneVanishes) {
 }
 
 TEST(DrillModel, StepsThatWereLateAreMadeUpFor) {
-    const auto removed = [](int late_every) {
-        Bench b(burr());
+    const auto removed = [](int late_every, double radius_m) {
+        Bench b(burr(radius_m));
         b.model->drive({kFullRadS, 1e-3});
-        b.model->reset(Bench::at(-4e-3, 0.0, 1.2e-3));
-        for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-6e-3, 0.0, 1.2e-3 + 8e-3));
+        const double z_m = radius_m - 8e-4;
+        b.model->reset(Bench::at(-6e-3, 0.0, z_m + 8e-3));
+        for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-6e-3, 0.0, z_m + 8e-3));
         for (int i = 0; i <= 200; ++i) {
             const bool late = late_every > 0 && i % late_every != 0;
             const StepResult r =
-                b.step(Bench::at(-6e-3 + 6e-5 * i, 0.0, 1.2e-3), late ? instant_from_ns(0) : Instant::max());
+                b.step(Bench::at(-6e-3 + 6e-5 * i, 0.0, z_m), late ? instant_from_ns(0) : Instant::max());
             EXPECT_EQ(r.status, late ? StepStatus::out_of_time : StepStatus::ok);
         }
         if (late_every > 0) {
@@ -246,9 +273,11 @@ TEST(DrillModel, StepsThatWereLateAreMadeUpFor) {
         }
         return static_cast<double>(b.model->removed_levels());
     };
-    const double on_time = removed(0);
-    EXPECT_GT(on_time, 255.0 * 20.0);
-    EXPECT_NEAR(removed(4), on_time, 0.02 * on_time);
+    for (const double radius_m : {2e-3, 5e-3}) {  // in one turn, in two
+        const double on_time = removed(0, radius_m);
+        EXPECT_GT(on_time, 255.0 * 20.0);
+        EXPECT_NEAR(removed(4, radius_m), on_time, 0.03 * on_time);
+    }
 }
 
 TEST(DrillModel, OnlyATurningHeadCutsAndNotWhileTheClutchIsHeld) {

@@ -59,9 +59,7 @@ private:
     // How much of what a block holds is taken from the block itself: all where it is no larger than the smallest
     // looked at, nothing where its parts still are, and something between, so that a turn of the level is smooth.
     static double own_share(double block, double edge, double part) noexcept {
-        if (block >= edge) return 1.0;
-        if (block <= part) return 0.0;
-        return std::log2(block / part) / std::log2(edge / part);
+        return std::clamp((block - part) / (edge - part), 0.0, 1.0);
     }
     // Smaller blocks where bone and none share one: from nothing to a quarter of it.
     double block_for(double m0, double edge) const noexcept {
@@ -144,7 +142,7 @@ private:
         const Vec3 m1(0.5 * b.m1[0], 0.5 * b.m1[1], 0.5 * b.m1[2]);
         if (far2 <= reach.inside2) return add_whole(from, m0, m1, weight);
         const double block = block_for(m0, 8.0);
-        const double own = own_share(block, 8.0, 4.0), parts = (1.0 - own) * own_share(block, 4.0, 1.0),
+        const double own = own_share(block, 8.0, 4.0), parts = (1.0 - own) * own_share(block, 4.0, 2.0),
                      voxels = 1.0 - own - parts;
         if (own > 0.0) add_cut(reach, from, m0, m1, own * weight);
         if (parts > 0.0) add_parts(octree_.parts(i), from, parts * weight);
@@ -196,18 +194,21 @@ private:
 }  // namespace
 
 BallMoments ball_moments(const MomentOctree& octree, const BrickKernels& kernels, const Vec3& centre_voxels,
-                         double radius_voxels, double block_voxels) noexcept {
+                         double radius_voxels, double block_voxels, double depth) noexcept {
     const double radius = std::max(radius_voxels, kRadiusLeast), most = kBlockMost * radius;
-    // The less the ball is in, the fewer blocks it touches and the more each matters: eq. 8, of a first look.
-    const BallMoments rough = Walk(octree, kernels, centre_voxels, radius, most, 1.0).run();
-    if (!(rough.m0 > 0.0)) return rough;
-    const double depth = std::sqrt(rough.m0 / (255.0 * std::numbers::pi)) / (radius * std::sqrt(radius));
+    std::uint32_t looked_at = 0;
+    if (!(depth >= 0.0)) {
+        const BallMoments rough = Walk(octree, kernels, centre_voxels, radius, most, 1.0).run();
+        looked_at = rough.blocks;
+        depth = std::sqrt(rough.m0 / (255.0 * std::numbers::pi)) / (radius * std::sqrt(radius));
+    }
+    // The less the ball is in, the fewer blocks it touches and the more each matters: eq. 8.
     const double part = std::clamp(depth / kDepthWhole, kBlockPart, 1.0);
-    BallMoments fine =
+    BallMoments sums =
         Walk(octree, kernels, centre_voxels, radius, std::clamp(part * block_voxels, 1.0, most), kMixed)
             .run();
-    fine.blocks += rough.blocks;
-    return fine;
+    sums.blocks += looked_at;
+    return sums;
 }
 
 BallMoments ball_moments_exact(const MomentOctree& octree, const Vec3& centre_voxels, double radius_voxels,

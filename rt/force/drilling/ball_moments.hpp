@@ -21,11 +21,13 @@ struct BallMoments {
     std::uint32_t blocks = 0;  // looked at
 };
 
-// block: edge of the smallest block looked at, at most kBlockMost of the radius; below 4 single voxels are, too. Blocks
-// that are partly bone are looked at in blocks of half that size. The radius is at least kRadiusLeast.
+// block: edge of the smallest block looked at, at most kBlockMost of the radius; below 4 single voxels are counted, below 2 they alone. Blocks
+// that are partly bone are looked at in blocks of half that size, and all of them where the ball is in the bone by
+// less than a third of its radius. depth: h / R, roughly, that of the step before will do; below 0: a first look finds
+// it. The radius is at least kRadiusLeast.
 [[nodiscard]] BallMoments ball_moments(const MomentOctree& octree, const BrickKernels& kernels,
-                                       const Vec3& centre_voxels, double radius_voxels,
-                                       double block_voxels) noexcept TACT_RT;
+                                       const Vec3& centre_voxels, double radius_voxels, double block_voxels,
+                                       double depth = -1.0) noexcept TACT_RT;
 inline constexpr double kBlockMost = 0.5;
 inline constexpr double kRadiusLeast = 1.0;
 

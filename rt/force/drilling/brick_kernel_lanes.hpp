@@ -19,16 +19,6 @@ TACT_LANE F lanes_at(const float* from) {
     return v;
 }
 TACT_LANE void put_lanes(const F& v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
-TACT_LANE bool any_bone(const std::uint8_t* from, std::size_t bytes) {
-    std::uint64_t seen = 0;
-    for (std::size_t i = 0; i < bytes; i += sizeof seen) {
-        std::uint64_t word = 0;
-        __builtin_memcpy(&word, from + i, bytes - i < sizeof word ? bytes - i : sizeof word);
-        seen |= word;
-    }
-    return seen != 0;
-}
-
 inline constexpr std::uint32_t kSpread = 0x9E3779B1U;  // between the random numbers of neighbours
 struct Places {
     std::uint32_t number[kSlice], spread[kSlice];
@@ -71,8 +61,8 @@ TACT_LANE void sum_brick(const SumJob& job, const std::uint8_t* voxels, BrickSum
     }
     for (int z = 0; z < 8; ++z) {
         const std::uint8_t* slice = voxels + z * kSlice;
-        if (any_bone(slice, kSlice)) {
-            const float up = job.first[2] + static_cast<float>(z), up2 = up * up;
+        const float up = job.first[2] + static_cast<float>(z), up2 = up * up;
+        if ((job.limit - up2) * job.per_width > -1.0F) {
             for (int p = 0; p < kParts; ++p) {
                 const F t = least(most((square[p] - up2) * job.per_width, all(-1.0F)), all(1.0F));
                 const F share = 0.5F + t * (0.75F - 0.25F * (t * t));
@@ -109,10 +99,9 @@ TACT_LANE F random_of(const U& number) {
     return to_float(reinterpret_cast<I>(h >> 8U)) * 0x1p-24F;
 }
 
-// 1 - exp(-e), right to some 1e-7 of it; e >= 0.
+// 1 - exp(-e), right to some 1e-6 of it; e >= 0.
 TACT_LANE F lost_share(const F& e) {
-    F share = e * (1.0F - e * (1.0F / 2) *
-                              (1.0F - e * (1.0F / 3) * (1.0F - e * (1.0F / 4) * (1.0F - e * (1.0F / 5)))));
+    F share = e * (1.0F - e * (1.0F / 2) * (1.0F - e * (1.0F / 3) * (1.0F - e * (1.0F / 4))));
     const I large = e > 0.1F;
     if (any(large)) {
         const F halvings = least(e * 1.44269504F, all(100.0F));
@@ -127,12 +116,11 @@ TACT_LANE F lost_share(const F& e) {
 }
 
 // The integral of max(0, 1 - (distance / radius)^2) over the way, in parts of it, closed: along the way it is
-// start + slope s - bend s^2. slope_all: 2 / radius^2 x (way x place).
-TACT_LANE F exposure(const F& start, const F& slope, float bend) {
-    const F end = start + slope - bend;
+// start + slope s - bend s^2. Where `met` is not set nobody asks.
+TACT_LANE F exposure(const F& start, const F& end, const F& slope, float bend, const I& met) {
     const I inside = (start >= 0.0F) & (end >= 0.0F);
     F share = 0.5F * (start + end) + bend * (1.0F / 6);
-    if (any(~inside)) {  // it comes in, goes out, or passes by
+    if (any(met & ~inside)) {  // it comes in, goes out, or passes by
         const F square = slope * slope + (4.0F * bend) * start;
         const F half = root(most(square, all(0.0F)));
         const float per = bend > 0.0F ? 0.5F / bend : 0.0F;
@@ -161,16 +149,19 @@ TACT_LANE std::uint32_t erode_brick(const ErodeJob& job, std::uint8_t* voxels) {
         const float up = job.first[2] + static_cast<float>(z);
         const std::uint32_t key = job.key + static_cast<std::uint32_t>(z * kSlice) * kSpread;
         const float start_less = up * up * job.inverse, slope_more = up * job.way[2] * (2.0F * job.inverse);
+
         for (int p = 0; p < kParts; ++p) {
             std::uint8_t* at = slice + p * TACT_LANES;
-            if (!any_bone(at, TACT_LANES)) continue;
-            const F start = level_start[p] - start_less, slope = level_slope[p] + slope_more;
-            // Between its ends a parabola rises above both by at most a quarter of its bend.
-            if (!any(most(start, start + slope - bend) + 0.25F * bend > 0.0F)) continue;
             const I level = levels_at(at);
+            const F start = level_start[p] - start_less, slope = level_slope[p] + slope_more,
+                    end = start + slope - bend;
+            // Between its ends a parabola rises above both by at most a quarter of its bend.
+            const I met = (most(start, end) + 0.25F * bend > 0.0F) & (level > 0);
+            if (!any(met)) continue;
             const F solid = to_float(level);
             const F factor = job.rate_of_solid + (255.0F - solid) * job.rate_per_level;
-            const F lost = solid * lost_share(exposure(start, slope, bend) * job.rate * factor);
+            const F seen = exposure(start, end, slope, bend, met);
+            const F lost = met ? solid * lost_share(seen * job.rate * factor) : all(0.0F);
             const U number = numbers_at(kPlaces.spread + p * TACT_LANES) + key;
             const I gone = to_int(lost + random_of(number));
             const I less = gone < level ? gone : level;

@@ -11,8 +11,8 @@ namespace tact {
 namespace {
 
 constexpr double kNoHandM = 1e3;  // no hand is there
-// Of the force of a level, by block over radius: bounds of what README.md's table measured.
-constexpr double kErrorLeast = 0.005, kErrorPerSquare = 0.6;
+// Of the force of a level: bounds of what README.md's table measured. By (block / R)^2, and by (voxel / R)^2.
+constexpr double kErrorLeast = 0.01, kErrorPerBlock = 0.2, kErrorPerVoxel = 0.5;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -48,6 +48,11 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
     per_voxel_m_ = meta.world_per_model * bone.octree.bricks().voxel_m;
     if (!std::isfinite(per_voxel_m_) || !(per_voxel_m_ > 0.0))
         throw StartupError("preparing the drill", "the scene has no scale", "bake it anew");
+    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+        if (tool_.ball[i].cuts || i == 0) head_radius_m_ = std::max(head_radius_m_, tool_.ball[i].radius_m);
+    }
+    while (turn_count_ < kTurnsMost && head_radius_m_ > kTurnVoxels * turn_count_ * per_voxel_m_)
+        turn_count_ *= 2;
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const double radius_m = tool_.ball[i].radius_m;
         if (radius_m < kRadiusLeast * per_voxel_m_)
@@ -90,8 +95,8 @@ std::uint32_t DrillModel::items(float fidelity) const noexcept {
 void DrillModel::reset(const ToolState& tool) noexcept {
     asked_ = true;
     led_ = false;
-    pending_s_ = 0.0;
     fade_.cut();
+    depths_ = {};
     ++grips_;
     if (hand_is_there(tool.T_world_tool))
         T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
@@ -110,7 +115,7 @@ ModelTouch DrillModel::touch() const noexcept {
     ModelTouch t;
     t.there = true;
     t.probe_m = t.proxy_m = T_model_tool_.p_m;
-    t.radius_m = tool_.ball[0].radius_m / meta_.world_per_model;
+    t.radius_m = head_radius_m_ / meta_.world_per_model;
     const double push_n = head_.wrench.force_n.norm();
     if (depth_ > 0.0 && push_n > 0.0) {
         t.planes = 1;
@@ -136,7 +141,8 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
         if (!felt.late && i > 0 && deadline != Instant::max()) felt.late = Monotonic::now() >= deadline;
         const double radius = ball.radius_m / per_voxel_m_;
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius,
-                                           (felt.late ? kBlockCoarse : block) * radius);
+                                           (felt.late ? kBlockCoarse : block) * radius, depths_[i]);
+        depths_[i] = 0.0;
         if (!(m.m0 > 0.0)) continue;
         const Vec3 arm_m = q * ball.centre_tool_m;
         const Vec3 velocity_m_s =
@@ -157,17 +163,36 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
     return felt;
 }
 
-void DrillModel::erode(double gain) noexcept {
-    const double rate_per_s = settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s;
-    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+void DrillModel::forget_way() noexcept {
+    for (Turn& turn : turns_) {
+        turn.from_voxels = now_voxels_;
+        turn.exposure = 0.0;
+    }
+}
+
+void DrillModel::expose(double exposure) noexcept {
+    const double most = exposure / drive_.step_s * kStepSMost;  // at this speed
+    for (Turn& turn : turns_) {
+        if (exposure > 0.0 && turn.exposure < most) turn.exposure = std::min(turn.exposure + exposure, most);
+    }
+}
+
+void DrillModel::cut_turn() noexcept {
+    Turn& turn = turns_[turn_];
+    for (std::uint32_t i = 0; turn.exposure > 0.0 && i < tool_.count; ++i) {
         const ToolBall& ball = tool_.ball[i];
         if (!ball.cuts) continue;
-        erosion_.cut(kernels_, {.from_voxels = cut_voxels_[i],
+        erosion_.cut(kernels_, {.from_voxels = turn.from_voxels[i],
                                 .to_voxels = now_voxels_[i],
                                 .radius_voxels = ball.radius_m / per_voxel_m_,
-                                .exposure = rate_per_s * pending_s_ * ball.weight * gain,
-                                .soft = settings_.soft});
+                                .exposure = turn.exposure * ball.weight,
+                                .soft = settings_.soft,
+                                .groups = turn_count_,
+                                .group = turn_});
     }
+    turn.from_voxels = now_voxels_;
+    turn.exposure = 0.0;
+    turn_ = (turn_ + 1) % turn_count_;
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
@@ -189,7 +214,6 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     if (!hand_is_there(tool.T_world_tool)) {
         fade_.cut();
         led_ = false;
-        pending_s_ = 0.0;
         depth_ = 0.0;
         result.status = StepStatus::out_of_range;
     } else if (asked_) {
@@ -197,11 +221,12 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         double way_m = 0.0;
         for (std::uint32_t i = 0; i < tool_.count; ++i) {
             const Vec3 centre_world_m = tool.T_world_tool.p_m + T_model_tool_.q * tool_.ball[i].centre_tool_m;
+            const Vec3 before = now_voxels_[i];
             now_voxels_[i] = bone_.octree.bricks().to_voxels(meta_.to_model(centre_world_m));
             if (led_ && tool_.ball[i].cuts)
-                way_m = std::max(way_m, per_voxel_m_ * (now_voxels_[i] - cut_voxels_[i]).norm());
+                way_m = std::max(way_m, per_voxel_m_ * (now_voxels_[i] - before).norm());
         }
-        if (led_ && way_m > std::max(kJumpRadii * tool_.ball[0].radius_m, kJumpM)) {
+        if (led_ && way_m > std::max(kJumpRadii * head_radius_m_, kJumpM)) {
             led_ = false;
             ++jumps_;
         }
@@ -219,27 +244,27 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
         const double gain = fade_.gain() * scale;
         result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
+        const double felt_block = felt.late ? kBlockCoarse : block, voxel = per_voxel_m_ / head_radius_m_;
         const double share =
-            kErrorLeast + kErrorPerSquare * (felt.late ? kBlockCoarse * kBlockCoarse : block * block);
+            kErrorLeast + kErrorPerBlock * felt_block * felt_block + kErrorPerVoxel * voxel * voxel;
         result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max);
 
         const bool cuts = !clutch && drive_.burr_rad_s > 0.0;
         const bool late =
             felt.late || (budget.deadline != Instant::max() && Monotonic::now() >= budget.deadline);
         if (late) result.status = StepStatus::out_of_time;
-        if (!cuts || !led_) {
-            cut_voxels_ = now_voxels_;
-            pending_s_ = 0.0;
+        if (!led_) {
+            forget_way();
             led_ = true;
         } else {
-            pending_s_ = std::min(pending_s_ + drive_.step_s, kStepSMost);
-            if (late) {
+            const double rate_per_s =
+                cuts ? settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s * fade_.gain()
+                     : 0.0;
+            expose(rate_per_s * drive_.step_s);
+            if (late && cuts)
                 ++postponed_;
-            } else {
-                erode(fade_.gain());
-                cut_voxels_ = now_voxels_;
-                pending_s_ = 0.0;
-            }
+            else
+                cut_turn();
         }
     }
     result.load.cost = std::max(Monotonic::now() - begin, Duration(1));

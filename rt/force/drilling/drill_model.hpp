@@ -6,8 +6,10 @@
 //          the step. a is in proportion to the burr's speed; a burr that stands takes nothing. Harder pressed it
 //          goes deeper, and so takes more: eq. 12 knows no other pressure.
 // Knob     "drilling.force": smallest block looked at, 0.5 R to 0.1 R (eq. 8; the default is 0.3 R). Turning it is smooth.
-// Late     past the deadline the remaining balls are felt at 0.5 R and nothing is cut; the next step in time cuts along
-//          the straight way from the last place that was cut, for all the time since, so nothing is left out.
+// Turns    a head of more than 12 voxels cuts a half of its bricks in a step, of more than 24 a quarter, of more than
+//          48 an eighth, in turn: each along the straight way since its last turn, with what it was exposed to since.
+// Late     past the deadline the remaining balls are felt at 0.5 R and nothing is cut; the next turn in time cuts for all
+//          the time since, kStepSMost at most, so nothing is left out.
 // Error    of a level: its share of the force, measured (README.md).
 // Jumps    a tool that goes farther in a step than kJumpRadii of its radius, and 5 mm, was not led there by a hand: it
 //          cuts nothing on the way; counted.
@@ -67,6 +69,8 @@ public:
     static constexpr const char* kKnobPath = "drilling.force";
     static constexpr double kBlockFine = 0.1, kBlockDefault = 0.3,
                             kBlockCoarse = kBlockMost;  // of the radius
+    static constexpr std::uint32_t kTurnsMost = 8;
+    static constexpr double kTurnVoxels = 12.0;  // of the head, up to which there is one turn
     static constexpr double kJumpRadii = 4.0, kJumpM = 5e-3;
     static constexpr double kRadiusMost = 200.0;  // voxels
     static constexpr double kStepSMost = 0.1;     // that a step, or steps that were late, can stand for
@@ -110,7 +114,9 @@ private:
     };
     [[nodiscard]] Felt feel(const ToolState& tool, double block, bool hurried,
                             Instant deadline) noexcept TACT_RT;
-    void erode(double gain) noexcept TACT_RT;
+    void forget_way() noexcept TACT_RT;
+    void expose(double exposure) noexcept TACT_RT;
+    void cut_turn() noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
     SceneMeta meta_;
@@ -121,11 +127,19 @@ private:
     Erosion erosion_;
     ForceFade fade_;
     DrillDrive drive_;
-    double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;                 // world metres of a voxel edge
-    std::array<Vec3, DrillTool::kMax> now_voxels_{}, cut_voxels_{};  // centres; as last cut
-    bool asked_ = false;                                             // reset() was called
-    bool led_ = false;      // cut_voxels_ are of a tool that was led here
-    double pending_s_ = 0;  // not cut yet
+    double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;  // world metres of a voxel edge
+    double head_radius_m_ = 0.0;
+    std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
+    struct Turn {
+        std::array<Vec3, DrillTool::kMax> from_voxels{};
+        double exposure = 0.0;  // since then, of a ball of weight 1
+    };
+    std::array<Turn, kTurnsMost> turns_;
+    std::uint32_t turn_count_ = 1, turn_ = 0;
+    bool asked_ = false;                            // reset() was called
+    bool led_ = false;                              // cut_voxels_ are of a tool that was led here
+    double pending_s_ = 0;                          // not cut yet
+    std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
     double depth_ = 0.0, phase_rad_ = 0.0;
     BurrForce head_;  // of the deepest ball of the head
     Pose T_model_tool_;

@@ -14,6 +14,7 @@ struct Erosion::Way {
     Vec3 from, way;
     double radius, per_way2;  // 1 / |way|^2; 0: it stands
     std::uint64_t key;
+    std::uint32_t groups, group;
     ErodeJob job;
 
     // Of the centre of a block from the ball's way.
@@ -53,6 +54,8 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
     w.from = ball.from_voxels;
     w.way = ball.to_voxels - ball.from_voxels;
     w.radius = ball.radius_voxels;
+    w.groups = ball.groups;
+    w.group = ball.group;
     if (w.way.squaredNorm() < 1e-8 * w.radius * w.radius) {  // the bend would be lost in rounding
         w.from += 0.5 * w.way;
         w.way.setZero();
@@ -93,7 +96,10 @@ void Erosion::visit(const Way& way, std::uint32_t level, std::uint32_t x, std::u
     const double edge = static_cast<double>(8U << level), reach = way.radius + kHalfDiagonalOf * edge;
     const Vec3 centre((x + 0.5) * edge - 0.5, (y + 0.5) * edge - 0.5, (z + 0.5) * edge - 0.5);
     if (way.distance2(centre) >= reach * reach) return;
-    if (level == 0) return cut_brick(way, x, y, z);
+    if (level == 0) {
+        if (((x + 3 * y + 5 * z) & (way.groups - 1)) == way.group) cut_brick(way, x, y, z);
+        return;
+    }
     const auto& n = octree_.blocks(level - 1);
     for (std::uint32_t k = 0; k < 8; ++k) {
         const std::uint32_t cx = 2 * x + (k & 1U), cy = 2 * y + (k >> 1U & 1U), cz = 2 * z + (k >> 2U);

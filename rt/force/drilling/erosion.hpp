@@ -37,6 +37,9 @@ struct CuttingBall {
     double radius_voxels = 1.0;
     double exposure = 0.0;  // a times the step's time: solid bone in the ball's centre keeps exp(-exposure)
     double soft = 1.0;      // the rate in the softest bone over that in solid bone; linear between
+    // Of bricks in so many groups, a power of two, those of this one: a large ball goes over them in turn, each with the
+    // way and the exposure since its last one.
+    std::uint32_t groups = 1, group = 0;
 };
 
 class Erosion {
