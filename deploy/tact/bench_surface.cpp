@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
 
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/positions.hpp"
 #include "deploy/tact/touch_paths.hpp"
 #include "deploy/tact/touch_run.hpp"
 #include "deploy/tact/touch_tool_run.hpp"
@@ -19,7 +18,6 @@ using nlohmann::json;
 
 constexpr std::size_t kSlideSamples = 4000;
 constexpr int kPasses = 3;
-constexpr std::size_t kPathMax = 10'000'000;
 
 SurfaceSettings measured(double radius_m, bool shading) {
     return {.radius_m = radius_m,
@@ -82,20 +80,10 @@ std::string surface_work_csv(const SurfaceWork& work) {
         {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"a", 1e-10}}};
     const auto unit =
         std::find_if(units.begin(), units.end(), [&](const auto& u) { return work.unit == u.first; });
-    const std::string attempt = "read the positions in " + work.trajectory.string();
-    std::ifstream in(work.trajectory);
-    if (!in || unit == units.end()) throw StartupError(attempt, "it cannot be read", "check the path");
-    std::vector<Vec3> path;
-    std::string line;
-    while (std::getline(in, line)) {
-        if (line.empty() || line.front() == '#') continue;
-        Vec3 p;
-        std::istringstream words(line);
-        if (!(words >> p.x() >> p.y() >> p.z()) || !p.allFinite() || path.size() == kPathMax)
-            throw StartupError(attempt, "line " + std::to_string(path.size() + 1) + " is no position",
-                               "give x y z in the mesh's unit on each line, ten million at the most");
-        path.push_back(unit->second * p);
-    }
+    if (unit == units.end())
+        throw StartupError("measure touching " + work.mesh.string(), work.unit + " is no unit",
+                           "give m, cm, mm, um, nm or a");
+    const std::vector<Vec3> path = read_positions(work.trajectory, unit->second);
     const SceneFile file = SceneFile::open(scene);
     const SurfaceMesh surface = read_surface(file);
     const std::vector<TouchStep> steps =

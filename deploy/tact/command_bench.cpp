@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/bench_docking.hpp"
+#include "deploy/tact/bench_drilling.hpp"
 #include "deploy/tact/bench_ipc.hpp"
 #include "deploy/tact/bench_mesh.hpp"
 #include "deploy/tact/bench_prep.hpp"
@@ -83,6 +84,8 @@ constexpr Measure kMeasures[] = {
      &docking_and_meshes},
     {"surface", "one step of touching a surface of 92 480, 2 and 10 million triangles; some minutes and 4 GB",
      &bench_surface, true},
+    {"drilling", "one step of drilling, force and erosion, burrs of 1 to 20 mm; a minute", &bench_drilling,
+     true},
     {"ipc", "publishing and reading the state of a servo cycle", &ipc},
 };
 
@@ -113,7 +116,7 @@ void add_bench(CLI::App& app, int& exit_code) {
     const auto wanted = std::make_shared<std::vector<std::string>>();
     const auto as_json = std::make_shared<bool>(false);
     std::vector<std::string> names;
-    std::string help = "which; default: all but surface.";
+    std::string help = "which; default: all but surface and drilling.";
     for (const Measure& m : kMeasures) {
         names.emplace_back(m.name);
         help += std::string(" ") + m.name + ": " + m.help + ".";
@@ -124,11 +127,12 @@ void add_bench(CLI::App& app, int& exit_code) {
     auto* const group = command->add_option_group("Surface", "your own work, printed as CSV");
     auto* const mesh =
         group->add_option("--mesh", work->mesh, "PLY, OBJ, STL or OFF, also .gz")->check(CLI::ExistingFile);
-    auto* const path = group
-                           ->add_option("--trajectory", work->trajectory,
-                                        "text: x y z a line, a millisecond apart, in the unit of the mesh")
-                           ->check(CLI::ExistingFile)
-                           ->needs(mesh);
+    auto* const path =
+        group
+            ->add_option(
+                "--trajectory", work->trajectory,
+                "text: x y z a line, a millisecond apart, in the unit of the mesh, or mm in a volume")
+            ->check(CLI::ExistingFile);
     mesh->needs(path);
     group->add_option("--unit", work->unit, "of both: m, cm, mm, um, nm or a")
         ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
@@ -136,7 +140,34 @@ void add_bench(CLI::App& app, int& exit_code) {
     group->add_option("--tool-radius-mm", work->radius_mm, "of the ball; 0: a point")
         ->check(CLI::Range(0.0, 50.0))
         ->capture_default_str();
+    const auto drilling = std::make_shared<DrillingWork>();
+    auto* const bone = command->add_option_group("Drilling", "your own work, printed as CSV");
+    auto* const volume = bone->add_option("--volume", drilling->volume,
+                                          "raw, a byte a voxel, x fastest: 0 none, 255 solid bone")
+                             ->check(CLI::ExistingFile)
+                             ->excludes(mesh);
+    bone->add_option("--size", drilling->size, "of the volume, in voxels")
+        ->expected(3)
+        ->check(CLI::Range(1, 2048))
+        ->capture_default_str();
+    bone->add_option("--voxel-mm", drilling->voxel_mm, "edge of a voxel")
+        ->check(CLI::Range(0.01, 10.0))
+        ->capture_default_str();
+    bone->add_option("--burr-radius-mm", drilling->radius_mm, "of the burr")
+        ->check(CLI::Range(0.1, 50.0))
+        ->capture_default_str();
     command->callback([=, &exit_code] {
+        if (*volume && !*path)
+            throw CLI::ValidationError("--volume",
+                                       "needs --trajectory: x y z of the burr's centre a line, in mm");
+        if (*path && !*mesh && !*volume)
+            throw CLI::ValidationError("--trajectory", "needs --mesh or --volume");
+        if (*volume) {
+            drilling->trajectory = work->trajectory;
+            std::fputs(drilling_work_csv(*drilling).c_str(), stdout);
+            exit_code = 0;
+            return;
+        }
         if (work->mesh.empty()) {
             exit_code = bench(*wanted, *as_json);
             return;

@@ -3,6 +3,7 @@
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/reproduce/docking.hpp"
+#include "deploy/tact/reproduce/drilling.hpp"
 #include "deploy/tact/reproduce/surface.hpp"
 
 namespace tact::launch {
@@ -41,6 +42,14 @@ void add_surface(CLI::App& reproduce, int& exit_code) {
     command->callback([e, &exit_code] { exit_code = reproduce_surface(*e); });
 }
 
+void add_drilling(CLI::App& reproduce, int& exit_code) {
+    auto* const command = reproduce.add_subcommand("drilling", "the drilling seed's figures 2 to 4");
+    const auto e = std::make_shared<DrillingExperiment>();
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_flag("--quick", e->quick, "fewer places; shows that it works");
+    command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
+}
+
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit_code) {
@@ -52,6 +61,7 @@ void add_reproduce(CLI::App& app, int& exit_code) {
                 "of those, the force rate with and without the law, with and without an external load",
                 false);
     add_surface(*reproduce, exit_code);
+    add_drilling(*reproduce, exit_code);
 }
 
 }  // namespace tact::launch

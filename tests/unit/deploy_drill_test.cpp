@@ -1,0 +1,71 @@
+// What is measured of drilling: the same bone each time, and rows that follow from the model.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "deploy/tact/bench_drilling.hpp"
+#include "deploy/tact/drill_run.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/reproduce/drilling.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+TEST(DrillRun, goes_the_same_way_through_fresh_bone_in_every_pass) {
+    BoneSample once = bone_block({64, 64, 64}, 3e-4), thrice = once;
+    std::vector<Vec3> path = drill_stroke_m(once, 1e-3, 900);
+    for (Vec3& at : path) at.z() -= 8e-4;
+    const auto a = drill_along(once, path, {.radius_m = 1e-3, .passes = 1, .count_voxels = true});
+    const auto b = drill_along(thrice, path, {.radius_m = 1e-3, .passes = 3});
+    std::uint64_t levels = 0, voxels = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        ASSERT_EQ(a[i].force_n, b[i].force_n) << i;
+        ASSERT_EQ(a[i].removed_levels, b[i].removed_levels) << i;
+        levels += a[i].removed_levels;
+        voxels += a[i].removed_voxels;
+    }
+    EXPECT_EQ(once.density, thrice.density);
+    EXPECT_GT(levels, 1000U);
+    EXPECT_GT(voxels, 0U);
+    // What the steps say is what is missing.
+    const BoneSample fresh = bone_block({64, 64, 64}, 3e-4);
+    std::uint64_t missing = 0, gone = 0;
+    for (std::size_t v = 0; v < fresh.density.size(); ++v) {
+        missing += fresh.density[v] - once.density[v];
+        gone += fresh.density[v] > 0 && once.density[v] == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(missing, levels);
+    EXPECT_EQ(gone, voxels);
+    EXPECT_GT(percentile_us(a, 0.5), 0.0);
+}
+
+TEST(DrillRun, a_volume_of_ones_own_is_drilled_along_ones_own_way) {
+    const ScratchFolder scratch;
+    const auto volume = scratch.path() / "v.raw", way = scratch.path() / "way.txt";
+    std::ofstream(volume, std::ios::binary) << std::string(24 * 16 * 16, '\xff');
+    std::ofstream(way) << "# mm\n3.6 2.4 2.4\n3.7 2.4 2.4\n\n3.8 2.4 2.4\n";
+    DrillingWork work{.volume = volume, .trajectory = way, .size = {24, 16, 16}, .radius_mm = 1.0};
+    const std::string csv = drilling_work_csv(work);
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);  // a head and three positions
+    work.size = {24, 16, 15};
+    EXPECT_THROW(drilling_work_csv(work), StartupError);
+    std::ofstream(way) << "1 2\n";
+    work.size = {24, 16, 16};
+    EXPECT_THROW(drilling_work_csv(work), StartupError);
+}
+
+TEST(DrillingRows, the_force_rises_with_the_penetration_and_blocks_are_near_the_voxels) {
+    const auto rows = drilling_rows(3.0, 10, 1, false);
+    ASSERT_EQ(rows.size(), 10U);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_GT(rows[i].true_n, i > 0 ? rows[i - 1].true_n : 0.0);
+        if (rows[i].true_n < 0.05) continue;
+        for (std::size_t way = 0; way < kDrillWays; ++way)
+            EXPECT_NEAR(rows[i].force_n[way] / rows[i].true_n, 1.0, 0.1) << i << ' ' << way;
+    }
+    EXPECT_NEAR(rows.back().penetration_mm, 3.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace tact::launch
