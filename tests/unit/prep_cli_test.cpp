@@ -235,6 +235,36 @@ TEST_F(Program, SimplifiesAMeshAndSaysWhatItDid) {
     EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 1);
 }
 
+TEST_F(Program, BakesBoneToDrillFromAScanOrMadeHere) {
+    const std::string scene = folder_ / "bone.tact";
+    const Ended made = run({"drill", "--synthetic", "--voxels", "24", "-o", scene, "--json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_NE(made.err.find("MB of memory are needed"), std::string::npos) << made.err;
+    EXPECT_EQ(nlohmann::json::parse(made.out)["structures"], 9);
+    auto info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
+    EXPECT_EQ(info["kind"], "drilling");
+    EXPECT_EQ(info["bone"]["size"][2], 24);
+    EXPECT_EQ(info["structures"][0]["name"], "facial nerve");
+    EXPECT_TRUE(info["structures"][0].contains("distance"));
+
+    std::string mha =
+        "NDims = 3\nDimSize = 4 4 4\nElementSpacing = 0.5 0.5 1\nElementType = MET_UCHAR\n"
+        "ElementDataFile = LOCAL\n";
+    mha.append(64, 'z');
+    const std::string scan = write("scan.mha", mha);
+    const Ended baked =
+        run({"drill", scan, "-o", scene, "--crop", "0:4,1:3,0:4", "--unit", "cm", "--face", "top"});
+    ASSERT_EQ(baked.code, 0) << baked.err;
+    EXPECT_NE(baked.err.find("does not say which side is left"), std::string::npos) << baked.err;
+    info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
+    EXPECT_EQ(info["bone"]["size"], (std::vector<int>{4, 2, 7}));
+    EXPECT_DOUBLE_EQ(info["bone"]["voxel_m"].get<double>(), 5e-3);
+    expect_refused({"drill", scan, "-o", scene, "--crop", "0:4,1:3"}, {"--crop", "first:end"});
+    expect_refused({"drill", "-o", scene}, {"--synthetic"});
+    expect_refused({"drill", scan, "-o", scan}, {"input files"});
+    expect_refused({"drill", scan, "--labels", scan, "-o", scene, "--threshold-hu", "200"}, {"no voxel"});
+}
+
 TEST_F(Program, CtrlCLeavesNothingHalfWritten) {
     // The demo takes a part of a second; on a busy machine the signal may come too late, so it is tried
     // again.
