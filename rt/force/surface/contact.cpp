@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace tact {
 namespace {
@@ -15,6 +16,7 @@ constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther th
 constexpr double kNextMove = 0.3;
 constexpr double kSlidesOn = 1.15;
 constexpr double kRestingMargins = 0.02;
+constexpr double kNearerMargins = 0.05;
 constexpr std::uint32_t kSeatVisits = 4096;  // of the tree: some 100 us
 
 }  // namespace
@@ -169,6 +171,8 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
     const double allowed = step + settings_.glide_m;
     double left = allowed;
+    double least_m = std::numeric_limits<double>::infinity();  // from the goal, of moves that were not cut
+    bool in_a_ring = false;  // the last of them came no nearer than one before
     // A slide goes on as it did: where it does not, a second move makes up for it.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
@@ -215,9 +219,18 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
             contact.state = ContactState::gliding;
             break;
         }
+        // In a hollow that the ball just fits all ways are as level as numbers are good: moves lead round in a ring.
+        if (!cut) {
+            const double gap_m = (goal_m - proxy_m_).norm();
+            in_a_ring = gap_m > least_m - kNearerMargins * settings_.margin_m;
+            least_m = std::min(least_m, gap_m);
+        }
         // A move that was not cut is followed by a much shorter one, as only the curvature is left.
         reach = cut ? 2.0 * reach_now : std::max(kNextMove * length, settings_.margin_m);
     }
+    // What was used up on a ring was not lacking: it is where it should be, but for a margin.
+    if (contact.state == ContactState::lagging && in_a_ring && !contact.late)
+        contact.state = ContactState::settled;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
     return contact;
