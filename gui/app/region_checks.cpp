@@ -49,6 +49,10 @@ bool sensible(const TouchTopic& t) noexcept {
         t.state > TouchState::lagging || t.regime > TouchRegime::brute ||
         !(t.radius_model_m >= 0.0 && t.radius_model_m < 1e3))
         return false;
+    for (const float v : {t.detail_radius_model_m, t.detail_width, t.detail_error_far, t.deviation_model_m,
+                          t.turn_s, t.turn_predicted_s})
+        if (!(v >= 0.0F && v < 1e4F)) return false;
+    if (t.detail > 2 || t.detail_shape > DetailShape::multiple_frustum) return false;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         const float* const n = t.normal_model[i];
         const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];

@@ -27,7 +27,11 @@ enum class CommandKind : std::uint16_t {
     set_clash,        // value: 1 on, 0 off
     set_subtraction,  // value: 1 on, 0 off
     set_laplacian,    // value: 1 on, 0 off
+    // Of a surface kept fine around the tool. body: DetailShape, value: width, pos_model_m[0]: error far away, both in
+    // radii of full detail (TouchTopic)
+    set_detail_filter,
 };
+inline constexpr CommandKind kLastCommand = CommandKind::set_detail_filter;
 
 enum class CommandResult : std::uint16_t {
     none,

@@ -217,6 +217,8 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "clash force";
         case CommandKind::set_subtraction:
             return "subtraction";
+        case CommandKind::set_detail_filter:
+            return "filter of the detail";
         case CommandKind::set_laplacian:
             return "Laplacian";
     }

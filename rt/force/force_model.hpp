@@ -55,6 +55,20 @@ struct ModelBodies {
     std::uint32_t options_asked = 0;  // and as ordered; they differ while a model is built aside
 };
 
+// How fine a model keeps a surface around the tool, of models that do. Model metres.
+struct ModelDetail {
+    bool there = false;
+    bool full = false;                     // within the radius all is as in the full mesh
+    double radius_m = 0.0;                 // of full detail
+    std::uint8_t shape = 0;                // of the filter beyond it, numbered as FilterForm::Shape
+    float width = 0.0F, error_far = 0.0F;  // of the filter, in radii
+    double deviation_m = 0.0;              // of the surface beyond the radius from the full mesh, at the most
+    std::uint32_t vertices = 0, triangles = 0;  // active
+    std::uint32_t near_triangles = 0;           // expected around the tool
+    double turn_s = 0.0,
+           turn_predicted_s = 0.0;  // of the slow half; filtered, and as predicted for the level
+};
+
 // What a model that touches a surface shows of it. Model metres.
 struct ModelTouch {
     static constexpr std::size_t kPlanesMax = 3;
@@ -66,6 +80,7 @@ struct ModelTouch {
     std::array<double, kPlanesMax> push_n{};
     std::uint8_t state = 0;   // numbered as TouchState
     std::uint8_t regime = 0;  // numbered as TouchRegime
+    ModelDetail detail;
 };
 
 // What a person asks of the bodies.
@@ -77,11 +92,14 @@ struct ModelOrder {
         add,     // a copy of structure `body`, at T_model_body, not in the hand
         remove,  // never the last one
         option,  // turns `option` on or off
+        filter,  // of a surface kept fine around the tool: `shape`, `width`, `error_far`
     };
     Kind kind = Kind::select;
     bool on = false;
     std::uint32_t body = 0;    // an id; of add: index of a structure
     std::uint32_t option = 0;  // one ModelOption
+    std::uint8_t shape = 0;    // as in ModelDetail
+    float width = 0.0F, error_far = 0.0F;
     Pose T_model_body;
 };
 
@@ -99,6 +117,8 @@ public:
     [[nodiscard]] virtual bool tended() const noexcept { return false; }
     // Slow half, own thread, tens of hertz or more: prepares what the next steps will need.
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
+    // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
+    [[nodiscard]] virtual double tend_s() const noexcept TACT_RT { return 0.0; }
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;

@@ -56,6 +56,9 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
             return command.body <= 0xFFFFU && read_pose(command, order);
         case CommandKind::remove_body:
             return id;
+        case CommandKind::set_detail_filter:  // how wide a filter may be the model knows
+            order.pos_model_m[0] = command.pos_model_m[0];
+            return command.body <= 0xFFU && std::isfinite(command.pos_model_m[0]);
         default:  // options
             return yes_or_no;
     }
@@ -66,7 +69,7 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
 CheckedCommand check_command(const CommandTopic& command, std::span<const std::string> path_names) {
     CheckedCommand checked;
     checked.order = {.sequence = command.sequence, .value = command.value, .kind = command.kind, .index = 0};
-    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(CommandKind::set_laplacian)) {
+    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(kLastCommand)) {
         checked.result = CommandResult::unknown;
         return checked;
     }

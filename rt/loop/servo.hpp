@@ -124,6 +124,7 @@ private:
     void publish_levels(const CycleState& c) noexcept TACT_RT;
     void publish_trace(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
+    [[nodiscard]] double rate_kept_up(const CycleState& c, double rate_hz) const noexcept TACT_RT;
     [[nodiscard]] bool holds_rate() const noexcept TACT_RT;
     [[nodiscard]] Instant rest() noexcept TACT_RT;
     [[nodiscard]] double share_of_step(const CycleState& c) noexcept TACT_RT;

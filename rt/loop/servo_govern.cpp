@@ -3,12 +3,14 @@
 #include <array>
 
 #include "rt/loop/servo.hpp"
+#include "rt/loop/tend_thread.hpp"
 
 namespace tact {
 
 namespace {
 
 constexpr double kMemory_s = 1.0;  // of what a whole step costs
+constexpr double kTendShare = 0.9;
 
 }  // namespace
 
@@ -41,7 +43,7 @@ void Servo::govern(CycleState& c) noexcept {
     }
     const Duration interval = c.now - governed_at_;
     if (interval < settings_.governor_interval) return;
-    law_rate_hz_ = rate_for_law(interval);
+    law_rate_hz_ = rate_kept_up(c, rate_for_law(interval));
     model_cost_s_ = to_s(interval_model_cost_) / static_cast<double>(interval_cycles_);
     governor_.set_present(kMeshIndex, c.house.gui_attached != 0);
     const bool changed = governor_.step(law_rate_hz_, interval);
@@ -109,6 +111,14 @@ void Servo::count_share(const CycleState& c) noexcept {
     if (whole_cost_s_ < kMemory_s) return;
     whole_model_s_ *= 0.5;
     whole_cost_s_ *= 0.5;
+}
+
+// A slow half that takes longer than its turns last falls behind the hand, and what the force is felt on with it:
+// to the law that is a rate too low, in proportion. From kTendShare of a turn on nothing rises any more.
+double Servo::rate_kept_up(const CycleState& c, double rate_hz) const noexcept {
+    const double tend_s = c.hand[0].model->tend_s();
+    if (!(tend_s > 0.0)) return rate_hz;
+    return std::min(rate_hz, governor_.settings().goal_hz * kTendShare * to_s(TendThread::kEvery) / tend_s);
 }
 
 // A loop of fixed rate never shows more than its rate. What the law has to see is whether there is time to

@@ -39,6 +39,12 @@ ModelOrder model_order(const ServoOrder& order) noexcept {
         case CommandKind::set_laplacian:
             o.option = kOptionLaplacian;
             break;
+        case CommandKind::set_detail_filter:
+            o.kind = Kind::filter;
+            o.shape = static_cast<std::uint8_t>(order.body);
+            o.width = static_cast<float>(order.value);
+            o.error_far = static_cast<float>(order.pos_model_m[0]);
+            break;
         default:  // no order to a model: no option, and refused
             break;
     }
@@ -121,6 +127,7 @@ void Servo::obey(CycleState& c, const ServoOrder& order) noexcept {
         case CommandKind::set_clash:
         case CommandKind::set_subtraction:
         case CommandKind::set_laplacian:
+        case CommandKind::set_detail_filter:
             return acknowledge(order,
                                order_bodies(c, order) ? CommandResult::done : CommandResult::refused_value);
     }

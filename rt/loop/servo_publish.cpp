@@ -121,6 +121,19 @@ void Servo::publish_touch(const CycleState& c) noexcept {
     }
     t.state = static_cast<TouchState>(touch.state);
     t.regime = static_cast<TouchRegime>(touch.regime);
+    if (const ModelDetail& d = touch.detail; d.there) {
+        t.detail = d.full ? 2 : 1;
+        t.detail_shape = static_cast<DetailShape>(d.shape);
+        t.detail_radius_model_m = static_cast<float>(d.radius_m);
+        t.detail_width = d.width;
+        t.detail_error_far = d.error_far;
+        t.deviation_model_m = static_cast<float>(d.deviation_m);
+        t.detail_vertices = d.vertices;
+        t.detail_triangles = d.triangles;
+        t.near_triangles = d.near_triangles;
+        t.turn_s = static_cast<float>(d.turn_s);
+        t.turn_predicted_s = static_cast<float>(d.turn_predicted_s);
+    }
     region_.touch.publish(t);
 }
 

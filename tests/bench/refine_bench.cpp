@@ -14,9 +14,9 @@
 #include <cstdlib>
 #include <vector>
 
+#include "ipc/assets/refinement.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/synthetic/rough_torus.hpp"
-#include "rt/force/surface/refinement.hpp"
 
 namespace tact {
 namespace {
@@ -37,7 +37,7 @@ struct Torus {
 
 void run(benchmark::State& state, double way, double width = 0.05, double far = 0.02) {
     static const Torus torus;
-    RefineSettings settings;
+    RefinementSettings settings;
     const auto part = [&](double fraction) { return static_cast<float>(fraction * torus.diagonal_m); };
     settings.filter = RefineFilter::bell(part(0.05), part(width), part(far));
     settings.look_ahead_s = 0.0;

@@ -9,6 +9,7 @@
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/distance_field.hpp"
 #include "ipc/assets/mesh_cut.hpp"
+#include "ipc/assets/refinement.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
@@ -19,7 +20,6 @@
 #include "prep/surface/build_surface.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/surface/sample_tool.hpp"
-#include "rt/force/surface/refinement.hpp"
 #include "rt/force/surface/tool_model.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/unit/assets_samples.hpp"
@@ -158,7 +158,7 @@ void use_surface(const SceneFile& file) {
 void use_forest(const SceneFile& file) {
     const TriangleMesh& mesh = terrain().mesh;
     const VertexForest forest = read_forest(file, mesh.position_m, mesh.triangle);
-    RefineSettings settings;
+    RefinementSettings settings;
     settings.filter = RefineFilter::bell(0.5F, 2.0F, 0.3F);
     settings.near_m = 1.0;
     settings.near_max = 40;

@@ -110,7 +110,7 @@ CommandTopic random_command(std::mt19937& random) {
 // An order to bodies that is nearly right: any id, a value or a place that may be possible, or no number.
 CommandTopic random_body_order(std::mt19937& random) {
     constexpr auto kFirst = static_cast<unsigned>(CommandKind::select_body),
-                   kLast = static_cast<unsigned>(CommandKind::set_laplacian);
+                   kLast = static_cast<unsigned>(kLastCommand);
     CommandTopic c{};
     c.sequence = 1000 + random() % 1000;  // not those of the test's own commands
     c.kind = static_cast<std::uint16_t>(kFirst + random() % (kLast - kFirst + 1));

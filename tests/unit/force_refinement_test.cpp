@@ -6,13 +6,13 @@
 #include <set>
 #include <thread>
 
+#include "ipc/assets/refinement.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 #include "prep/mesh/mesh_folds.hpp"
 #include "prep/mesh/nearest_point.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/synthetic/rough_torus.hpp"
-#include "rt/force/surface/refinement.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
 namespace tact {
@@ -34,8 +34,8 @@ const Surface& torus() {
     return surface;
 }
 
-RefineSettings some_settings(float radius_m) {
-    RefineSettings s;
+RefinementSettings some_settings(float radius_m) {
+    RefinementSettings s;
     s.filter = RefineFilter::bell(radius_m, 0.3F, 0.05F);
     s.near_m = static_cast<double>(radius_m);
     s.look_ahead_s = 0.01;
@@ -171,7 +171,7 @@ TEST(Refinement, NoTriangleTurnsAgainstTheSmoothSurfaceThatItStandsFor) {
         }
         return mesh;
     }());
-    RefineSettings settings = some_settings(0.1F);
+    RefinementSettings settings = some_settings(0.1F);
     settings.filter = RefineFilter::bell(0.1F, 0.2F, 0.02F);
     Refinement r(ball.forest, settings);
     double worst = 1.0;
@@ -260,7 +260,7 @@ TEST(Refinement, TheDeviationOfTheActiveSurfaceIsWithinWhatIsSaid) {
 }
 
 TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {
-    RefineSettings settings = some_settings(0.25F);
+    RefinementSettings settings = some_settings(0.25F);
     settings.splits_max = 37;
     settings.merges_max = 23;
     Refinement r(torus().forest, settings);
@@ -286,7 +286,7 @@ TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {
 }
 
 TEST(Refinement, FullPoolsAreSaidAndTheSurfaceStaysWhole) {
-    RefineSettings settings = some_settings(0.5F);
+    RefinementSettings settings = some_settings(0.5F);
     settings.nodes_max = torus().forest.roots() + 200;
     Refinement r(torus().forest, settings);
     for (int i = 0; i < 5; ++i) {

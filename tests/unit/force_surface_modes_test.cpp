@@ -128,5 +128,69 @@ TEST(SurfaceModes, MoreFidelityIsAWiderRadiusOfMoreTriangles) {
     }
 }
 
+// A hand at rest over the sphere, tended `turns` times.
+std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder& order = {}) {
+    auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
+    static_cast<void>(model->order(order));
+    ToolState tool;
+    const double ball_m = 0.05 * sphere().world_per_model;
+    tool.T_world_tool.p_m = model->meta().to_world(Vec3::Zero()) + Vec3(0.0, 0.0, 1.2 * ball_m);
+    model->reset(tool);
+    for (int i = 0; i < turns; ++i) {
+        tool.T_world_tool.p_m.x() += 1e-3;  // so that each turn has something to build
+        static_cast<void>(model->step(tool, {.fidelity = fidelity}));
+        model->tend(tool, {});
+    }
+    static_cast<void>(model->step(tool, {.fidelity = fidelity}));
+    return model;
+}
+
+TEST(SurfaceModes, WhatIsKeptFineIsShownWithItsBoundAndCost) {
+    const ModelDetail d = rested(1.0F, 40)->touch().detail;
+    ASSERT_TRUE(d.there);
+    EXPECT_TRUE(d.full);
+    EXPECT_GT(d.radius_m, 0.0);
+    EXPECT_GT(d.triangles, 0U);
+    EXPECT_GT(d.turn_s, 0.0);
+    EXPECT_GT(d.turn_predicted_s, 0.0);
+    // Far away the filter allows half of the radius, and the bound counts ways along the surface too.
+    EXPECT_GT(d.deviation_m, 0.0);
+    EXPECT_FALSE(load_surface_model(*sphere().file, {})->touch().detail.there);
+}
+
+TEST(SurfaceModes, TheKnobsCostIsThatOfTheSurfaceAroundTheTool) {
+    const auto model = rested(0.5F, 10);
+    EXPECT_EQ(model->items(0.5F), model->touch().detail.near_triangles);
+    EXPECT_GT(model->items(1.0F), model->items(0.2F));
+    // One rate for all levels: a wider radius is dearer by its triangles.
+    const AdaptiveSurface& surface = *model->adaptive();
+    EXPECT_NEAR(surface.predicted_s(1.0F) / surface.predicted_s(0.2F),
+                surface.predicted_triangles(1.0F) / surface.predicted_triangles(0.2F), 1e-6);
+    EXPECT_GT(model->tend_s(), 0.0);
+    EXPECT_EQ(load_surface_model(*sphere().file, {})->tend_s(), 0.0);
+}
+
+TEST(SurfaceModes, APersonFormsTheFilterAndTheCutFollows) {
+    ModelOrder order;
+    order.kind = ModelOrder::Kind::filter;
+    order.width = 0.2F;
+    order.error_far = 4.0F;
+    order.shape = static_cast<std::uint8_t>(FilterForm::Shape::multiple_frustum);
+    const ModelDetail steep = rested(0.2F, 40, order)->touch().detail;
+    EXPECT_EQ(steep.shape, order.shape);
+    EXPECT_EQ(steep.width, order.width);
+    EXPECT_TRUE(steep.full);
+    order.width = 6.0F;
+    order.error_far = 0.1F;
+    EXPECT_GT(rested(0.2F, 40, order)->touch().detail.triangles, steep.triangles);
+    const auto model = rested(0.2F, 1);
+    order.width = 1e9F;
+    EXPECT_FALSE(model->order(order));
+    order.width = 1.0F;
+    order.shape = 9;
+    EXPECT_FALSE(model->order(order));
+    EXPECT_FALSE(load_surface_model(*sphere().file, {})->order(order));
+}
+
 }  // namespace
 }  // namespace tact

@@ -52,6 +52,10 @@ TEST(RegionChecks, RefuseATouchThatCannotBe) {
     EXPECT_TRUE(refused([](TouchTopic& t) { t.normal_model[0][0] = 1.0F; }));
     EXPECT_TRUE(refused([](TouchTopic& t) { t.push_n[0] = std::nanf(""); }));
     EXPECT_TRUE(refused([](TouchTopic& t) { t.radius_model_m = -1.0; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.detail = 3; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.detail_shape = static_cast<DetailShape>(2); }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.detail_width = -1.0F; }));
+    EXPECT_TRUE(refused([](TouchTopic& t) { t.deviation_model_m = std::nanf(""); }));
     EXPECT_TRUE(refused([](TouchTopic& t) { t.state = static_cast<TouchState>(3); }));
 }
 

@@ -71,6 +71,18 @@ TEST(House, passes_orders_to_bodies_whose_places_are_possible) {
     for (const CommandKind kind :
          {CommandKind::set_clash, CommandKind::set_subtraction, CommandKind::set_laplacian})
         EXPECT_EQ(check_command(command(kind, 1.0), kPaths).result, CommandResult::none);
+    CommandTopic filter = command(CommandKind::set_detail_filter, 2.0);
+    filter.body = 1;
+    filter.pos_model_m[0] = 0.25;
+    const CheckedCommand formed = check_command(filter, kPaths);
+    EXPECT_EQ(formed.result, CommandResult::none);
+    EXPECT_EQ(formed.order.body, 1U);
+    EXPECT_EQ(formed.order.pos_model_m[0], 0.25);
+    filter.pos_model_m[0] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(check_command(filter, kPaths).result, CommandResult::refused_value);
+    filter.pos_model_m[0] = 0.25;
+    filter.body = 256;
+    EXPECT_EQ(check_command(filter, kPaths).result, CommandResult::refused_value);
 }
 
 TEST(House, refuses_orders_to_bodies_that_no_scene_can_have) {

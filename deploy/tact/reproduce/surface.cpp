@@ -12,9 +12,9 @@
 #include "deploy/tact/reproduce/surface_rows.hpp"
 #include "deploy/tact/reproduce/text.hpp"
 #include "deploy/tact/touch_paths.hpp"
+#include "ipc/assets/refine_filter.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/vertex_forest.hpp"
-#include "rt/force/surface/refine_filter.hpp"
 
 namespace tact::launch {
 namespace {

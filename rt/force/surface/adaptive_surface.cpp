@@ -3,23 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/clock.hpp"
+
 namespace tact {
 namespace {
 
 constexpr float kTurned = 0.02F;        // a smaller change of the fidelity is not followed
-constexpr double kFallsOff = 1.0;       // radii within which the bell rises
-constexpr double kFarError = 0.5;       // radii of error allowed far away
 constexpr double kStepsLookS = 3.4e-3;  // times the speed: how far a step of 1 ms may look (contact.cpp)
+constexpr float kLearns = 0.1F;         // of each turn that builds
 constexpr double kKeepsFrom = 0.2;      // of what is asked for: nearer to the border a newer surface is taken
 
-RefineFilter filter_of(double radius_m) {
-    return RefineFilter::bell(static_cast<float>(radius_m), static_cast<float>(kFallsOff * radius_m),
-                              static_cast<float>(kFarError * radius_m));
-}
-
-RefineSettings refine_settings(const AdaptiveSettings& s) {
-    RefineSettings r;
-    r.filter = filter_of(s.most_m);
+RefinementSettings refine_settings(const AdaptiveSettings& s) {
+    RefinementSettings r;
+    r.filter = FilterForm{}.filter(static_cast<float>(s.most_m));
     r.look_ahead_s = s.look_ahead_s;
     r.near_m = s.most_m;
     r.near_max = s.near_max;
@@ -58,10 +54,11 @@ double AdaptiveSurface::predicted_triangles(float fidelity) const noexcept {
     return std::min(density_ * side * side, static_cast<double>(full_.triangles()));
 }
 
-void AdaptiveSurface::set_radius(float fidelity) noexcept {
-    if (std::abs(fidelity - fidelity_) < kTurned) return;
+void AdaptiveSurface::set_filter(float fidelity, const FilterForm& form) noexcept {
+    if (std::abs(fidelity - fidelity_) < kTurned && form == form_) return;
     fidelity_ = fidelity;
-    refinement_.set_filter(filter_of(radius_m(fidelity)));
+    form_ = form;
+    refinement_.set_filter(form.filter(static_cast<float>(radius_m(fidelity))));
     refinement_.set_near(radius_m(fidelity));
 }
 
@@ -80,8 +77,10 @@ bool AdaptiveSurface::still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) 
     return built_usable_;
 }
 
-RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity) noexcept {
-    set_radius(fidelity);
+RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
+                                 const FilterForm& form) noexcept {
+    const Instant begin = Monotonic::now();
+    set_filter(fidelity, form);
     const RefineStep done = refinement_.step(tool_m, velocity_m_s, !still_holds(tool_m, velocity_m_s));
     const NearTriangles& near = refinement_.near();
     if (near.step == built_) return done;
@@ -91,6 +90,11 @@ RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, f
     built_usable_ = near.complete && near.full_detail;
     surface_.back().build(near, full_);
     surface_.publish();
+    const auto took =
+        static_cast<float>(to_s(Monotonic::now() - begin) / std::max(predicted_triangles(fidelity), 1.0));
+    const float before = s_per_triangle_.load(std::memory_order_relaxed);
+    s_per_triangle_.store(before > 0.0F ? before + kLearns * (took - before) : took,
+                          std::memory_order_relaxed);
     return done;
 }
 

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ipc/assets/near_triangles.hpp"
 #include "ipc/assets/surface_mesh.hpp"
-#include "rt/force/surface/near_triangles.hpp"
 
 namespace tact {
 

@@ -9,7 +9,8 @@
 namespace tact {
 namespace {
 
-constexpr double kFarM = 1e3;  // no hand is there
+constexpr double kFarM = 1e3;         // no hand is there
+constexpr double kTurnLearns = 0.05;  // of each turn of tend(): half of a tenth of a second
 // Cosines between the normal of a triangle and the interpolated one: shaded wholly from the first (20 degrees),
 // not at all below the second (40 degrees).
 constexpr double kShadedFrom = 0.940, kShadedTo = 0.766;
@@ -69,9 +70,15 @@ void SurfaceModel::tend(const ToolState& predicted, const Budget&) noexcept {
     if (adaptive_ == nullptr) return;
     const Whereabouts& now = whereabouts_.newest();
     if (!now.there) return;
+    const Instant begin = Monotonic::now();
     // The proxy goes where the tool goes, or less far.
-    refined_ =
-        adaptive_->tend(now.proxy_m, predicted.twist_world.linear_m_s / meta_.world_per_model, now.fidelity);
+    refined_ = adaptive_->tend(now.proxy_m, predicted.twist_world.linear_m_s / meta_.world_per_model,
+                               now.fidelity, now.form);
+    const double took_s = to_s(Monotonic::now() - begin);
+    turn_s_ += (turns_ == 0 ? 1.0 : kTurnLearns) * (took_s - turn_s_);
+    if (turns_++ % kDeviationEvery == 0) deviation_m_ = adaptive_->deviation_m();
+    tended_news_.back() = {refined_, deviation_m_, now.fidelity, turn_s_};
+    tended_news_.publish();
 }
 
 void SurfaceModel::use_full_surface() noexcept {
@@ -91,8 +98,9 @@ void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
         use_full_surface();
         regime_ = SurfaceRegime::tree;
     }
-    whereabouts_.back() = {solver_.proxy_m(), fidelity, true};
+    whereabouts_.back() = {solver_.proxy_m(), fidelity, form_, true};
     whereabouts_.publish();
+    tended_ = tended_news_.newest();
 }
 
 KnobSpec SurfaceModel::knob() const noexcept {
@@ -100,6 +108,11 @@ KnobSpec SurfaceModel::knob() const noexcept {
 }
 
 std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
+    return adaptive_ == nullptr ? moves(fidelity)
+                                : static_cast<std::uint32_t>(adaptive_->predicted_triangles(fidelity));
+}
+
+std::uint32_t SurfaceModel::moves(float fidelity) noexcept {
     const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
     return kMovesLeast +
            static_cast<std::uint32_t>(std::lround(level * static_cast<float>(kMovesMost - kMovesLeast)));
@@ -125,6 +138,30 @@ ModelBodies SurfaceModel::bodies() const noexcept {
     return list;
 }
 
+bool SurfaceModel::order(const ModelOrder& order) noexcept {
+    if (order.kind != ModelOrder::Kind::filter || adaptive_ == nullptr) return false;
+    const FilterForm form{static_cast<FilterForm::Shape>(order.shape), order.width, order.error_far};
+    if (!form.possible()) return false;
+    form_ = form;
+    return true;
+}
+
+ModelDetail SurfaceModel::detail() const noexcept {
+    if (adaptive_ == nullptr) return {};
+    return {.there = true,
+            .full = tended_.step.full_detail,
+            .radius_m = adaptive_->radius_m(tended_.fidelity),
+            .shape = static_cast<std::uint8_t>(form_.shape),
+            .width = form_.width,
+            .error_far = form_.error_far,
+            .deviation_m = static_cast<double>(tended_.deviation_m),
+            .vertices = tended_.step.vertices,
+            .triangles = tended_.step.triangles,
+            .near_triangles = items(tended_.fidelity),
+            .turn_s = tended_.turn_s,
+            .turn_predicted_s = adaptive_->predicted_s(tended_.fidelity)};
+}
+
 ModelTouch SurfaceModel::touch() const noexcept {
     ModelTouch t;
     t.there = true;
@@ -133,6 +170,7 @@ ModelTouch SurfaceModel::touch() const noexcept {
     t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
     t.state = static_cast<std::uint8_t>(contact_.state);
     t.regime = static_cast<std::uint8_t>(regime_);
+    t.detail = detail();
     t.planes = contact_.planes;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         t.normal[i] = contact_.plane[i].normal;
@@ -176,8 +214,7 @@ Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m) noexc
 StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    const std::uint32_t moves = items(budget.fidelity);
-    result.load.items = moves;
+    result.load.items = items(budget.fidelity);
     fade_.begin_step();
     const bool there = tool_is_there(tool.T_world_tool);
     const bool clutch = (tool.buttons & 1U) != 0;
@@ -203,7 +240,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
                 fade_.rise();
             choose_surface(goal_m, budget.fidelity);
             const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
-            contact_ = solver_.follow(goal_m, hurried ? 1 : moves, budget.deadline);
+            contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
             if (on_time && contact_.state == ContactState::lagging) ++lagging_;
             if (!on_time || contact_.state == ContactState::lagging) result.status = StepStatus::out_of_time;

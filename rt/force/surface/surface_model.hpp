@@ -65,6 +65,7 @@ public:
     static constexpr double kGlideN = 0.05;  // what a step may change the force by, besides what the hand did
     static constexpr double kLostLimits = 2.0;
     static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
+    static constexpr std::uint32_t kDeviationEvery = 25;  // turns of tend(): it looks at all that is active
 
     static constexpr double kLeastM = 1e-3,
                             kMostM = 4e-3;  // of full detail beyond the tool, in the hand's world
@@ -74,7 +75,9 @@ public:
                  const VertexForest* forest = nullptr);
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
+    // Triangles expected around the tool in mode chr, else moves.
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] static std::uint32_t moves(float fidelity) noexcept TACT_RT;
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -87,6 +90,9 @@ public:
 
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
+    // The filter's form, in mode chr.
+    bool order(const ModelOrder& order) noexcept TACT_RT override;
+    [[nodiscard]] double tend_s() const noexcept TACT_RT override { return tended_.turn_s; }
     [[nodiscard]] bool tended() const noexcept override { return adaptive_ != nullptr; }
     void tend(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
@@ -94,6 +100,7 @@ public:
     [[nodiscard]] const AdaptiveSurface* adaptive() const { return adaptive_.get(); }
 
 private:
+    [[nodiscard]] ModelDetail detail() const noexcept TACT_RT;
     [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept TACT_RT;
     [[nodiscard]] Vec3 shaded_turn_m(const ContactPlane& plane) const noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
@@ -113,14 +120,27 @@ private:
     struct Whereabouts {  // of the proxy, for tend()
         Vec3 proxy_m = Vec3::Zero();
         float fidelity = 1.0F;
+        FilterForm form;
         bool there = false;
+    };
+    struct Tended {  // by tend(), for those who look on
+        RefineStep step;
+        float deviation_m = 0.0F;
+        float fidelity = 1.0F;
+        double turn_s = 0.0;
     };
     SurfaceMesh full_;
     std::unique_ptr<AdaptiveSurface> adaptive_;
     TripleBuffer<Whereabouts> whereabouts_;
     SurfaceRegime regime_ = SurfaceRegime::tree;
     std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
-    RefineStep refined_;      // of the thread that tends
+    RefineStep refined_;      // of the thread that tends, as the next four
+    double turn_s_ = 0.0;
+    float deviation_m_ = 0.0F;
+    std::uint32_t turns_ = 0;
+    TripleBuffer<Tended> tended_news_;
+    Tended tended_;    // of the servo
+    FilterForm form_;  // as ordered
 };
 
 // Fails by StartupError where the scene is no surface or a setting is out of range. The scene must outlive the

@@ -8,14 +8,14 @@
 namespace tact {
 namespace {
 
-constexpr double kNoHandM = 1e3;
+constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // of its radius
 // About twice the median that was measured: 1000 points of a block flat on a rough sphere took 70 us (TOOLS.md).
 constexpr double kStepUs = 10.0, kPointUs = 0.15;
 
-bool hand_is_there(const Pose& pose) noexcept {
+bool holds_tool(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
-    return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kNoHandM && turn > 0.25 && turn < 4.0;
+    return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kFarHandM && turn > 0.25 && turn < 4.0;
 }
 
 ToolContactSettings tool_contact_settings(const SceneMeta& meta, const TouchTool& tool,
@@ -64,7 +64,7 @@ void ToolModel::reset(const ToolState& tool) noexcept {
     fade_.cut();
     touch_ = {};
     ++grips_;
-    const bool there = hand_is_there(tool.T_world_tool);
+    const bool there = holds_tool(tool.T_world_tool);
     // A proxy that is good is kept: it knows on which side of the surface it is.
     const bool keeps =
         there && seated_ &&
@@ -128,7 +128,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
     result.load = predict(budget.fidelity);
     fade_.begin_step();
     const bool clutch = (tool.buttons & 1U) != 0;
-    if (!hand_is_there(tool.T_world_tool)) {
+    if (!holds_tool(tool.T_world_tool)) {
         fade_.cut();
         touch_ = {};
         seated_ = false;

@@ -1,4 +1,4 @@
-#include "rt/force/surface/refinement.hpp"
+#include "ipc/assets/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr std::size_t kPathMax = 1U << 12;       // deeper trees are not followe
 
 }  // namespace
 
-Refinement::Refinement(const VertexForest& forest, const RefineSettings& settings)
+Refinement::Refinement(const VertexForest& forest, const RefinementSettings& settings)
     : forest_(forest),
       settings_(settings),
       frontier_(std::min(settings.nodes_max, forest.leaves())),

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "rt/force/surface/triple_buffer.hpp"
+#include "ipc/assets/triple_buffer.hpp"
 
 namespace tact {
 

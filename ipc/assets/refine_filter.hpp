@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -58,6 +59,15 @@ public:
         return frustums(radius_m, point);
     }
 
+    // The seed's approximation of a bell: three frustums, one in another.
+    static RefineFilter multiple_frustum(float radius_m, float width_m, float error_far_m) {
+        const std::array<Point, 4> corner{{{radius_m, 0.1F * error_far_m},
+                                           {radius_m + 0.5F * width_m, 0.4F * error_far_m},
+                                           {radius_m + width_m, 0.7F * error_far_m},
+                                           {radius_m + 2.0F * width_m, error_far_m}}};
+        return frustums(radius_m, corner);
+    }
+
     [[nodiscard]] float radius_m() const noexcept { return count_ > 0 ? point_[0].distance_m : kEverywhere; }
     [[nodiscard]] std::span<const Point> points() const noexcept { return std::span(point_).first(count_); }
     [[nodiscard]] float allowed_m(float distance_m) const noexcept {
@@ -87,6 +97,27 @@ private:
     std::size_t count_ = 0;
     std::array<float, kPointsMax> allows_{};     // errors of the points; beyond the last, nothing is more
     std::array<float, kPointsMax> per_error_{};  // distance gained by allowing more, up to each point
+};
+
+// What a person chooses of a filter: the rest is a matter of the radius of full detail, the knob's.
+struct FilterForm {
+    enum class Shape : std::uint8_t { bell, multiple_frustum };
+    static constexpr float kLeast = 0.05F, kMost = 20.0F;  // of both numbers
+
+    Shape shape = Shape::bell;
+    float width = 1.0F;      // over which detail falls off beyond the radius, in radii
+    float error_far = 0.5F;  // allowed far away, in radii
+
+    [[nodiscard]] bool possible() const noexcept {
+        return shape <= Shape::multiple_frustum && width >= kLeast && width <= kMost && error_far >= kLeast &&
+               error_far <= kMost;
+    }
+    [[nodiscard]] RefineFilter filter(float radius_m) const {
+        return shape == Shape::bell
+                   ? RefineFilter::bell(radius_m, width * radius_m, error_far * radius_m)
+                   : RefineFilter::multiple_frustum(radius_m, width * radius_m, error_far * radius_m);
+    }
+    [[nodiscard]] bool operator==(const FilterForm&) const = default;
 };
 
 }  // namespace tact

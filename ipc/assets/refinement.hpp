@@ -23,16 +23,16 @@
 #include <span>
 #include <vector>
 
+#include "ipc/assets/cut_list.hpp"
+#include "ipc/assets/near_triangles.hpp"
+#include "ipc/assets/refine_filter.hpp"
 #include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/huge_pages.hpp"
 #include "ipc/base/pose.hpp"
-#include "rt/force/surface/cut_list.hpp"
-#include "rt/force/surface/near_triangles.hpp"
-#include "rt/force/surface/refine_filter.hpp"
 
 namespace tact {
 
-struct RefineSettings {
+struct RefinementSettings {
     RefineFilter filter;
     double look_ahead_s = 0.015;         // how far ahead of the probe its path is refined
     double near_m = 0.0;                 // around that path: what near() holds
@@ -53,7 +53,7 @@ struct RefineStep {
 
 class Refinement {
 public:
-    Refinement(const VertexForest& forest, const RefineSettings& settings);
+    Refinement(const VertexForest& forest, const RefinementSettings& settings);
 
     // A probe that is not finite changes nothing. with_near: near() is made anew, for the same box.
     RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s, bool with_near = true) noexcept;
@@ -178,7 +178,7 @@ private:
     }
 
     const VertexForest& forest_;
-    RefineSettings settings_;
+    RefinementSettings settings_;
     HugeVector<State> state_;
     HugeVector<std::uint64_t> active_leaf_;  // a bit each: the full mesh's vertex is there
     CutList frontier_;                       // active nodes

@@ -1,5 +1,5 @@
 // Splits and merges: what changes in the cut, and what must be so before.
-#include "rt/force/surface/refinement.hpp"
+#include "ipc/assets/refinement.hpp"
 
 namespace tact {
 namespace {
