@@ -19,6 +19,7 @@
 #include "gui/app/contour_rows.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/describe.hpp"
+#include "gui/app/detail_desk.hpp"
 #include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
 #include "gui/app/grounds.hpp"
@@ -192,6 +193,7 @@ private:
         list_.start(homes);
         if (controller_.have_bodies) list_.follow(controller_.bodies);
         desk_.use(content_);
+        detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
         window_.set_title(std::string("Tact: ") + state_.scene.title);
         spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
@@ -201,7 +203,8 @@ private:
     void handle_input() {
         const ImGuiIO& io = ImGui::GetIO();
         if (!io.WantCaptureMouse) {
-            const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y).view.height;
+            const float height =
+                layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, !state_.scene.surface).view.height;
             if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
@@ -294,6 +297,13 @@ private:
         return drawn;
     }
 
+    void follow_detail() {
+        const bool touched = controller_.attached() && controller_.have_touch;
+        if (const auto made = detail_.follow(touched ? &controller_.touch : nullptr, state_.toggles.detail,
+                                             state_.detail, state_.wishes))
+            view_->show_detail(*made);
+    }
+
     void follow_bodies(std::int64_t now_ns) {
         list_.predict(now_ns);
         const BodiesTopic* const topic =
@@ -311,8 +321,8 @@ private:
 
     void draw_scene(std::int64_t now_ns) {
         const Window::Size size = window_.size();
-        const Layout layout =
-            layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height));
+        const Layout layout = layout_for(theme_, static_cast<float>(size.width),
+                                         static_cast<float>(size.height), !state_.scene.surface);
         const PixelRect& rect = layout.view;
         const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
         ViewFrame view{};
@@ -347,12 +357,14 @@ private:
         if (const auto pen = touching_pen()) view.second_hand = pen;
         view.T_model_tool = touching_tool();
         if (view_options_.force && content_->meta.kind == SceneKind::surface) view.touch = touch_marks();
+        follow_detail();
         state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
         state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
         state_.force_n = view.force_world_n.norm();
         state_.arrow_a_per_n = static_cast<double>(view_->arrow_a_per_n());
         const SceneToggles& t = state_.toggles;
         view_options_.surface = t.surface;
+        view_options_.detail = t.detail && t.surface;
         view_options_.backbone = t.backbone;
         view_options_.codebook = t.codebook;
         view_options_.graph = t.graph;
@@ -376,7 +388,12 @@ private:
         draw_dashboard(theme_, state_, io.DisplaySize.x, io.DisplaySize.y);
         window_.draw_panels();
         for (const Wish& wish : state_.wishes)
-            if (!commands_.send({wish.kind, wish.value, wish.text, wish.body, {}}, state_.now_ns))
+            if (!commands_.send({wish.kind,
+                                 wish.value,
+                                 wish.text,
+                                 wish.body,
+                                 {Vec3(wish.second, 0.0, 0.0), Quat::Identity()}},
+                                state_.now_ns))
                 spdlog::warn("a command with a text too long was not sent");
         state_.wishes.clear();
     }
@@ -435,6 +452,7 @@ private:
     std::unique_ptr<SceneView> view_;
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     FitDesk desk_;
+    DetailDesk detail_;
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;

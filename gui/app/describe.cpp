@@ -17,6 +17,7 @@ SceneFacts describe(const SceneContent& content) {
     facts.bodies = content.bodies.size();
     for (const Structure& s : content.bodies) facts.atoms += s.size();
     facts.voxels = content.grid.size;
+    facts.surface = content.meta.kind == SceneKind::surface;
     return facts;
 }
 

@@ -28,6 +28,7 @@ struct Wish {
     double value = 0.0;
     std::string text;
     std::uint32_t body = 0;  // id
+    double second = 0.0;     // another number, where a command has one
 };
 
 // What a person asked to be done with the bodies that takes more than one command.
@@ -62,8 +63,9 @@ struct SceneToggles {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
     int style = 0;  // glass, solid, wire
     bool depth_cue = true;
-    int molecule = 1;   // trace, tube, sticks, spheres
-    int colouring = 0;  // by chain, element, body
+    bool detail = false;  // the length of edges as colour, where the scene has a forest
+    int molecule = 1;     // trace, tube, sticks, spheres
+    int colouring = 0;    // by chain, element, body
 };
 
 struct SceneFacts {
@@ -75,7 +77,27 @@ struct SceneFacts {
     double mesh_error_m = 0.0;
     std::size_t bodies = 0, atoms = 0;
     std::array<std::uint32_t, 3> voxels{};
-    std::string warning;  // the controller runs another scene, ...
+    std::string warning;   // the controller runs another scene, ...
+    bool surface = false;  // to touch: no map, no bodies
+};
+
+// The surface as it is kept fine around the tool.
+struct DetailFacts {
+    bool possible = false;  // the scene has a forest
+    bool felt = false;      // the controller keeps one (mode chr); else the window alone
+    bool full = false;      // felt: within the radius all is as in the full mesh
+    std::string error;
+    // As it is; a person's choice is sent where it is felt, and comes back.
+    int shape = 0;                          // bell, multiple frustum
+    float width = 1.0F, error_far = 0.5F;   // in radii
+    bool editing = false, changed = false;  // by a person, for the application to take
+    double radius_m = 0.0;                  // model, as all lengths here
+    std::uint32_t vertices = 0, triangles = 0, near_triangles = 0;
+    double deviation_m = 0.0;
+    double turn_s = 0.0, turn_predicted_s = 0.0;
+    // Of the colours; 0: nothing is drawn.
+    double finest_m = 0.0, coarsest_m = 0.0;
+    std::array<ImU32, 32> colours{};  // from the finest to the coarsest
 };
 
 // What the metrics of a fit mean: ipc/assets/fit_metrics.hpp.
@@ -145,6 +167,7 @@ struct DashboardState {
     FitFacts fit;
     FittingFacts fitting;
     ContourFacts contours;
+    DetailFacts detail;
     History history;
     std::deque<EventLine> events;  // newest first
     std::uint64_t events_missed = 0;
@@ -179,7 +202,8 @@ struct Layout {
 
     [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, fit, scene, plots, events}; }
 };
-[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px);
+// with_fit: false where nothing is fitted; its place goes to the scene.
+[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, bool with_fit = true);
 
 // Draws everything but the 3D view and the cards' ground.
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px);

@@ -5,6 +5,7 @@
 
 #include "gui/panels/panels.hpp"
 #include "gui/panels/widgets.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {
@@ -22,20 +23,17 @@ struct Pen {
     }
 };
 
-// Maps are measured in angstrom, meshes may be as large as landscapes.
-std::string length_text(double a) {
-    struct Unit {
-        double a;
-        const char* name;
-    };
-    for (const Unit& u : {Unit{1e10, "m"}, Unit{1e7, "mm"}, Unit{1e4, "µm"}})
-        if (a >= u.a) return format("%g %s", a / u.a, u.name);
-    return format("%g Å", a);
-}
-
 double round_down(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     return most >= 5.0 * power ? 5.0 * power : most >= 2.0 * power ? 2.0 * power : power;
+}
+
+// The next of 1, 2, 5 times a power of ten.
+double round_up(double least) {
+    const double power = std::pow(10.0, std::floor(std::log10(least) + 1e-9));
+    for (const double times : {1.0, 2.0, 5.0})
+        if (least <= times * power * (1.0 + 1e-6)) return times * power;
+    return 10.0 * power;
 }
 
 void scale_bar(const Pen& pen, const DashboardState& state, const PixelRect& v) {
@@ -47,7 +45,7 @@ void scale_bar(const Pen& pen, const DashboardState& state, const PixelRect& v) 
     pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, colour::kText);
     pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, colour::kText);
     pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, colour::kText);
-    const std::string text = length_text(a);
+    const std::string text = length_text(a * kAngstromM);
     pen.text(pen.theme.small, {0.5F * (x0 + x1 - pen.width(pen.theme.small, text)), y - pen.theme.px(18.0F)},
              colour::kText, text);
 }
@@ -86,7 +84,7 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
         };
         if (state.toggles.force && state.attached)
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
-                                        length_text(state.arrow_a_per_n).c_str()));
+                                        length_text(state.arrow_a_per_n * kAngstromM).c_str()));
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
@@ -102,6 +100,32 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
         pen.theme.small,
         {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, help), v.y + pen.theme.px(30.0F)},
         colour::kDim, help);
+}
+
+// What the colours of the detail stand for: short edges above.
+void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    const DetailFacts& d = state.detail;
+    if (!state.toggles.detail || !(d.finest_m > 0.0)) return;
+    const float w = pen.theme.px(12.0F), h = pen.theme.px(132.0F);
+    const float x = v.x + v.width - pen.theme.px(100.0F), y0 = v.y + pen.theme.px(84.0F);
+    pen.text(pen.theme.small, {x, y0 - pen.theme.px(22.0F)}, colour::kText, "edge length");
+    const auto steps = static_cast<float>(d.colours.size());
+    for (std::size_t i = 0; i < d.colours.size(); ++i) {
+        const float top = y0 + h * static_cast<float>(i) / steps;
+        pen.draw->AddRectFilled({x, top}, {x + w, top + h / steps + 1.0F}, d.colours[i]);
+    }
+    // Round lengths between the ends; from one to the next at least as much as a line of text is high.
+    const double octaves = std::log2(d.coarsest_m / d.finest_m);
+    float last = y0 - h;
+    for (double length = round_up(d.finest_m); length <= d.coarsest_m * 1.001;
+         length = round_up(1.001 * length)) {
+        const float y = y0 + h * static_cast<float>(std::log2(length / d.finest_m) / octaves);
+        if (y < last + 1.1F * pen.theme.small->FontSize) continue;
+        last = y;
+        pen.draw->AddRectFilled({x + w, y - 0.5F}, {x + w + pen.theme.px(4.0F), y + 0.5F}, colour::kText);
+        pen.text(pen.theme.small, {x + w + pen.theme.px(8.0F), y - 0.5F * pen.theme.small->FontSize},
+                 colour::kText, length_text(length));
+    }
 }
 
 void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
@@ -144,6 +168,7 @@ void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& vi
     legend(pen, state, view);
     axes(pen, state, view);
     scale_bar(pen, state, view);
+    detail_scale(pen, state, view);
     message(pen, state, view);
     if (state.show_keys) keys(pen, view);
     pen.draw->PopClipRect();

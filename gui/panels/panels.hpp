@@ -11,6 +11,7 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
 // Inside the scene's card.
 void draw_bodies_tab(const Theme& theme, DashboardState& state);
 void draw_contours_tab(const Theme& theme, DashboardState& state);
+void draw_detail(const Theme& theme, DashboardState& state);
 void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card);
 void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
 // Over the 3D view: legend, scale bar, axes, what is being waited for.

@@ -37,6 +37,7 @@ void surface_card(const Theme& theme, DashboardState& state) {
     text_coloured(colour::kDim, "Surface as");
     ImGui::SameLine(theme.px(104.0F));
     choose(theme, kStyles, state.toggles.style);
+    draw_detail(theme, state);
 }
 
 void toggles(const Theme& theme, SceneToggles& t) {
@@ -77,7 +78,7 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
         text_coloured(s.loaded ? colour::kDim : colour::kWatch, s.status);
         ImGui::PopTextWrapPos();
     }
-    if (s.loaded && s.bodies == 0 && s.voxels[0] == 0) {  // a surface: nothing to place or to contour
+    if (s.loaded && s.surface) {  // nothing to place or to contour
         surface_card(theme, state);
     } else if (s.loaded) {
         static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};

@@ -4,6 +4,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "ipc/base/units.hpp"
+
 namespace tact {
 
 void begin_card(const Theme& theme, const char* title, const PixelRect& card, bool scrolls) {
@@ -137,6 +139,16 @@ std::string duration_text(double seconds) {
     if (a < 0.9995e-3) return format("%.3g µs", seconds * 1e6);
     if (a < 0.9995) return format("%.3g ms", seconds * 1e3);
     return format("%.3g s", seconds);
+}
+
+std::string length_text(double m) {
+    struct Unit {
+        double m;
+        const char* name;
+    };
+    for (const Unit& u : {Unit{1.0, "m"}, Unit{1e-3, "mm"}, Unit{1e-6, "µm"}})
+        if (m >= u.m) return format("%.3g %s", m / u.m, u.name);
+    return format("%.3g Å", m / kAngstromM);
 }
 
 std::string rate_text(double hz) {

@@ -35,6 +35,8 @@ void choose(const Theme& theme, std::span<const char* const> words, int& chosen)
 [[nodiscard]] std::string grouped(std::uint64_t n);
 // In the unit that reads best: "820 ns", "12.3 us", "4.56 ms".
 [[nodiscard]] std::string duration_text(double seconds);
+// Maps are measured in angstrom, meshes may be as large as landscapes: "12 Å", "0.5 mm".
+[[nodiscard]] std::string length_text(double m);
 [[nodiscard]] std::string rate_text(double hz);  // "998 Hz", "1.25 kHz"
 
 }  // namespace tact

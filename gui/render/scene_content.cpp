@@ -42,7 +42,7 @@ void find_extent(SceneContent& content) {
 }  // namespace
 
 std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path) {
-    const SceneFile file = SceneFile::open(path);
+    SceneFile file = SceneFile::open(path);
     auto content = std::make_shared<SceneContent>();
     content->path = path;
     content->checksum = file.checksum();
@@ -68,6 +68,11 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
         content->bonds.push_back(find_bonds(content->bodies.back()));
     }
     find_extent(*content);
+    if (content->meta.kind == SceneKind::surface && file.count({'F', 'R', 'S', 'T'}) > 0) {
+        const SurfaceMesh surface = read_surface(file);
+        const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
+        content->detail.reset(new SurfaceDetail{std::move(file), surface, forest});
+    }
     return content;
 }
 

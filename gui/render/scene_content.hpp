@@ -15,9 +15,18 @@
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
+#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/assets/touch_tool.hpp"
+#include "ipc/assets/vertex_forest.hpp"
 
 namespace tact {
+
+// A surface to touch with its forest, as mapped.
+struct SurfaceDetail {
+    SceneFile file;
+    SurfaceMesh surface;
+    VertexForest forest;
+};
 
 struct SceneContent {
     std::filesystem::path path;
@@ -26,6 +35,7 @@ struct SceneContent {
     std::string note;
     std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
     std::unique_ptr<TouchTool> tool;        // null: none
+    std::unique_ptr<SurfaceDetail> detail;  // null: no surface, or one without a forest
     DensityGrid grid;                       // empty: none
     ContourScale scale;                     // what a level of it means
     std::vector<Structure> bodies;

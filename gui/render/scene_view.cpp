@@ -21,6 +21,7 @@ constexpr std::uint32_t kCodebookShownMax = 400;
 constexpr float kBallRgba[4] = {0.93F, 0.94F, 0.97F, 1.0F};
 constexpr float kGraphRgba[4] = {0.80F, 0.84F, 0.90F, 0.38F};
 constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
+constexpr float kEdgeRgba[4] = {0.02F, 0.03F, 0.05F, 0.28F};
 constexpr Rgb8 kForceColour{255, 92, 92};
 // Depth cue: from somewhat before the target to well behind it, in radii of the scene.
 constexpr float kHazeBegin = 0.6F, kHazeEnd = 1.6F, kHazeStrength = 0.8F;
@@ -111,12 +112,16 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
     if (frame.T_model_tool) draw_tool(pass);
     const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
-    if (options.surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
+    const bool detail = options.detail && detail_.indices() > 0;
+    if (detail) draw_detail(pass);
+    if (options.surface && !detail)
+        contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     if (options.codebook || options.graph) draw_codebook(pass);
     if (options.box) draw_box(pass);
-    if (options.surface) contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
+    if (options.surface && !detail)
+        contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
     glDisable(GL_BLEND);
     // Always seen, also inside the structures: everything else is drawn, so its depth may go.
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -180,6 +185,24 @@ void SceneView::draw_tool(const Pass& pass) {
         pass.eye_from_scene * scene_from_body(*pass.frame.T_model_tool, content_->centre_model_m),
         pass.projection, pass.haze, {});
     tool_.draw();
+}
+
+void SceneView::show_detail(const DetailMesh& detail) { detail_.fill(detail.mesh, GL_STREAM_DRAW); }
+
+// Faces, and their edges upon them.
+void SceneView::draw_detail(const Pass& pass) {
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 1.0F);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    detail_.draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, kEdgeRgba);
+    detail_.draw();
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDisable(GL_BLEND);
 }
 
 void SceneView::draw_second_hand(const Pass& pass) {

@@ -12,6 +12,7 @@
 
 #include "gui/render/camera.hpp"
 #include "gui/render/contours.hpp"
+#include "gui/render/detail_mesh.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
@@ -23,6 +24,7 @@ namespace tact {
 
 struct ViewOptions {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
+    bool detail = false;  // what show_detail() was given, in place of the surface
     SurfaceStyle style = SurfaceStyle::glass;
     bool depth_cue = true;  // what lies far behind fades into the background
     bool gradient = true;   // background; off: plain_ground, cheaper
@@ -53,6 +55,7 @@ public:
         contours_.approach_vertices(wanted, budget_s);
     }
     std::size_t upload() { return contours_.upload(); }
+    void show_detail(const DetailMesh& detail);
     void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
     // What a person chose of bodies and surfaces.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
@@ -81,6 +84,7 @@ private:
     void draw_touch(const Pass& pass);
     void draw_tool(const Pass& pass);
     void draw_box(const Pass& pass);
+    void draw_detail(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
     std::shared_ptr<const SceneContent> content_;
@@ -88,7 +92,7 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
-    TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_;
+    TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
 };
 

@@ -11,7 +11,7 @@ if(TACT_GUI)
     target_compile_definitions(gui_window_test PRIVATE TACT_GUI_PROGRAM="$<TARGET_FILE:tact-gui>")
     add_dependencies(gui_window_test tact-gui)
     set_tests_properties(gui_window_test PROPERTIES RUN_SERIAL ON)
-    tact_test(unit/gui_shapes_test.cpp USES gui_render assets base)
+    tact_test(unit/gui_shapes_test.cpp USES gui_render prep_surface prep_synthetic assets base)
     tact_test(unit/gui_contour_test.cpp USES gui_app gui_render prep_mesh topics shm assets base
         SYSTEM CLI11::CLI11 TIMEOUT 300)
     target_compile_definitions(gui_contour_test PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")

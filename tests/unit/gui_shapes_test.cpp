@@ -1,4 +1,4 @@
-// Bonds, colours and shapes of atoms: gui/render/bonds, elements, atom_shapes.
+// What is drawn without a window: bonds, colours and shapes of atoms, marks of touch, the detail of a surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,9 +6,13 @@
 #include <set>
 
 #include "gui/render/atom_shapes.hpp"
+#include "gui/render/detail_mesh.hpp"
 #include "gui/render/touch_marks.hpp"
 #include "gui/render/tube.hpp"
+#include "gui/render/viridis.hpp"
 #include "ipc/base/units.hpp"
+#include "prep/surface/bake_surface.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
 
 namespace tact {
 namespace {
@@ -161,6 +165,77 @@ TEST(TouchMarks, ReachFromTheProbeToTheProxyAndAsFarAsThePlanePushes) {
                 0.1F);
     touch.probe_model_m.x() = std::nan("");
     EXPECT_TRUE(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F).index.empty());
+}
+
+TEST(Detail, ViridisGoesFromDarkVioletToYellowAndGetsLighterAllTheWay) {
+    EXPECT_EQ(viridis(-3.0F), viridis(0.0F));
+    EXPECT_EQ(viridis(std::nanf("")), viridis(0.0F));
+    EXPECT_NEAR(viridis(0.0F)[0], 68, 6);
+    EXPECT_NEAR(viridis(0.0F)[2], 84, 6);
+    EXPECT_NEAR(viridis(1.0F)[0], 253, 6);
+    EXPECT_NEAR(viridis(1.0F)[1], 231, 6);
+    double before = 0.0;
+    for (int i = 0; i <= 20; ++i) {
+        const auto c = viridis(static_cast<float>(i) / 20.0F);
+        const double light = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+        EXPECT_GT(light, before);
+        before = light;
+    }
+}
+
+TEST(Detail, TheDrawnSurfaceIsFineAroundTheProbeAndTheColourSaysSo) {
+    SceneWriter out;
+    SurfaceInput input;
+    input.mesh = smooth_sphere(20);
+    input.picture = false;
+    static_cast<void>(bake_surface(std::move(input), out));
+    const std::vector<std::byte> bytes = out.to_bytes();
+    SceneFile file = SceneFile::from_bytes(bytes, "sphere.tact");
+    const SurfaceMesh surface = read_surface(file);
+    const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
+    SceneContent content;
+    content.detail.reset(new SurfaceDetail{std::move(file), surface, forest});
+
+    DetailCut cut(content);
+    const auto settled = [&](const DetailWish& wish) {
+        DetailMesh made = cut.step(wish);
+        for (int i = 0; i < 100 && !made.settled; ++i) made = cut.step(wish);
+        EXPECT_TRUE(made.settled);
+        return made;
+    };
+    DetailWish wish{Vec3(0.0, 0.0, 0.05), 0.01, {}};
+    const DetailMesh seen = settled(wish);
+    EXPECT_LT(seen.triangles, 6000U);  // of 8000
+    EXPECT_EQ(seen.mesh.index.size(), std::size_t{3} * seen.triangles);
+    EXPECT_EQ(seen.mesh.vertex.size(), seen.vertices);
+    EXPECT_GT(seen.deviation_m, 0.0);
+    // An edge of the full mesh is some 2.6 mm long.
+    EXPECT_GT(seen.finest_m, 0.5e-3);
+    EXPECT_LT(seen.finest_m, 2.7e-3);
+    EXPECT_GE(seen.coarsest_m, 2.0 * seen.finest_m);
+    double near = 0.0, nears = 0.0, far = 0.0, fars = 0.0;
+    for (const TubeVertex& v : seen.mesh.vertex) {
+        const Eigen::Vector3f at = Eigen::Vector3f(v.position_a) * static_cast<float>(kAngstromM),
+                              normal(v.normal);
+        EXPECT_NEAR(normal.norm(), 1.0F, 1e-4F);
+        EXPECT_GT(normal.dot(at.normalized()), 0.7F);
+        const bool around = (at - wish.probe_m.cast<float>()).norm() < 0.008F;
+        if (around) {
+            near += v.rgba[1];
+            nears += 1.0;
+        } else if (at.z() < -0.03F) {
+            far += v.rgba[1];
+            fars += 1.0;
+        }
+    }
+    ASSERT_GT(nears, 0.0);
+    ASSERT_GT(fars, 0.0);
+    EXPECT_GT(near / nears, far / fars + 40.0);
+    wish.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
+    EXPECT_GT(settled(wish).triangles, seen.triangles);
+    // The same wish, the same cut, wherever it was before.
+    wish.form = {};
+    EXPECT_EQ(settled(wish).triangles, seen.triangles);
 }
 
 }  // namespace
