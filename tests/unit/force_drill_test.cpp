@@ -396,8 +396,7 @@ ForceModelCase contract_case(const char* name, BurrShape shape, double z_m) {
     return c;
 }
 INSTANTIATE_TEST_SUITE_P(Drilling, ForceModelContract,
-                         testing::Values(contract_case("sphere", BurrShape::sphere, 1.3e-3),
-                                         contract_case("cone", BurrShape::cone, 3.0e-3)),
+                         testing::Values(contract_case("sphere", BurrShape::sphere, 1.3e-3)),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -18,10 +18,15 @@ double penetration_of(double m0_m3, double radius_m) noexcept {
     return std::min(2.0 * s * s + std::numbers::sqrt3 * std::sin(2.0 * psi / 3.0), 2.0);
 }
 
+double elastic_for(double radius_m, double depth_at_1_n_m) noexcept {
+    const double x = std::min(depth_at_1_n_m / radius_m, 0.5);
+    return 1.0 / (radius_m * radius_m * x * std::sqrt(x));
+}
+
 BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Vec3& m1_m4,
-                     const Vec3& velocity_m_s, const Vec3& spin_rad_s) noexcept {
-    constexpr double kCapShare = 0.25;   // of a cap's moment, from which on the normal is whole
-    constexpr double kCapLeast = 0.005;  // of it where the ball is nearly full and a cap has none either
+                     const Vec3& velocity_m_s, const Vec3& spin_rad_s, const Vec3& way_out) noexcept {
+    constexpr double kCapShare = 0.25;  // of a cap's moment, from which on the normal is whole
+    constexpr double kCapLeast = 0.03;  // of it where the ball is nearly full and a cap has none either
     BurrForce f;
     const double x = penetration_of(m0_m3, radius_m);
     if (!(x > 0.0)) return f;
@@ -34,10 +39,16 @@ BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Ve
         const double part = std::min(moment / whole, 1.0);
         f.normal = -(part * (1.5 - 0.5 * part * part) / moment) * m1_m4;
     }
+    if (x > kWayOutFrom) {
+        const double s = std::min((x - kWayOutFrom) / (kWayOutTo - kWayOutFrom), 1.0);
+        f.normal += s * s * (3.0 - 2.0 * s) * std::max(1.0 - f.normal.norm(), 0.0) * way_out;
+    }
     const double elastic = law.elastic_pa * r2 * x * std::sqrt(x);
     f.stiffness_n_m = 1.5 * law.elastic_pa * radius_m * std::sqrt(x);
     const Vec3 lever = m1_m4 / std::max(m0_m3, 1e-30);  // to the middle of what is touched
-    const Vec3 rub = law.friction_n_s_m3 * r2 * x * lever.cross(spin_rad_s);
+    Vec3 rub = law.friction_n_s_m3 * r2 * x * lever.cross(spin_rad_s);
+    // Friction across the push feeds a burr that whirls; no more than this of the push is damped by a hand.
+    if (law.friction_share > 0.0) rub /= 1.0 + rub.norm() / (law.friction_share * elastic);
     f.wrench.force_n = elastic * f.normal + rub - law.impact_n_s_m3 * r2 * x * velocity_m_s;
     f.wrench.torque_n_m = lever.cross(rub);
     return f;

@@ -15,6 +15,8 @@ struct BurrLaw {
     double elastic_pa = 4e5;       // c_e
     double friction_n_s_m3 = 5e3;  // c_mu
     double impact_n_s_m3 = 1.5e5;  // c_i
+    double friction_share =
+        0.25;  // of the elastic force, that friction comes near and does not reach; 0: no bound
 };
 
 // x = h / R of eq. 2, x^2 - x^3 / 3 = m0 / (pi R^3): closed, exact at both ends, and rising from 0 to 2, which is a
@@ -28,10 +30,17 @@ struct BurrForce {
     double stiffness_n_m = 0.0;  // of the elastic force along the normal, for a flat surface
 };
 
+// c_e with which a flat surface holds a ball with 1 N at this depth, or at half its radius where that is less.
+[[nodiscard]] double elastic_for(double radius_m, double depth_at_1_n_m) noexcept;
+
 // Where bone is on all sides m1 vanishes and the normal has no direction: it shrinks to nothing as soon as m1 is less
-// than a quarter of what the same mass in a cap would have, so a burr in a slot is not thrown from wall to wall, and
-// one that is wholly inside solid bone (h = 2 R) feels friction and impact alone.
+// than a quarter of what the same mass in a cap would have, so a burr in a slot is not thrown from wall to wall. What
+// is missing is taken from `way_out`, the direction it was last pushed in, from two thirds full on: pressed into
+// solid bone it does not fall through. A ball that never had one feels friction and impact alone there.
 [[nodiscard]] BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Vec3& m1_m4,
-                                   const Vec3& velocity_m_s, const Vec3& spin_rad_s) noexcept TACT_RT;
+                                   const Vec3& velocity_m_s, const Vec3& spin_rad_s,
+                                   const Vec3& way_out = Vec3::Zero()) noexcept TACT_RT;
+// The depth h / R from which on way_out counts, and from which on wholly.
+inline constexpr double kWayOutFrom = 1.2, kWayOutTo = 1.7;
 
 }  // namespace tact

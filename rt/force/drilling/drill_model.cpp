@@ -30,6 +30,8 @@ void check_range(double value, double least, double most, const char* name) {
 void check_drill_settings(const DrillSettings& s) {
     check_range(s.law.elastic_pa, 1e3, 1e8, "elastic_pa");
     check_range(s.law.friction_n_s_m3, 0.0, 1e6, "friction_n_s_m3");
+    check_range(s.law.friction_share, 0.0, 10.0, "friction_share");
+    check_range(s.depth_at_1_n_m, 0.0, 0.1, "depth_at_1_n_m");
     check_range(s.law.impact_n_s_m3, 0.0, 1e7, "impact_n_s_m3");
     check_range(s.rate_per_s, 0.0, 1e4, "rate_per_s");
     check_range(s.rate_at_rad_s, 1.0, 1e5, "rate_at_rad_s");
@@ -63,9 +65,11 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
         if (radius_m > kRadiusMost * per_voxel_m_)
             throw StartupError("preparing the drill", "the burr is larger than 200 voxels",
                                "choose a smaller one, or bake larger voxels");
-        const double full = settings.law.elastic_pa * radius_m * radius_m;
+        elastic_pa_[i] = settings.depth_at_1_n_m > 0.0 ? elastic_for(radius_m, settings.depth_at_1_n_m)
+                                                       : settings.law.elastic_pa;
+        const double full = elastic_pa_[i] * radius_m * radius_m;
         const double x = std::min(std::cbrt(std::pow(settings.force_n_max / full, 2.0)), 2.0);
-        stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * settings.law.elastic_pa * radius_m * std::sqrt(x));
+        stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * elastic_pa_[i] * radius_m * std::sqrt(x));
     }
 }
 
@@ -97,6 +101,7 @@ void DrillModel::reset(const ToolState& tool) noexcept {
     led_ = false;
     fade_.cut();
     depths_ = {};
+    ways_out_.fill(Vec3::Zero());
     ++grips_;
     if (hand_is_there(tool.T_world_tool))
         T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
@@ -135,6 +140,7 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
     const Twist& twist = tool.twist_world;
     const bool known = twist.linear_m_s.allFinite() && twist.angular_rad_s.allFinite();
     const Vec3 axis = q * Vec3::UnitZ();
+    BurrLaw law = settings_.law;
     const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const ToolBall& ball = tool_.ball[i];
@@ -143,18 +149,23 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius,
                                            (felt.late ? kBlockCoarse : block) * radius, depths_[i]);
         depths_[i] = 0.0;
-        if (!(m.m0 > 0.0)) continue;
+        if (!(m.m0 > 0.0)) {
+            ways_out_[i].setZero();
+            continue;
+        }
         const Vec3 arm_m = q * ball.centre_tool_m;
         const Vec3 velocity_m_s =
             known ? Vec3(twist.linear_m_s + twist.angular_rad_s.cross(arm_m)) : Vec3(Vec3::Zero());
         const Vec3 spin_rad_s = ball.cuts ? Vec3(drive_.burr_rad_s * axis) : Vec3(Vec3::Zero());
-        const BurrForce f = burr_force(settings_.law, ball.radius_m, volume * m.m0,
-                                       volume * per_voxel_m_ * m.m1, velocity_m_s, spin_rad_s);
+        law.elastic_pa = elastic_pa_[i];
+        const BurrForce f = burr_force(law, ball.radius_m, volume * m.m0, volume * per_voxel_m_ * m.m1,
+                                       velocity_m_s, spin_rad_s, ways_out_[i]);
+        if (f.depth < kWayOutFrom) ways_out_[i] = f.normal;
         const Vec3 force_n = ball.weight * f.wrench.force_n;
         felt.wrench.force_n += force_n;
         felt.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
-        felt.elastic_n += ball.weight * settings_.law.elastic_pa * ball.radius_m * ball.radius_m * f.depth *
-                          std::sqrt(f.depth);
+        felt.elastic_n +=
+            ball.weight * law.elastic_pa * ball.radius_m * ball.radius_m * f.depth * std::sqrt(f.depth);
         if ((ball.cuts || i == 0) && f.depth > depth_) {
             depth_ = f.depth;
             head_ = f;

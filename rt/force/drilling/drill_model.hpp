@@ -47,6 +47,8 @@ struct DrillBone {
 struct DrillSettings {
     DrillToolSettings tool;
     BurrLaw law;
+    // c_e of each ball by elastic_for(); 0: law.elastic_pa of all.
+    double depth_at_1_n_m = 1.25e-3;
     double rate_per_s = 40.0;  // a of eq. 12 of solid bone, at this speed of the burr:
     double rate_at_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     double soft = 2.0;  // a of the softest bone over that of solid bone; linear between
@@ -140,6 +142,8 @@ private:
     bool led_ = false;                              // cut_voxels_ are of a tool that was led here
     double pending_s_ = 0;                          // not cut yet
     std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
+    std::array<Vec3, DrillTool::kMax> ways_out_{};
+    std::array<double, DrillTool::kMax> elastic_pa_{};
     double depth_ = 0.0, phase_rad_ = 0.0;
     BurrForce head_;  // of the deepest ball of the head
     Pose T_model_tool_;
