@@ -64,18 +64,19 @@ ScanCrop parse_crop(const std::string& text) {
     return crop;
 }
 
-// Volume, labels, what is computed from them, the sections and the file's bytes, the most that lie side by side.
-void say_memory(double voxels, double bytes_a_voxel) {
+void say_memory(double voxels, double bytes) {
     std::fprintf(stderr, "%.0f million voxels; about %.0f MB of memory are needed\n", 1e-6 * voxels,
-                 1e-6 * voxels * bytes_a_voxel);
+                 1e-6 * bytes);
 }
 
 BoneInput drill_made(const DrillSettings& o, Console& console) {
     BoneInput input;
     TemporalBone made = o.made;
     made.voxel_m = o.made_voxel_mm > 0.0 ? 1e-3 * o.made_voxel_mm : 0.05 / made.voxels;
-    const double edge = made.voxels;
-    say_memory(edge * edge * edge, 6.0);
+    BoneBricks bricks;
+    bricks.size = {made.voxels, made.voxels, made.voxels};
+    bricks.voxel_m = made.voxel_m;
+    say_memory(static_cast<double>(bricks.bytes()), bake_bytes(bricks, true, 8));
     const Progress progress = console.progress();
     input.bone = make_temporal_bone(
         made, [&](double fraction, const char* what) { return progress(0.5 * fraction, what); });
@@ -102,7 +103,7 @@ BoneInput drill_scan(const DrillSettings& o, Console& console) {
                            "give one, or one for columns, rows and slices");
     for (std::size_t c = 0; c < 3 && o.bone_colour.size() == 3; ++c)
         settings.bone_colour[c] = static_cast<std::uint8_t>(o.bone_colour[c]);
-    settings.announce = [](double voxels, double bytes) { say_memory(voxels, bytes / voxels); };
+    settings.announce = say_memory;
     settings.warn = [&console](const std::string& line) {
         console.clear();
         std::fprintf(stderr, "warning: %s\n", line.c_str());

@@ -60,6 +60,15 @@ void place_hand(const BoneBricks& bricks, const BoneBox& box, SceneMeta& meta) {
 
 }  // namespace
 
+double bake_bytes(const BoneBricks& bricks, bool labelled, std::size_t fields) {
+    // Densities or labels, their sections, and the file's bytes; fields as sections and in the file.
+    const auto voxels = static_cast<double>(bricks.bytes());
+    const double step = distance_step(bricks);
+    constexpr double kProgramBytes = 2e7;
+    return kProgramBytes +
+           voxels * (labelled ? 5.0 + 4.0 * static_cast<double>(fields) / (step * step * step) : 3.0);
+}
+
 BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progress) {
     BakedBone baked;
     BoneData& bone = input.bone;

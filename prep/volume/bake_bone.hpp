@@ -31,6 +31,8 @@ struct BakedBone {
     std::uint32_t distance_fields = 0;
 };
 
+// The most that bone and scene take side by side, with that many distance fields; without labels: none.
+double bake_bytes(const BoneBricks& bricks, bool labelled, std::size_t fields);
 BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progress = {});
 
 }  // namespace tact

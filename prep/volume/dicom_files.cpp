@@ -143,7 +143,8 @@ template <class T>
 void scaled(const std::vector<char>& bytes, const gdcm::PixelFormat& format, const DicomSlice& s,
             double padding, std::span<float> out) {
     // Bits above those stored may hold anything.
-    const unsigned unused = 8 * sizeof(T) - std::min<unsigned>(format.GetBitsStored(), 8 * sizeof(T));
+    const unsigned stored = format.GetBitsStored(), all = 8 * sizeof(T);
+    const unsigned unused = stored > 0 && stored < all ? all - stored : 0;
     for (std::size_t i = 0; i < out.size(); ++i) {
         T value;
         std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));

@@ -219,10 +219,11 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     if (o.crop) crop_scan(scan, *o.crop);
     const SamplePlan plan = plan_samples(scan, o.voxel_mm, o.face);
     const bool labelled = opened.palette || !o.labels.empty();
-    // Densities and labels, what is computed from them, the sections and the file's bytes.
     if (o.announce) {
         const auto voxels = static_cast<double>(plan.bricks.bytes());
-        o.announce(voxels, voxels * (labelled ? 6.0 : 3.0) + 8.0 * static_cast<double>(scan.pixels()) +
+        constexpr std::size_t kFieldsExpected = 8;
+        o.announce(voxels, bake_bytes(plan.bricks, labelled, kFieldsExpected) +
+                               8.0 * static_cast<double>(scan.pixels()) +
                                (labelled ? static_cast<double>(scan.pixels() * scan.slice.size()) : 0.0));
     }
     std::vector<ScanLabel> known = scan.label;
