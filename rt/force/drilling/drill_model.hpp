@@ -140,7 +140,6 @@ private:
     std::uint32_t turn_count_ = 1, turn_ = 0;
     bool asked_ = false;                            // reset() was called
     bool led_ = false;                              // cut_voxels_ are of a tool that was led here
-    double pending_s_ = 0;                          // not cut yet
     std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
     std::array<Vec3, DrillTool::kMax> ways_out_{};
     std::array<double, DrillTool::kMax> elastic_pa_{};
