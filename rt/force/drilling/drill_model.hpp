@@ -139,7 +139,7 @@ private:
     std::array<Turn, kTurnsMost> turns_;
     std::uint32_t turn_count_ = 1, turn_ = 0;
     bool asked_ = false;                            // reset() was called
-    bool led_ = false;                              // cut_voxels_ are of a tool that was led here
+    bool led_ = false;                              // now_voxels_ are of a tool that was led here
     std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
     std::array<Vec3, DrillTool::kMax> ways_out_{};
     std::array<double, DrillTool::kMax> elastic_pa_{};
