@@ -1,10 +1,12 @@
 // tact info SCENE: all that another program needs to compute the same force from the same files.
-// The force of a docking scene is spelled out here, of a surface in info_surface.cpp.
+// The force of a docking scene is spelled out here, of a surface in info_surface.cpp, of bone in
+// info_drilling.cpp.
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/commands.hpp"
+#include "deploy/tact/info_drilling.hpp"
 #include "deploy/tact/info_surface.hpp"
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_report.hpp"
@@ -103,18 +105,14 @@ json docking_info(const SceneFile& file) {
 json info(const std::filesystem::path& path) {
     const SceneFile file = SceneFile::open(path);
     const SceneMeta m = read_meta(file);
-    if (m.kind != SceneKind::docking && m.kind != SceneKind::surface)
-        throw StartupError("tell the force of " + path.string(),
-                           "it is neither a map to dock into nor a surface",
-                           "tact-prep info " + path.string() + " tells what it holds");
-    const bool docking = m.kind == SceneKind::docking;
     char checksum[20];
     std::snprintf(checksum, sizeof checksum, "%016llx", static_cast<unsigned long long>(file.checksum()));
-    json all = docking ? docking_info(file) : surface_info(file);
+    const bool docking = m.kind == SceneKind::docking, surface = m.kind == SceneKind::surface;
+    json all = docking ? docking_info(file) : surface ? surface_info(file) : drilling_info(file);
     all["path"] = std::filesystem::absolute(path).string();
     all["checksum"] = checksum;
     all["title"] = std::string(m.title);
-    all["kind"] = docking ? "docking" : "surface";
+    all["kind"] = docking ? "docking" : surface ? "surface" : "drilling";
     all["note"] = note_lines(file);
     return all;
 }

@@ -6,7 +6,11 @@
 #include "deploy/tact/bench_drilling.hpp"
 #include "deploy/tact/drill_run.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/info_drilling.hpp"
 #include "deploy/tact/reproduce/drilling.hpp"
+#include "ipc/assets/bone_labels.hpp"
+#include "ipc/assets/bone_volume.hpp"
+#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::launch {
@@ -65,6 +69,35 @@ TEST(DrillingRows, the_force_rises_with_the_penetration_and_blocks_are_near_the_
             EXPECT_NEAR(rows[i].force_n[way] / rows[i].true_n, 1.0, 0.1) << i << ' ' << way;
     }
     EXPECT_NEAR(rows.back().penetration_mm, 3.0, 1e-12);
+}
+
+TEST(DrillingInfo, tells_what_another_program_needs_to_compute_the_same) {
+    BoneSample bone = bone_block({16, 16, 16}, 5e-4);
+    std::vector<std::uint8_t> label(bone.bricks.bytes(), 0);
+    for (std::uint32_t x = 0; x < 4; ++x) label[bone.bricks.voxel(x, 3, 3)] = 1;
+    SceneWriter out;
+    SceneMeta meta{};
+    meta.kind = SceneKind::drilling;
+    meta.world_per_model = 1.0;
+    write_meta(out, meta, "made by: a test\n");
+    write_bone_volume(out, {.bricks = bone.bricks, .density = bone.density});
+    write_bone_labels(out, bone.bricks, {.structure = {{"nerve", {255, 255, 0, 255}, true}}, .label = label});
+    const ScratchFolder scratch;
+    const auto path = scratch.path() / "bone.tact";
+    const std::vector<std::byte> bytes = out.to_bytes();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    const nlohmann::json told = drilling_info(SceneFile::open(path));
+    EXPECT_EQ(told["bone"]["size_voxels"], (std::vector<int>{16, 16, 16}));
+    EXPECT_DOUBLE_EQ(told["bone"]["voxel_mm"], 0.5);
+    double mass = 0.0;
+    for (const std::uint8_t d : bone.density) mass += d / 255.0;
+    EXPECT_NEAR(told["bone"]["solid_volume_mm3"].get<double>(), 0.125 * mass, 1e-9);
+    ASSERT_EQ(told["structures"].size(), 1U);
+    EXPECT_EQ(told["structures"][0]["name"], "nerve");
+    EXPECT_DOUBLE_EQ(told["structures"][0]["volume_mm3"], 0.5);
+    EXPECT_TRUE(told["structures"][0]["distance_error_mm"].is_null());
+    EXPECT_EQ(told["elastic_pa"], BurrLaw{}.elastic_pa);
 }
 
 }  // namespace
