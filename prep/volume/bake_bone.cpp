@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
-#include <cstdio>
 
 #include "ipc/base/error.hpp"
 #include "prep/volume/brick_rows.hpp"
 #include "prep/volume/distance.hpp"
+#include "prep/volume/note_line.hpp"
 
 namespace tact {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string bone_line(const char* format, ...) {
-    char text[320];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    return text;
-}
 
 struct BoneBox {
     std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX}, high{};
@@ -85,13 +75,13 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     const double voxel_m3 = b.voxel_m * b.voxel_m * b.voxel_m;
     baked.bone_m3 = static_cast<double>(box.sum) / 255.0 * voxel_m3;
     for (const std::string& line : input.note) baked.note += line + '\n';
-    baked.note += bone_line("volume: %u x %u x %u voxels of %.4g mm\n", b.size[0], b.size[1], b.size[2],
+    baked.note += note_line("volume: %u x %u x %u voxels of %.4g mm\n", b.size[0], b.size[1], b.size[2],
                             1e3 * b.voxel_m);
     baked.note +=
-        bone_line("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
+        note_line("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
                   100.0 * static_cast<double>(box.voxels) / (double{1} * b.size[0] * b.size[1] * b.size[2]));
     if (bone.view().has_hu())
-        baked.note += bone_line("density: 0 is %g HU and below, 255 is %g HU and above\n",
+        baked.note += note_line("density: 0 is %g HU and below, 255 is %g HU and above\n",
                                 static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));
     write_bone_volume(out, bone.view());
     std::vector<std::uint8_t>().swap(bone.density);
@@ -115,11 +105,11 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
             spacing_m = built.field.spacing_m;
         }
         for (std::size_t i = 0; i < bone.structure.size(); ++i)
-            baked.note += bone_line("structure: %s, %.4g mm3%s\n", bone.structure[i].name.c_str(),
+            baked.note += note_line("structure: %s, %.4g mm3%s\n", bone.structure[i].name.c_str(),
                                     1e9 * voxel_m3 * static_cast<double>(count[i + 1]),
                                     bone.structure[i].critical ? ", critical" : "");
         if (!critical.empty())
-            baked.note += bone_line("distances: every %.3g mm, wrong by %.2g mm at the most\n",
+            baked.note += note_line("distances: every %.3g mm, wrong by %.2g mm at the most\n",
                                     1e3 * spacing_m, 1e3 * error_m);
         write_bone_labels(out, b, {bone.structure, bone.label});
     }

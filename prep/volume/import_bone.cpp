@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 
 #include "ipc/base/error.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/volume/dicom.hpp"
+#include "prep/volume/note_line.hpp"
 #include "prep/volume/png_stack.hpp"
 #include "prep/volume/raw_scan.hpp"
 
@@ -23,15 +23,6 @@ struct OpenedScan {
     Scan scan;
     std::shared_ptr<StackPalette> palette;
 };
-
-[[gnu::format(printf, 1, 2)]] std::string scan_line(const char* format, ...) {
-    char text[320];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    return text;
-}
 
 bool has_pictures(const fs::path& folder) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -105,7 +96,7 @@ DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress&
     if (o.solid) range.high = *o.solid;
     if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
         throw StartupError("tell bone from the rest",
-                           scan_line("the threshold is %g and solid bone is %g", range.low, range.high),
+                           note_line("the threshold is %g and solid bone is %g", range.low, range.high),
                            "give a --solid-hu above --threshold-hu");
     return range;
 }
@@ -170,7 +161,7 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
     }
     if (bone_colour == 256)
         throw StartupError("tell bone from the rest",
-                           scan_line("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
+                           note_line("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
                                      o.bone_colour[1], o.bone_colour[2]),
                            "give --bone-colour RED,GREEN,BLUE");
     // The number 0 stands for no label: the first colour met, if it is a structure, takes a free one.
@@ -214,7 +205,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     };
     OpenedScan opened = open_scan(o.scan, o, progress);
     Scan& scan = opened.scan;
-    const std::string size = scan_line("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
+    const std::string size = note_line("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
                                        scan.slice.size(), scan.column_mm, scan.row_mm);
     if (o.crop) crop_scan(scan, *o.crop);
     const SamplePlan plan = plan_samples(scan, o.voxel_mm, o.face);
@@ -245,7 +236,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             bone.hu_at_255 = static_cast<float>(range.high);
         } else {
             input.note.push_back(
-                scan_line("bone: values above %g, solid at %g and above", range.low, range.high));
+                note_line("bone: values above %g, solid at %g and above", range.low, range.high));
         }
         bone.density = sample_density(scan, plan, range.low, range.high, progress);
         if (!o.labels.empty()) {
@@ -273,7 +264,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             scan.origin_mm + scan.axes * Vec3(plan.start_mm[0] + 0.5 * plan.voxel_mm * (plan.count[0] - 1.0),
                                               plan.start_mm[1] + 0.5 * plan.voxel_mm * (plan.count[1] - 1.0),
                                               plan.start_mm[2] + 0.5 * plan.voxel_mm * (plan.count[2] - 1.0));
-        input.note.push_back(scan_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up in the scan",
+        input.note.push_back(note_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up in the scan",
                                        middle.x(), middle.y(), middle.z()));
     } else {
         scan.warning.emplace_back("the file does not say which side is left: the bone may be mirrored");
