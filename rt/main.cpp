@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -31,6 +32,7 @@
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/text.hpp"
 #include "rt/force/docking/docking_model.hpp"
+#include "rt/force/drilling/drill_model.hpp"
 #include "rt/force/pointer_model.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_model.hpp"
@@ -106,7 +108,7 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
-    app.add_option("--hand", v.hand, "of the emulated device: passive, wander or stroke");
+    app.add_option("--hand", v.hand, "of the emulated device: passive, wander, stroke or drill");
     app.add_option("--tool-radius-mm", o.tool_radius_mm,
                    "of the ball that touches a surface, in the hand's space; 0: a point. Of a tool that is a "
                    "mesh: of the balls at its points; 0: as baked")
@@ -163,6 +165,22 @@ DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
     return s;
 }
 
+DrillSettings drill_settings(const Options& o, const RtConfig& config) {
+    const RtConfig::Drilling& d = config.drilling;
+    DrillSettings s;
+    for (std::size_t i = 0; i < kBurrShapeNames.size(); ++i)
+        if (d.burr_shape == kBurrShapeNames[i]) s.tool.shape = static_cast<BurrShape>(i);
+    s.tool.radius_m = 0.5e-3 * d.burr_diameter_mm;
+    s.tool.tip_radius_m = std::min(s.tool.tip_radius_m, s.tool.radius_m);
+    s.tool.length_m = 1e-3 * d.burr_length_mm;
+    s.tool.shaft_radius_m = 0.5e-3 * d.shaft_diameter_mm;
+    s.rate_per_s = d.rate_per_s;
+    s.vibration = d.vibration;
+    s.force_n_max = std::clamp(config.safety.force_n_max, 0.1, 100.0);
+    s.seed = o.seed;
+    return s;
+}
+
 // The one place that knows which model a scene is for.
 std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o, const RtConfig& config) {
     if (read_meta(scene).kind == SceneKind::surface) {
@@ -177,6 +195,8 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o,
         if (tool) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
+    if (read_meta(scene).kind == SceneKind::drilling)
+        return load_drill_model(scene, drill_settings(o, config));
     return load_docking_model(scene, docking_settings(o, scene));
 }
 
@@ -391,6 +411,8 @@ int run(const Options& o, const Overrides& overrides) {
     if (two_hands) device2->relax();
     release_process(platform);
     say_how_it_went(*region);
+    if (const auto* const drill = dynamic_cast<const DrillModel*>(servo.state().hand[0].model))
+        spdlog::info("{:.1f} mm3 of bone taken", 1e9 * drill->removed_m3());
     return 0;
 }
 

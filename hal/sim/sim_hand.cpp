@@ -30,17 +30,21 @@ constexpr double kPullStiffness = 60.0;      // N/m
 constexpr double kPullTurnStiffness = 0.05;  // N m/rad
 constexpr double kSubstepS = 1e-3;           // the pull changes with the position; 1 ms keeps K h < b
 constexpr double kStrokedUp = 0.2;           // of a wandering hand's ups and downs
+constexpr double kDrilledAside = 0.2;        // of a wandering hand's way
 constexpr double kLoweredS = 0.5;
 constexpr double kPauseMaxS = 0.05;  // after a longer pause the hand has not moved for the rest
 
 }  // namespace
 
 SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
-    : settings_(settings), reach_m_(reach_m), strokes_(settings.script == "stroke") {
-    wanders_ = strokes_ || settings.script == "wander";
+    : settings_(settings),
+      reach_m_(reach_m),
+      strokes_(settings.script == "stroke"),
+      drills_(settings.script == "drill") {
+    wanders_ = strokes_ || drills_ || settings.script == "wander";
     if (settings.script != "passive" && !wanders_) {
         throw StartupError("emulated hand", "there is no script \"" + settings.script + "\"",
-                           "use \"passive\", \"wander\" or \"stroke\" (device.hand)");
+                           "use \"passive\", \"wander\", \"stroke\" or \"drill\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {
@@ -71,6 +75,10 @@ Wrench SimHand::pull() const noexcept {
     if (strokes_) {
         there.y() *= kStrokedUp;
         there.y() -= settings_.press_m * (1.0 - std::exp(-time_s_ / kLoweredS));
+    }
+    if (drills_) {
+        there *= kDrilledAside;
+        there.z() = kDrilledAside * there.z() - settings_.press_m * (1.0 - std::exp(-time_s_ / kLoweredS));
     }
     const Vec3 turn = settings_.wander_rad * Vec3(wave(3), wave(4), wave(5));
     return {kPullStiffness * (there - pose_.p_m), kPullTurnStiffness * (turn - rotation_vector_rad(pose_.q))};

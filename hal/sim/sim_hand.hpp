@@ -3,7 +3,7 @@
 // Frame     device
 // Step      exact for a force that is constant over it, so stable at any step and any servo rate
 // Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about. stroke: the
-//           same, mostly sideways, and down, so that it rests on what is there.
+//           same, mostly sideways, and down, so that it rests on what is there. drill: the same, away from the user, slowly.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace tact {
 // grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
 // such that 0.05 N m turns it by 150 degrees a second.
 struct SimHandSettings {
-    std::string script = "passive";  // "passive", "wander", "stroke"
+    std::string script = "passive";  // "passive", "wander", "stroke", "drill"
     std::uint64_t seed = 1;
     double mass_kg = 0.25;
     double damping_n_s_m = 5.0;
@@ -29,7 +29,7 @@ struct SimHandSettings {
     double damping_n_m_s = 0.02;
     double wander_m = 0.03;  // amplitude
     double wander_rad = 0.3;
-    double press_m = 0.03;  // how far down a stroking hand means to be
+    double press_m = 0.03;  // how far down a stroking hand means to be, and away a drilling one
 };
 
 class SimHand {
@@ -52,7 +52,7 @@ private:
 
     SimHandSettings settings_;
     Vec3 reach_m_;
-    bool wanders_, strokes_;
+    bool wanders_, strokes_, drills_;
     Waves waves_{};
     double time_s_ = 0.0;
     Pose pose_;

@@ -16,10 +16,18 @@
 
 namespace tact {
 
+inline constexpr std::uint32_t kDrillPedal = 1U << 1;  // button: the burr turns while it is held
+
 struct ToolState {
     Pose T_world_tool;
     Twist twist_world;
-    std::uint32_t buttons = 0;  // bit 0: clutch (held: the tool moves alone)
+    std::uint32_t buttons = 0;  // bit 0: clutch (held: the tool moves alone); kDrillPedal
+};
+
+// What drives a tool that turns, and how long the next step stands for.
+struct ToolDrive {
+    double burr_rad_s = 0.0;  // about the shaft's axis; 0: it stands
+    double step_s = 1e-3;     // since the step before
 };
 
 enum class StepStatus : std::uint8_t { ok, out_of_time, out_of_range };
@@ -119,6 +127,8 @@ public:
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
     [[nodiscard]] virtual double tend_s() const noexcept TACT_RT { return 0.0; }
+    // Before a step, where the tool is driven; what is not finite or below zero is a tool that stands.
+    virtual void drive(const ToolDrive& /*drive*/) noexcept TACT_RT {}
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;

@@ -3,12 +3,14 @@
 #include <toml++/toml.h>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <sstream>
 #include <variant>
 #include <vector>
 
 #include "ipc/base/error.hpp"
+#include "rt/force/drilling/burr_shapes.hpp"
 #include "rt/loop/config_parts.hpp"
 
 namespace tact {
@@ -53,7 +55,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
         {"device.driver", &c.device.driver, 0, 0, {}},
-        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander", "stroke"}},
+        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander", "stroke", "drill"}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e7, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},
@@ -94,6 +96,18 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"shape.force_scale", &c.shape.force_scale, 0, 1e6, {}},
         {"shape.damping_n_s_m", &c.shape.damping_n_s_m, 0, 100, {}},
         {"surface.mode", &c.surface.mode, 0, 0, {"off-brute", "off-tree", "chr"}},
+        {"drilling.burr_diameter_mm", &c.drilling.burr_diameter_mm, 0.2, 40, {}},
+        {"drilling.burr_shape",
+         &c.drilling.burr_shape,
+         0,
+         0,
+         {kBurrShapeNames.begin(), kBurrShapeNames.end()}},
+        {"drilling.burr_length_mm", &c.drilling.burr_length_mm, 1, 40, {}},
+        {"drilling.shaft_diameter_mm", &c.drilling.shaft_diameter_mm, 0, 20, {}},
+        {"drilling.burr_rpm", &c.drilling.burr_rpm, 0, 200000, {}},
+        {"drilling.pedal", &c.drilling.pedal, 0, 0, {"button", "always"}},
+        {"drilling.rate_per_s", &c.drilling.rate_per_s, 0, 1e4, {}},
+        {"drilling.vibration", &c.drilling.vibration, 0, 0.5, {}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
         {"safety.torque_n_m_max", &c.safety.torque_n_m_max, 0, 10, {}},
         {"safety.force_slew_n_s", &c.safety.force_slew_n_s, 1, 1e6, {}},
@@ -225,7 +239,7 @@ void read_config(const std::string& path, RtConfig& config) {
             throw StartupError(at(path, node.source()) + ": " + section_name,
                                "this key belongs to no section",
                                "put it under [servo], [device], [device2], [arm], [tracker], [lines], "
-                               "[shape], [surface], [safety] or [governor]");
+                               "[shape], [surface], [drilling], [safety] or [governor]");
         }
         if (section_name == "arm") {
             read_arm_section(*table, path, config.arm);
@@ -283,6 +297,8 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.model_max = duration_us(c.servo.model_us_max);
     s.force_scale = c.shape.force_scale;
     s.damping_n_s_m = c.shape.damping_n_s_m;
+    s.burr_rad_s = c.drilling.burr_rpm * 2.0 * std::numbers::pi / 60.0;
+    s.burr_always = c.drilling.pedal == "always";
     s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
     s.watchdogs.late_max = duration_us(c.safety.late_us_max);
     s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);

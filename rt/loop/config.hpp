@@ -82,6 +82,16 @@ struct RtConfig {
     struct Surface {
         std::string mode = "off-tree";  // or "off-brute", "chr"
     } surface;
+    struct Drilling {
+        double burr_diameter_mm = 6.0;
+        std::string burr_shape = "sphere";  // or "cylinder", "cone"
+        double burr_length_mm = 8.0;        // of the head of those
+        double shaft_diameter_mm = 2.4;     // 0: no shaft
+        double burr_rpm = 60000.0;          // while the pedal is pressed
+        std::string pedal = "button";       // the stylus's second button; or "always"
+        double rate_per_s = 40.0;           // of erosion, at 60 000 rpm
+        double vibration = 0.0;             // of the running burr, over the elastic force
+    } drilling;
     struct Safety {
         double force_n_max = 3.3;
         double torque_n_m_max = 0.2;

@@ -149,6 +149,12 @@ void Servo::pose(CycleState& c) noexcept {
     }
 }
 
+// Where no force is let through, nothing is cut either.
+double Servo::burr_rad_s(const CycleState& c) const noexcept {
+    const bool pressed = settings_.burr_always || (c.hand[0].tool.buttons & kDrillPedal) != 0;
+    return c.run.state == RunState::active && pressed && !dry_ ? settings_.burr_rad_s : 0.0;
+}
+
 void Servo::model(CycleState& c) noexcept {
     take_model(c);
     ask_for_model(c);
@@ -159,6 +165,7 @@ void Servo::model(CycleState& c) noexcept {
     c.fresh = 0.0;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
+        h.model->drive({.burr_rad_s = burr_rad_s(c), .step_s = to_s(c.dt)});
         h.step = h.model->step(h.tool, budget);
         if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
         c.fresh += static_cast<double>(h.step.load.fresh) / c.hands;

@@ -35,6 +35,8 @@ struct ServoSettings {
     double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
     double hand_damping_n_s_m = 3.0;  // of hand and arm: what stiffness is stable at a delay hangs on it
     Pose T_world_dev;
+    double burr_rad_s = 0.0;   // of a drill while its pedal is pressed
+    bool burr_always = false;  // without a pedal; else bit 1 of the first hand's buttons is one
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
@@ -125,6 +127,7 @@ private:
     void publish_trace(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
     [[nodiscard]] double rate_kept_up(const CycleState& c, double rate_hz) const noexcept TACT_RT;
+    [[nodiscard]] double burr_rad_s(const CycleState& c) const noexcept TACT_RT;
     [[nodiscard]] bool holds_rate() const noexcept TACT_RT;
     [[nodiscard]] Instant rest() noexcept TACT_RT;
     [[nodiscard]] double share_of_step(const CycleState& c) noexcept TACT_RT;

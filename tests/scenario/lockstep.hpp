@@ -16,13 +16,14 @@ namespace tact {
 
 class Lockstep {
 public:
-    // Lines that are given are open.
-    explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {}, Lines* lines = nullptr)
+    // Lines that are given are open; a model that is given is felt instead of the spring.
+    explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {}, Lines* lines = nullptr,
+                      ForceModel* model = nullptr)
         : region_(new RtRegion{}), device_(sim) {
         settings.model_deadline = false;
         settings.dry_cycles = 20;
         clock_.advance(std::chrono::seconds(100));
-        hand_ = {&device_, &model_, device_.open()};
+        hand_ = {&device_, model != nullptr ? model : &model_, device_.open()};
         servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mail_, lines}, settings);
         servo_->warm_up();
     }

@@ -3,7 +3,9 @@
 
 #include <cstring>
 
+#include "rt/force/drilling/drill_model.hpp"
 #include "tests/scenario/lockstep.hpp"
+#include "tests/support/bone_block.hpp"
 
 namespace tact {
 namespace {
@@ -208,6 +210,79 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
     loop.cycles(1);
     loop.mail_.model.collect().reset();
     EXPECT_EQ(destroyed, 1);
+}
+
+// A wall of bone some 5 mm away from the hand at rest, and a hand that presses a burr into it.
+struct DrillScenario {
+    BoneBlock block{64, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
+    DrillBone bone{block.bricks, block.density, block.revision};
+    DrillModel model{meta(), bone, burr()};
+    Lockstep loop;
+
+    explicit DrillScenario(bool pedal) : loop(settings(pedal), sim(), nullptr, &model) {}
+
+    static SceneMeta meta() {
+        SceneMeta m{};
+        m.kind = SceneKind::drilling;
+        m.world_per_model = 1.0;
+        for (double& c : m.centre_model_m) c = 0.016;
+        return m;
+    }
+    static DrillSettings burr() {
+        DrillSettings s;
+        s.tool.radius_m = 2e-3;
+        s.tool.shaft_radius_m = 0.0;
+        return s;
+    }
+    static ServoSettings settings(bool pedal) {
+        ServoSettings s;
+        s.burr_rad_s = 6283.0;
+        s.burr_always = pedal;
+        return s;
+    }
+    static SimSettings sim() {
+        SimSettings s;
+        s.hand.script = "drill";
+        s.hand.press_m = 0.012;
+        return s;
+    }
+};
+
+TEST(DrillScenario, bone_is_cut_only_while_the_force_is_on) {
+    DrillScenario drill(true);
+    drill.loop.cycles(2000);  // the hand is in the bone by then
+    EXPECT_EQ(drill.loop.state(), RunState::ready);
+    EXPECT_EQ(drill.model.removed_levels(), 0U);
+    drill.loop.order(CommandKind::arm);
+    drill.loop.cycles(2000);
+    EXPECT_EQ(drill.loop.state(), RunState::active);
+    const std::uint64_t cut = drill.model.removed_levels();
+    EXPECT_GT(cut, 255U * 20U);
+    drill.loop.order(CommandKind::disarm);
+    drill.loop.cycles(2);
+    const std::uint64_t then = drill.model.removed_levels();
+    drill.loop.cycles(1000);
+    EXPECT_EQ(drill.model.removed_levels(), then);
+}
+
+TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_hand) {
+    DrillScenario drill(false);
+    drill.loop.active();
+    drill.loop.cycles(3000);
+    EXPECT_EQ(drill.model.removed_levels(), 0U);
+    EXPECT_GT(drill.loop.shown_n(), 0.2);
+    EXPECT_GT(drill.loop.tool().pos_world_m[2], -6.5e-3);  // the wall is at -5.25 mm, the burr's radius 2
+    EXPECT_LT(drill.loop.tool().pos_world_m[2], -3.25e-3);
+}
+
+TEST(DrillScenario, the_same_run_leaves_the_same_bone) {
+    const auto run = [] {
+        DrillScenario drill(true);
+        drill.loop.active();
+        drill.loop.cycles(2000);
+        return std::pair(drill.block.density, drill.loop.tool().pos_world_m[2]);
+    };
+    EXPECT_EQ(run(), run());
 }
 
 }  // namespace

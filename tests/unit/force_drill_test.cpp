@@ -288,9 +288,8 @@ TEST(DrillModel, OnlyATurningHeadCutsAndNotWhileTheClutchIsHeld) {
     for (int i = 0; i < 100; ++i) (void)b.step(in);  // before a reset
     EXPECT_EQ(mass_of(b.bone), mass);
     b.model->reset(in);
-    for (const DrillDrive& drive :
-         {DrillDrive{0.0, 1e-3}, DrillDrive{std::nan(""), 1e-3}, DrillDrive{-5.0, 1e-3},
-          DrillDrive{kFullRadS, -1.0}, DrillDrive{kFullRadS, std::nan("")}}) {
+    for (const ToolDrive& drive : {ToolDrive{0.0, 1e-3}, ToolDrive{std::nan(""), 1e-3}, ToolDrive{-5.0, 1e-3},
+                                   ToolDrive{kFullRadS, -1.0}, ToolDrive{kFullRadS, std::nan("")}}) {
         b.model->drive(drive);
         for (int i = 0; i < 300; ++i) (void)b.step(in);
         EXPECT_EQ(mass_of(b.bone), mass);

@@ -73,10 +73,10 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
     }
 }
 
-void DrillModel::drive(const DrillDrive& drive) noexcept {
+void DrillModel::drive(const ToolDrive& drive) noexcept {
     const bool right = std::isfinite(drive.burr_rad_s) && drive.burr_rad_s >= 0.0 && drive.burr_rad_s < 1e6 &&
                        drive.step_s > 0.0 && std::isfinite(drive.step_s);
-    drive_ = right ? drive : DrillDrive{};
+    drive_ = right ? drive : ToolDrive{};
     drive_.step_s = std::min(drive_.step_s, kStepSMost);
 }
 

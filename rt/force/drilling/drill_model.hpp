@@ -22,8 +22,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 
+#include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
@@ -60,13 +62,7 @@ struct DrillSettings {
 // Fails by StartupError where one is out of range.
 void check_drill_settings(const DrillSettings& settings);
 
-// What drives the burr; until it is told, it stands.
-struct DrillDrive {
-    double burr_rad_s = 0.0;  // about the shaft's axis
-    double step_s = 1e-3;     // that the next step stands for
-};
-
-class DrillModel final : public ForceModel {
+class DrillModel : public ForceModel {
 public:
     static constexpr const char* kKnobPath = "drilling.force";
     static constexpr double kBlockFine = 0.1, kBlockDefault = 0.3,
@@ -80,8 +76,8 @@ public:
     // The bone must outlive the model.
     DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings);
 
-    // Before a step, as often as wished. What is not finite or negative is taken as a burr that stands.
-    void drive(const DrillDrive& drive) noexcept TACT_RT;
+    // Until it is called, the burr stands.
+    void drive(const ToolDrive& drive) noexcept TACT_RT override;
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
@@ -100,6 +96,10 @@ public:
     }  // h / R of the head, its deepest ball
     // Since it was made.
     [[nodiscard]] std::uint64_t removed_levels() const noexcept TACT_RT { return erosion_.removed(); }
+    // Of solid bone, in the world.
+    [[nodiscard]] double removed_m3() const noexcept TACT_RT {
+        return static_cast<double>(removed_levels()) / 255.0 * per_voxel_m_ * per_voxel_m_ * per_voxel_m_;
+    }
     [[nodiscard]] std::uint64_t postponed() const noexcept TACT_RT { return postponed_; }  // steps
     [[nodiscard]] std::uint64_t jumps() const noexcept TACT_RT { return jumps_; }
 
@@ -128,7 +128,7 @@ private:
     const BrickKernels& kernels_;
     Erosion erosion_;
     ForceFade fade_;
-    DrillDrive drive_;
+    ToolDrive drive_;
     double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;  // world metres of a voxel edge
     double head_radius_m_ = 0.0;
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
@@ -148,5 +148,9 @@ private:
     Pose T_model_tool_;
     std::uint64_t grips_ = 0, postponed_ = 0, jumps_ = 0;
 };
+
+// The bone of a scene, eroded in memory of its own, with a tool in it. Fails by StartupError: it is no scene with bone.
+[[nodiscard]] std::unique_ptr<ForceModel> load_drill_model(const SceneFile& scene,
+                                                           const DrillSettings& settings);
 
 }  // namespace tact
