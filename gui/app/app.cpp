@@ -204,7 +204,7 @@ private:
         const ImGuiIO& io = ImGui::GetIO();
         if (!io.WantCaptureMouse) {
             const float height =
-                layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, !state_.scene.surface).view.height;
+                layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, state_.scene.placed()).view.height;
             if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
@@ -322,7 +322,7 @@ private:
     void draw_scene(std::int64_t now_ns) {
         const Window::Size size = window_.size();
         const Layout layout = layout_for(theme_, static_cast<float>(size.width),
-                                         static_cast<float>(size.height), !state_.scene.surface);
+                                         static_cast<float>(size.height), state_.scene.placed());
         const PixelRect& rect = layout.view;
         const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
         ViewFrame view{};

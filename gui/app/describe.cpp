@@ -18,6 +18,7 @@ SceneFacts describe(const SceneContent& content) {
     for (const Structure& s : content.bodies) facts.atoms += s.size();
     facts.voxels = content.grid.size;
     facts.surface = content.meta.kind == SceneKind::surface;
+    facts.bone = content.meta.kind == SceneKind::drilling;
     return facts;
 }
 

@@ -41,7 +41,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, bool with
 }
 
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px) {
-    const bool with_fit = !state.scene.surface;
+    const bool with_fit = state.scene.placed();
     const Layout layout = layout_for(theme, width_px, height_px, with_fit);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
     draw_health(theme, state, layout.health);

@@ -77,8 +77,10 @@ struct SceneFacts {
     double mesh_error_m = 0.0;
     std::size_t bodies = 0, atoms = 0;
     std::array<std::uint32_t, 3> voxels{};
-    std::string warning;   // the controller runs another scene, ...
-    bool surface = false;  // to touch: no map, no bodies
+    std::string warning;                                             // the controller runs another scene, ...
+    bool surface = false;                                            // to touch: no map, no bodies
+    bool bone = false;                                               // to drill: likewise
+    [[nodiscard]] bool placed() const { return !surface && !bone; }  // there are bodies to place and to fit
 };
 
 // The surface as it is kept fine around the tool.

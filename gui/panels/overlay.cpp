@@ -129,8 +129,11 @@ void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& 
 }
 
 void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
-    const std::string text =
-        state.scene.loaded ? (state.attached ? "" : state.link_text) : state.scene.status;
+    const std::string text = !state.scene.loaded ? state.scene.status
+                             : !state.attached   ? state.link_text
+                             : state.scene.bone
+                                 ? "The bone is felt and cut. This window does not draw it yet."
+                                 : "";
     if (text.empty()) return;
     ImFont* const font = pen.theme.text;
     const float most = 0.8F * v.width;

@@ -80,7 +80,7 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
     }
     if (s.loaded && s.surface) {  // nothing to place or to contour
         surface_card(theme, state);
-    } else if (s.loaded) {
+    } else if (s.loaded && !s.bone) {
         static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));
         ImGui::SameLine(0.0F, theme.px(14.0F));

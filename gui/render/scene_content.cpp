@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/assets/bone_volume.hpp"
+
 namespace tact {
 namespace {
 
@@ -30,7 +32,10 @@ void find_extent(SceneContent& content) {
         box.add(content.box_max_model_m);
     }
     content.centre_model_m = 0.5 * (box.low + box.high);
-    double most = 1e-10;  // one ångström at least
+    // One angstrom at least; of bone, its box.
+    double most = 1e-10;
+    if (!content.mesh && content.bodies.empty())
+        most = std::max(most, (box.high - content.centre_model_m).norm());
     const auto reach = [&](const Vec3& p) { most = std::max(most, (p - content.centre_model_m).norm()); };
     if (content.mesh) content.mesh->each_original([&](const PackedVertex& v) { reach(at(v)); });
     for (const Structure& s : content.bodies)
@@ -50,6 +55,12 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
     content->note = read_note(file);
     if (file.count({'M', 'E', 'S', 'H'}) > 0)
         content->mesh = std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
+    if (content->meta.kind == SceneKind::drilling) {
+        const BoneBricks bricks = read_bone_volume(file).bricks;
+        content->box_min_model_m = bricks.to_model(Vec3::Constant(-0.5));
+        content->box_max_model_m =
+            bricks.to_model(Vec3(bricks.size[0], bricks.size[1], bricks.size[2]).array() - 0.5);
+    }
     if (has_touch_tool(file)) content->tool = std::make_unique<TouchTool>(read_touch_tool(file));
     if (file.count({'G', 'R', 'I', 'D'}) > 0) {
         content->grid = read_grid(file);
