@@ -18,8 +18,9 @@ Controller::News Controller::poll() {
     if (news.arrived) {
         refusal_.clear();
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
-        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_health_ = seen_levels_ = 0;
-        have_tool = have_second = have_bodies = have_touch = have_health = have_levels = false;
+        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_health_ = seen_levels_ =
+            0;
+        have_tool = have_second = have_bodies = have_touch = have_drill = have_health = have_levels = false;
         cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -50,6 +51,7 @@ Controller::Fresh Controller::read() {
     fresh.second = take(region_->tool[1], seen_second_, second, have_second);
     fresh.bodies = take(region_->bodies, seen_bodies_, bodies, have_bodies);
     fresh.touch = take(region_->touch, seen_touch_, touch, have_touch);
+    fresh.drill = take(region_->drill, seen_drill_, drill, have_drill);
     fresh.health = take(region_->health, seen_health_, health, have_health);
     fresh.levels = take(region_->levels, seen_levels_, levels, have_levels);
     return fresh;

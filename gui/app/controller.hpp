@@ -23,7 +23,8 @@ public:
     News poll();
     // Reads every topic; true in the flags for what is new.
     struct Fresh {
-        bool tool = false, second = false, bodies = false, touch = false, health = false, levels = false;
+        bool tool = false, second = false, bodies = false, touch = false, drill = false, health = false,
+             levels = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
@@ -41,11 +42,12 @@ public:
         return region_.empty() ? 0 : region_->scene_checksum;
     }
 
-    bool have_tool = false, have_second = false, have_bodies = false, have_touch = false, have_health = false,
-         have_levels = false;
+    bool have_tool = false, have_second = false, have_bodies = false, have_touch = false, have_drill = false,
+         have_health = false, have_levels = false;
     ToolTopic tool{}, second{};  // of the first hand, and of another where there is one
     BodiesTopic bodies{};
     TouchTopic touch{};
+    DrillTopic drill{};
     HealthTopic health{};
     LevelsTopic levels{};
 
@@ -57,8 +59,8 @@ private:
     MappedRegion<RtRegion> region_;
     std::string refusal_;
     RingCursor cursor_;
-    std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_health_ = 0,
-                  seen_levels_ = 0;
+    std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_drill_ = 0,
+                  seen_health_ = 0, seen_levels_ = 0;
     std::uint64_t refused_ = 0;
 };
 

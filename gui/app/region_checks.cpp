@@ -61,6 +61,23 @@ bool sensible(const TouchTopic& t) noexcept {
     return true;
 }
 
+bool sensible(const DrillTopic& t) noexcept {
+    // NaN is in no range.
+    const auto within = [](float v, float most) { return v >= 0.0F && v <= most; };
+    if (!(t.level_m3 >= 0.0 && t.level_m3 < 1.0) || !within(t.burr_rad_s_most, 1e6F) ||
+        !within(t.irrigation_m3_s_most, 1.0F) || !within(t.suction_m3_s_most, 1.0F))
+        return false;
+    return std::all_of(t.hand, t.hand + kDrillHands, [&within](const DrillHand& h) {
+        if (h.kind == DrillKind::none) return true;
+        return h.kind <= DrillKind::sucker && h.shape <= DrillShape::cone && near(h.pos_model_m) &&
+               unit_quaternion(h.quat_model_tool_xyzw) && h.radius_m > 0.0F && within(h.radius_m, 1.0F) &&
+               within(h.length_m, 1.0F) && within(h.tip_radius_m, 1.0F) && within(h.shaft_radius_m, 1.0F) &&
+               within(h.shaft_length_m, 1.0F) && within(h.burr_rad_s, 1e6F) && within(h.suction, 1.0F) &&
+               within(h.irrigation, 1.0F) && within(h.depth, 2.0F) && within(h.elastic_n, 1e6F) &&
+               within(h.force_n, 1e6F);
+    });
+}
+
 bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&

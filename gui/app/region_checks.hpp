@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/drill.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/tool.hpp"
@@ -14,6 +15,7 @@ namespace tact {
 [[nodiscard]] bool sensible(const BodiesTopic& bodies) noexcept;
 [[nodiscard]] bool sensible(const ToolTopic& tool) noexcept;
 [[nodiscard]] bool sensible(const TouchTopic& touch) noexcept;
+[[nodiscard]] bool sensible(const DrillTopic& drill) noexcept;
 [[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 

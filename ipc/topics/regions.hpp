@@ -9,6 +9,7 @@
 #include "ipc/shm/topic_list.hpp"
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
+#include "ipc/topics/drill.hpp"
 #include "ipc/topics/event.hpp"
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
@@ -20,12 +21,14 @@
 namespace tact {
 
 inline constexpr std::size_t kHandsMax = 2;
+static_assert(kDrillHands == kHandsMax);
 
 struct RtRegion {
     static constexpr char kName[] = "tact.rt";
     Latest<ToolTopic> tool[kHandsMax];
     Latest<BodiesTopic> bodies;
     Latest<TouchTopic> touch;
+    Latest<DrillTopic> drill;
     Latest<HeadTopic> head;
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
@@ -35,8 +38,8 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, HeadTopic, HealthTopic, LatenessTopic,
-                             LevelsTopic, EventTopic, TraceTopic>;
+    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, HealthTopic,
+                             LatenessTopic, LevelsTopic, EventTopic, TraceTopic>;
 };
 
 struct GuiRegion {

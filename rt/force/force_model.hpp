@@ -91,6 +91,20 @@ struct ModelTouch {
     ModelDetail detail;
 };
 
+// What a tool in bone shows of itself. World metres, but for its pose.
+struct ModelDrill {
+    bool there = false;      // false: this model is no such tool, and the rest means nothing
+    bool cuts = false;       // a burr; else a tube
+    std::uint8_t shape = 0;  // of a burr's head, numbered as DrillShape
+    Pose T_model_tool;       // head's centre, shaft along +z
+    double radius_m = 0.0, length_m = 0.0, tip_radius_m = 0.0, shaft_radius_m = 0.0, shaft_length_m = 0.0;
+    double burr_rad_s = 0.0;
+    double depth = 0.0;                                // h / R of the head
+    double elastic_n = 0.0;                            // sum of sizes, before limits
+    std::uint64_t removed_levels = 0, cut_levels = 0;  // since it was made, and in the last step
+    double level_m3 = 0.0;                             // of solid bone in the world
+};
+
 // What a person asks of the bodies.
 struct ModelOrder {
     enum class Kind : std::uint8_t {
@@ -133,6 +147,7 @@ public:
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelTouch touch() const noexcept TACT_RT { return {}; }
+    [[nodiscard]] virtual ModelDrill drill() const noexcept TACT_RT { return {}; }
 
     // Constant time, between steps. No order makes the force step: what was felt fades out, and what is felt
     // from then on fades in from zero. False: refused, and nothing changed.

@@ -106,6 +106,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"drilling.shaft_diameter_mm", &c.drilling.shaft_diameter_mm, 0, 20, {}},
         {"drilling.burr_rpm", &c.drilling.burr_rpm, 0, 200000, {}},
         {"drilling.pedal", &c.drilling.pedal, 0, 0, {"button", "always"}},
+        {"drilling.irrigation_ml_min", &c.drilling.irrigation_ml_min, 0, 1000, {}},
         {"drilling.rate_per_s", &c.drilling.rate_per_s, 0, 1e4, {}},
         {"drilling.vibration", &c.drilling.vibration, 0, 0.5, {}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
@@ -298,6 +299,7 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.force_scale = c.shape.force_scale;
     s.damping_n_s_m = c.shape.damping_n_s_m;
     s.burr_rad_s = c.drilling.burr_rpm * 2.0 * std::numbers::pi / 60.0;
+    s.irrigation_m3_s = c.drilling.irrigation_ml_min * 1e-6 / 60.0;
     s.burr_always = c.drilling.pedal == "always";
     s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
     s.watchdogs.late_max = duration_us(c.safety.late_us_max);

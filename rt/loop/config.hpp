@@ -89,6 +89,7 @@ struct RtConfig {
         double shaft_diameter_mm = 2.4;     // 0: no shaft
         double burr_rpm = 60000.0;          // while the pedal is pressed
         std::string pedal = "button";       // the stylus's second button; or "always"
+        double irrigation_ml_min = 20.0;    // of water on the burr while it turns
         double rate_per_s = 40.0;           // of erosion, at 60 000 rpm
         double vibration = 0.0;             // of the running burr, over the elastic force
     } drilling;

@@ -35,8 +35,9 @@ struct ServoSettings {
     double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
     double hand_damping_n_s_m = 3.0;  // of hand and arm: what stiffness is stable at a delay hangs on it
     Pose T_world_dev;
-    double burr_rad_s = 0.0;   // of a drill while its pedal is pressed
-    bool burr_always = false;  // without a pedal; else bit 1 of the first hand's buttons is one
+    double burr_rad_s = 0.0;       // of a drill while its pedal is pressed
+    bool burr_always = false;      // without a pedal; else bit 1 of the first hand's buttons is one
+    double irrigation_m3_s = 0.0;  // of water on the burr while it turns
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
@@ -120,6 +121,7 @@ private:
     void glide(HandCycle& h, double dt_s) noexcept TACT_RT;
     void say_notice(HandCycle& h, std::uint32_t hand) noexcept TACT_RT;
     void publish_touch(const CycleState& c) noexcept TACT_RT;
+    void publish_drill(const CycleState& c) noexcept TACT_RT;
     void publish_tools(const CycleState& c) noexcept TACT_RT;
     void publish_health(const CycleState& c) noexcept TACT_RT;
     void publish_lateness(const CycleState& c) noexcept TACT_RT;

@@ -103,6 +103,42 @@ void Servo::publish_tools(const CycleState& c) noexcept {
     }
     region_.bodies.publish(b);
     publish_touch(c);
+    publish_drill(c);
+}
+
+void Servo::publish_drill(const CycleState& c) noexcept {
+    DrillTopic t{};
+    bool there = false;
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        const ModelDrill tool = c.hand[i].model->drill();
+        if (!tool.there) continue;
+        there = true;
+        t.removed_levels += tool.removed_levels;
+        t.level_m3 = tool.level_m3;
+        DrillHand& h = t.hand[i];
+        put(h.pos_model_m, tool.T_model_tool.p_m);
+        put(h.quat_model_tool_xyzw, tool.T_model_tool.q);
+        h.removed_levels = tool.removed_levels;
+        h.radius_m = static_cast<float>(tool.radius_m);
+        h.length_m = static_cast<float>(tool.length_m);
+        h.tip_radius_m = static_cast<float>(tool.tip_radius_m);
+        h.shaft_radius_m = static_cast<float>(tool.shaft_radius_m);
+        h.shaft_length_m = static_cast<float>(tool.shaft_length_m);
+        h.burr_rad_s = static_cast<float>(tool.burr_rad_s);
+        h.depth = static_cast<float>(tool.depth);
+        h.elastic_n = static_cast<float>(tool.elastic_n);
+        h.force_n = static_cast<float>(c.hand[i].step.wrench_world.force_n.norm());
+        h.cut_levels = static_cast<std::uint32_t>(tool.cut_levels);
+        h.kind = tool.cuts ? DrillKind::burr : DrillKind::sucker;
+        h.shape = static_cast<DrillShape>(tool.shape);
+        if (tool.cuts) h.irrigation = tool.burr_rad_s > 0.0 ? 1.0F : 0.0F;
+    }
+    if (!there) return;
+    t.taken_at_ns = to_ns(c.now);
+    t.cycle = c.cycle;
+    t.burr_rad_s_most = static_cast<float>(settings_.burr_rad_s);
+    t.irrigation_m3_s_most = static_cast<float>(settings_.irrigation_m3_s);
+    region_.drill.publish(t);
 }
 
 void Servo::publish_touch(const CycleState& c) noexcept {

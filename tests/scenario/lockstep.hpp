@@ -47,6 +47,11 @@ public:
         static_cast<void>(region_->tool[0].read(t));
         return t;
     }
+    [[nodiscard]] DrillTopic drill() const {
+        DrillTopic t{};
+        static_cast<void>(region_->drill.read(t));
+        return t;
+    }
     [[nodiscard]] HealthTopic health() const {
         HealthTopic t{};
         static_cast<void>(region_->health.read(t));

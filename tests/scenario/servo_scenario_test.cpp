@@ -275,6 +275,33 @@ TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_han
     EXPECT_LT(drill.loop.tool().pos_world_m[2], -3.25e-3);
 }
 
+TEST(DrillScenario, what_the_tool_is_and_took_is_published) {
+    DrillScenario drill(true);
+    drill.loop.active();
+    drill.loop.cycles(2000);
+    const DrillTopic t = drill.loop.drill();
+    EXPECT_EQ(t.cycle, drill.loop.tool().cycle);
+    EXPECT_EQ(t.removed_levels, drill.model.removed_levels());
+    EXPECT_NEAR(t.level_m3 * static_cast<double>(t.removed_levels), drill.model.removed_m3(), 1e-15);
+    const DrillHand& burr = t.hand[0];
+    EXPECT_EQ(burr.kind, DrillKind::burr);
+    EXPECT_EQ(burr.shape, DrillShape::sphere);
+    EXPECT_FLOAT_EQ(burr.radius_m, 2e-3F);
+    EXPECT_FLOAT_EQ(burr.length_m, 4e-3F);
+    EXPECT_FLOAT_EQ(burr.burr_rad_s, 6283.0F);
+    EXPECT_EQ(burr.irrigation, 1.0F);
+    EXPECT_EQ(burr.removed_levels, t.removed_levels);
+    EXPECT_EQ(burr.cut_levels, drill.model.cut().removed);
+    EXPECT_GT(burr.depth, 0.0F);
+    EXPECT_GT(burr.elastic_n, 0.0F);
+    EXPECT_NEAR(burr.pos_model_m[2], drill.loop.tool().pos_world_m[2] + 0.016, 1e-12);
+    EXPECT_EQ(t.hand[1].kind, DrillKind::none);
+    drill.loop.order(CommandKind::disarm);
+    drill.loop.cycles(2);
+    EXPECT_EQ(drill.loop.drill().hand[0].burr_rad_s, 0.0F);
+    EXPECT_EQ(drill.loop.drill().hand[0].irrigation, 0.0F);
+}
+
 TEST(DrillScenario, the_same_run_leaves_the_same_bone) {
     const auto run = [] {
         DrillScenario drill(true);

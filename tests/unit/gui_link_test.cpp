@@ -59,6 +59,33 @@ TEST(RegionChecks, RefuseATouchThatCannotBe) {
     EXPECT_TRUE(refused([](TouchTopic& t) { t.state = static_cast<TouchState>(3); }));
 }
 
+TEST(RegionChecks, RefuseADrillThatCannotBe) {
+    DrillTopic good{};
+    good.level_m3 = 1e-13;
+    DrillHand& burr = good.hand[0];
+    burr.kind = DrillKind::burr;
+    burr.radius_m = burr.tip_radius_m = 3e-3F;
+    burr.quat_model_tool_xyzw[3] = 1.0;
+    EXPECT_TRUE(sensible(good));
+    EXPECT_TRUE(sensible(DrillTopic{}));
+    const auto refused = [&](auto spoil) {
+        DrillTopic t = good;
+        spoil(t);
+        return !sensible(t);
+    };
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.level_m3 = std::nan(""); }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.burr_rad_s_most = -1.0F; }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.suction_m3_s_most = std::nanf(""); }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].kind = static_cast<DrillKind>(3); }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].shape = static_cast<DrillShape>(3); }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].radius_m = 0.0F; }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].pos_model_m[1] = 1e9; }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].quat_model_tool_xyzw[3] = 0.0; }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].suction = 1.5F; }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].depth = std::nanf(""); }));
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::sucker; }));  // of no size
+}
+
 TEST(RegionChecks, RefuseBodiesThatCannotBe) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();

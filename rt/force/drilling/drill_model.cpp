@@ -130,6 +130,28 @@ ModelTouch DrillModel::touch() const noexcept {
     return t;
 }
 
+ModelDrill DrillModel::drill() const noexcept {
+    ModelDrill d;
+    const DrillToolSettings& s = settings_.tool;
+    const bool ball = s.shape == BurrShape::sphere;
+    d.there = true;
+    d.cuts = s.cuts;
+    d.shape = static_cast<std::uint8_t>(s.shape);
+    d.T_model_tool = T_model_tool_;
+    d.radius_m = s.radius_m;
+    d.length_m = ball ? 2.0 * s.radius_m : s.length_m;
+    d.tip_radius_m = s.shape == BurrShape::cone ? s.tip_radius_m : s.radius_m;
+    d.shaft_radius_m = s.shaft_radius_m;
+    d.shaft_length_m = s.shaft_radius_m > 0.0 ? s.shaft_length_m : 0.0;
+    d.burr_rad_s = drive_.burr_rad_s;
+    d.depth = depth_;
+    d.elastic_n = elastic_n_;
+    d.removed_levels = removed_levels();
+    d.cut_levels = erosion_.pass().removed;
+    d.level_m3 = level_m3();
+    return d;
+}
+
 DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurried,
                                   Instant deadline) noexcept {
     Felt felt;
@@ -225,7 +247,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     if (!hand_is_there(tool.T_world_tool)) {
         fade_.cut();
         led_ = false;
-        depth_ = 0.0;
+        depth_ = elastic_n_ = 0.0;
         result.status = StepStatus::out_of_range;
     } else if (asked_) {
         T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
@@ -249,6 +271,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
         const double block = block_of(budget.fidelity);
         const Felt felt = feel(tool, block, hurried, budget.deadline);
+        elastic_n_ = felt.elastic_n;
         Wrench wrench = felt.wrench;
         wrench.force_n += shaken_n(tool, felt.elastic_n);
         const double size_n = wrench.force_n.norm(),

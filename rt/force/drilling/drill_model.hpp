@@ -87,6 +87,7 @@ public:
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
     [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+    [[nodiscard]] ModelDrill drill() const noexcept TACT_RT override;
 
     // Of the last step.
     [[nodiscard]] const ErosionPass& cut() const noexcept TACT_RT { return erosion_.pass(); }
@@ -98,7 +99,10 @@ public:
     [[nodiscard]] std::uint64_t removed_levels() const noexcept TACT_RT { return erosion_.removed(); }
     // Of solid bone, in the world.
     [[nodiscard]] double removed_m3() const noexcept TACT_RT {
-        return static_cast<double>(removed_levels()) / 255.0 * per_voxel_m_ * per_voxel_m_ * per_voxel_m_;
+        return static_cast<double>(removed_levels()) * level_m3();
+    }
+    [[nodiscard]] double level_m3() const noexcept TACT_RT {
+        return per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
     }
     [[nodiscard]] std::uint64_t postponed() const noexcept TACT_RT { return postponed_; }  // steps
     [[nodiscard]] std::uint64_t jumps() const noexcept TACT_RT { return jumps_; }
@@ -143,7 +147,7 @@ private:
     std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
     std::array<Vec3, DrillTool::kMax> ways_out_{};
     std::array<double, DrillTool::kMax> elastic_pa_{};
-    double depth_ = 0.0, phase_rad_ = 0.0;
+    double depth_ = 0.0, elastic_n_ = 0.0, phase_rad_ = 0.0;
     BurrForce head_;  // of the deepest ball of the head
     Pose T_model_tool_;
     std::uint64_t grips_ = 0, postponed_ = 0, jumps_ = 0;
