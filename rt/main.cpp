@@ -44,6 +44,7 @@
 #include "rt/loop/supervisor.hpp"
 #include "rt/loop/tend_thread.hpp"
 #include "rt/loop/thread_setup.hpp"
+#include "rt/scene_bone.hpp"
 #include "rt/start_bodies.hpp"
 
 namespace {
@@ -182,7 +183,8 @@ DrillSettings drill_settings(const Options& o, const RtConfig& config) {
 }
 
 // The one place that knows which model a scene is for.
-std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o, const RtConfig& config) {
+std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, const Options& o,
+                                       const RtConfig& config) {
     if (read_meta(scene).kind == SceneKind::surface) {
         SurfaceSettings settings = o.surface;
         settings.radius_m = 1e-3 * o.tool_radius_mm;
@@ -195,8 +197,8 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, const Options& o,
         if (tool) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
-    if (read_meta(scene).kind == SceneKind::drilling)
-        return load_drill_model(scene, drill_settings(o, config));
+    if (bone != nullptr)
+        return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), drill_settings(o, config));
     return load_docking_model(scene, docking_settings(o, scene));
 }
 
@@ -298,7 +300,7 @@ int run(const Options& o, const Overrides& overrides) {
     const bool emulated = driver.emulated && (!two_hands || device_driver(config.device2.driver).emulated);
     const SceneFile scene = SceneFile::open(o.scene);
 
-    // The region first: taking the session's lock needs it, and a second controller must not touch the
+    // The regions first: taking the session's lock needs them, and a second controller must not touch the
     // device.
     OwnedRegion<RtRegion> region;
     std::memset(static_cast<void*>(&*region), 0, sizeof(RtRegion));  // its pages are there from now on
@@ -306,10 +308,12 @@ int run(const Options& o, const Overrides& overrides) {
     std::memcpy(region->scene_path, path.data(), std::min(path.size(), sizeof region->scene_path - 1));
     region->scene_checksum = scene.checksum();
     region.mark_ready();
+    std::optional<SceneBone> bone;
+    if (read_meta(scene).kind == SceneKind::drilling) bone.emplace(scene);
     std::optional<LinkServer> link;
-    if (!o.check) link.emplace(o.session, region.fd());
+    if (!o.check) link.emplace(o.session, region.fd(), bone ? bone->fd() : -1);
 
-    std::unique_ptr<ForceModel> model = load_model(scene, o, config);
+    std::unique_ptr<ForceModel> model = load_model(scene, bone ? &*bone : nullptr, o, config);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gui/app/body_list.hpp"
+#include "gui/app/bone_desk.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/contour_child.hpp"
 #include "gui/app/contour_rows.hpp"
@@ -102,6 +103,7 @@ private:
         state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
         follow_controller(now_ns);
         follow_scene();
+        bone_.follow();
         handle_input();
         if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
         obey_level();
@@ -124,8 +126,10 @@ private:
         if (news.left) {
             spdlog::warn("the controller of session {} is gone; waiting for the next", options_.session);
             commands_.forget();
+            bone_.leave();
         }
         if (news.arrived) {
+            bone_.meet(controller_);
             spdlog::info("attached to the controller of session {}", options_.session);
             list_.forget_motion();
             second_hand_.forget();
@@ -193,6 +197,8 @@ private:
         list_.start(homes);
         if (controller_.have_bodies) list_.follow(controller_.bodies);
         desk_.use(content_);
+        bone_.use(*content_);
+        bone_.meet(controller_);
         detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
         window_.set_title(std::string("Tact: ") + state_.scene.title);
@@ -453,6 +459,7 @@ private:
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     FitDesk desk_;
     DetailDesk detail_;
+    BoneDesk bone_;
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;

@@ -13,11 +13,16 @@ Controller::News Controller::poll() {
     if (news.left) {
         told.left = !region_.empty();
         region_ = MappedRegion<RtRegion>();
+        bone_ = MappedBoneRegion();
         refusal_.clear();
+        bone_refusal_.clear();
     }
     if (news.arrived) {
         refusal_.clear();
+        bone_refusal_.clear();
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
+        bone_ = MappedBoneRegion();
+        if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
         seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_health_ = seen_levels_ =
             0;
         have_tool = have_second = have_bodies = have_touch = have_drill = have_health = have_levels = false;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "ipc/shm/link.hpp"
+#include "ipc/topics/bone_region.hpp"
 #include "ipc/topics/regions.hpp"
 
 namespace tact {
@@ -33,6 +34,10 @@ public:
     [[nodiscard]] const std::string& status_text() const {
         return refusal_.empty() ? link_.status_text() : refusal_;
     }
+    // Of the bone that it drills; empty(): it has none, or bone_refusal() says why it cannot be used. Stays where it is until
+    // poll() tells that the controller left or another arrived.
+    [[nodiscard]] const MappedBoneRegion& bone() const { return bone_; }
+    [[nodiscard]] const std::string& bone_refusal() const { return bone_refusal_; }
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     [[nodiscard]] std::uint64_t events_missed() const { return cursor_.missed; }
 
@@ -57,7 +62,8 @@ private:
 
     LinkClient link_;
     MappedRegion<RtRegion> region_;
-    std::string refusal_;
+    MappedBoneRegion bone_;
+    std::string refusal_, bone_refusal_;
     RingCursor cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_drill_ = 0,
                   seen_health_ = 0, seen_levels_ = 0;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "ipc/assets/bone_volume.hpp"
+#include <optional>
 
 namespace tact {
 namespace {
@@ -55,8 +54,10 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
     content->note = read_note(file);
     if (file.count({'M', 'E', 'S', 'H'}) > 0)
         content->mesh = std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
+    std::optional<BoneVolumeView> bone;
     if (content->meta.kind == SceneKind::drilling) {
-        const BoneBricks bricks = read_bone_volume(file).bricks;
+        bone = read_bone_volume(file);
+        const BoneBricks& bricks = bone->bricks;
         content->box_min_model_m = bricks.to_model(Vec3::Constant(-0.5));
         content->box_max_model_m =
             bricks.to_model(Vec3(bricks.size[0], bricks.size[1], bricks.size[2]).array() - 0.5);
@@ -79,6 +80,12 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
         content->bonds.push_back(find_bonds(content->bodies.back()));
     }
     find_extent(*content);
+    if (bone) {
+        BoneLabelsView labels;
+        if (has_bone_labels(file)) labels = read_bone_labels(file, bone->bricks);
+        content->bone.reset(new SceneBoneContent{std::move(file), *bone, std::move(labels)});
+        return content;
+    }
     if (content->meta.kind == SceneKind::surface && file.count({'F', 'R', 'S', 'T'}) > 0) {
         const SurfaceMesh surface = read_surface(file);
         const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "gui/render/bonds.hpp"
+#include "ipc/assets/bone_labels.hpp"
+#include "ipc/assets/bone_volume.hpp"
 #include "ipc/assets/contour_scale.hpp"
 #include "ipc/assets/density_map.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
@@ -28,16 +30,24 @@ struct SurfaceDetail {
     VertexForest forest;
 };
 
+// Bone to drill as it was baked, and which structure its voxels belong to, as mapped.
+struct SceneBoneContent {
+    SceneFile file;
+    BoneVolumeView volume;
+    BoneLabelsView labels;  // none: no structures
+};
+
 struct SceneContent {
     std::filesystem::path path;
     std::uint64_t checksum = 0;
     SceneMeta meta{};
     std::string note;
-    std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
-    std::unique_ptr<TouchTool> tool;        // null: none
-    std::unique_ptr<SurfaceDetail> detail;  // null: no surface, or one without a forest
-    DensityGrid grid;                       // empty: none
-    ContourScale scale;                     // what a level of it means
+    std::unique_ptr<ProgressiveMesh> mesh;   // null: the scene has none
+    std::unique_ptr<TouchTool> tool;         // null: none
+    std::unique_ptr<SurfaceDetail> detail;   // null: no surface, or one without a forest
+    std::unique_ptr<SceneBoneContent> bone;  // null: none
+    DensityGrid grid;                        // empty: none
+    ContourScale scale;                      // what a level of it means
     std::vector<Structure> bodies;
     std::vector<Codebook> codebooks;       // one per body
     std::vector<std::vector<Bond>> bonds;  // one list per body

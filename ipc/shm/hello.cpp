@@ -45,6 +45,7 @@ HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer)
 Receipt receive_packet(int socket, Packet& packet) noexcept {
     packet.size = 0;
     packet.file = FileDescriptor();
+    packet.second = FileDescriptor();
     packet.files_too_many = false;
     alignas(cmsghdr) char control[CMSG_SPACE(kFilesSeen * sizeof(int))];
     iovec data{packet.bytes, sizeof packet.bytes};
@@ -63,29 +64,32 @@ Receipt receive_packet(int socket, Packet& packet) noexcept {
         for (std::size_t i = 0; i < count; ++i) {
             int fd = -1;
             std::memcpy(&fd, CMSG_DATA(c) + i * sizeof fd, sizeof fd);
-            FileDescriptor file(fd);  // closes all but the first
+            FileDescriptor file(fd);  // closes all but two
             if (++files == 1) packet.file = std::move(file);
+            if (files == 2) packet.second = std::move(file);
         }
     }
-    packet.files_too_many = files > 1 || (message.msg_flags & MSG_CTRUNC) != 0;
+    packet.files_too_many = files > 2 || (message.msg_flags & MSG_CTRUNC) != 0;
     // A sequenced packet of no bytes and no files is how the end looks.
     return got == 0 && files == 0 ? Receipt::closed : Receipt::message;
 }
 
-bool send_packet(int socket, std::span<const std::byte> bytes, int file) noexcept {
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+bool send_packet(int socket, std::span<const std::byte> bytes, int file, int second) noexcept {
+    const int files[] = {file, second};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof files)] = {};
     iovec data{const_cast<std::byte*>(bytes.data()), bytes.size()};
     msghdr message{};
     message.msg_iov = &data;
     message.msg_iovlen = 1;
     if (file >= 0) {
+        const std::size_t size = (second >= 0 ? 2 : 1) * sizeof(int);
         message.msg_control = control;
-        message.msg_controllen = sizeof control;
+        message.msg_controllen = CMSG_SPACE(size);
         cmsghdr* const c = CMSG_FIRSTHDR(&message);
         c->cmsg_level = SOL_SOCKET;
         c->cmsg_type = SCM_RIGHTS;
-        c->cmsg_len = CMSG_LEN(sizeof(int));
-        std::memcpy(CMSG_DATA(c), &file, sizeof file);
+        c->cmsg_len = CMSG_LEN(size);
+        std::memcpy(CMSG_DATA(c), files, size);
     }
     return sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
 }

@@ -15,9 +15,9 @@ namespace tact {
 
 enum class LinkRole : std::uint32_t { observer, gui };
 enum class LinkAnswer : std::uint32_t {
-    attached,  // as asked; the region's file comes with it
-    watching,  // asked as gui, but another one is attached: the region's file comes with it, yours may be
-               // taken later
+    attached,  // as asked; the region's file comes with it, and that of the bone where there is one
+    watching,  // asked as gui, but another one is attached: the same files come with it, yours may be taken
+               // later
     full,      // too many watch already
     other_user,
     other_version,
@@ -25,7 +25,7 @@ enum class LinkAnswer : std::uint32_t {
 
 inline constexpr std::uint64_t kHelloMagic = 0x314F4C4C45485441ULL;
 inline constexpr std::uint64_t kAnswerMagic = 0x3152535741485441ULL;
-inline constexpr std::uint32_t kLinkVersion = 1;
+inline constexpr std::uint32_t kLinkVersion = 2;  // 2: a second file may come with the answer
 
 struct HelloMessage {
     std::uint64_t magic;
@@ -48,17 +48,18 @@ enum class HelloCheck : std::uint8_t { good, garbage, other_version };
 [[nodiscard]] HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept;
 [[nodiscard]] HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer) noexcept;
 
-// One packet with at most one file. Neither ever waits.
+// One packet with at most two files. Neither ever waits.
 enum class Receipt : std::uint8_t { message, nothing_yet, closed };
 struct Packet {
     std::byte bytes[65];  // one more than a message, to notice longer ones
     std::size_t size = 0;
-    FileDescriptor file;  // none: not valid()
+    FileDescriptor file, second;  // none: not valid()
     bool files_too_many = false;
 };
 [[nodiscard]] Receipt receive_packet(int socket, Packet& packet) noexcept;
-[[nodiscard]] bool send_packet(int socket, std::span<const std::byte> bytes,
-                               int file) noexcept;  // file -1: none
+// A file of -1: none; a second one goes with a first alone.
+[[nodiscard]] bool send_packet(int socket, std::span<const std::byte> bytes, int file,
+                               int second = -1) noexcept;
 
 struct Peer {
     std::uint32_t pid = 0;

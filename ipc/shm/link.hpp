@@ -1,4 +1,4 @@
-// How regions find each other: a Unix socket per session over which the region's file is handed out.
+// How regions find each other: a Unix socket per session over which the regions' files are handed out.
 //
 // Session    a name (default "default"); the socket is <runtime dir>/tact-<session>.sock, where the runtime
 //            dir is $TACT_RUNTIME_DIR, else $XDG_RUNTIME_DIR, else /tmp/tact-<uid> (created 0700, ownership
@@ -6,7 +6,8 @@
 // Server     in tact-rt, polled by the house thread. It holds a lock file, so a second controller of the same
 //            session is refused with the process id of the first. It sends its region to everyone who
 //            connects and receives at most one visual process's region; others watch, and the longest waiting
-//            visual process takes over when the first goes. The region has to be marked ready before.
+//            visual process takes over when the first goes. The region has to be marked ready before. Where a scene
+//            is of bone, the region of the bone goes out with it.
 // Client     in tact-gui and tact. poll() never blocks: it connects, re-connects after the controller went,
 //            and says in words what it is waiting for.
 // Hostile    messages are of fixed size and checked; a client that sends anything else, sends nothing for two
@@ -25,8 +26,8 @@ namespace tact {
 
 class LinkServer {
 public:
-    LinkServer(const std::string& session,
-               int region_fd);  // throws StartupError: another controller runs, ...
+    // bone_fd: of the region of the bone; -1: none. Throws StartupError: another controller runs, ...
+    LinkServer(const std::string& session, int region_fd, int bone_fd = -1);
     ~LinkServer();
     LinkServer(const LinkServer&) = delete;
     LinkServer& operator=(const LinkServer&) = delete;
@@ -57,6 +58,7 @@ public:
         bool arrived = false;  // rt_fd holds the controller's region's file
         bool left = false;
         FileDescriptor rt_fd;
+        FileDescriptor bone_fd;  // not valid(): it has no bone
         std::uint32_t rt_pid = 0;
     };
     News poll();  // never blocks; retries a missing controller at most ten times a second

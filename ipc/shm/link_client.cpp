@@ -98,6 +98,7 @@ struct LinkClient::State {
         step = Step::attached;
         news.arrived = true;
         news.rt_fd = std::move(packet.file);
+        news.bone_fd = std::move(packet.second);
         news.rt_pid = controller_pid;
         const std::string controller =
             "the controller of session " + session + ", process " + std::to_string(controller_pid);

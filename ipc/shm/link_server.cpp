@@ -90,7 +90,7 @@ struct LinkServer::State {
     SessionPaths paths;
     FileDescriptor lock;
     FileDescriptor listener;
-    int region_fd = -1;
+    int region_fd = -1, bone_fd = -1;
     std::vector<Client> clients;
     std::uint64_t refused = 0;
 
@@ -108,8 +108,8 @@ struct LinkServer::State {
         m.answer = static_cast<std::uint32_t>(what);
         m.gui_pid = gui == nullptr ? 0 : gui->pid;
         const bool handed = what == LinkAnswer::attached || what == LinkAnswer::watching;
-        const bool sent =
-            send_packet(client.socket.get(), std::as_bytes(std::span(&m, 1)), handed ? region_fd : -1);
+        const bool sent = send_packet(client.socket.get(), std::as_bytes(std::span(&m, 1)),
+                                      handed ? region_fd : -1, handed ? bone_fd : -1);
         if (!handed) ++refused;
         if (!handed || !sent) client.gone = true;
         return !client.gone;
@@ -144,7 +144,8 @@ struct LinkServer::State {
             return;
         }
         const bool gui = hello.role == static_cast<std::uint32_t>(LinkRole::gui);
-        if (check == HelloCheck::garbage || packet.files_too_many || packet.file.valid() != gui) {
+        if (check == HelloCheck::garbage || packet.files_too_many || packet.second.valid() ||
+            packet.file.valid() != gui) {
             ++refused;
             client.gone = true;
             return;
@@ -208,12 +209,14 @@ struct LinkServer::State {
     }
 };
 
-LinkServer::LinkServer(const std::string& session, int region_fd) : state_(std::make_unique<State>()) {
+LinkServer::LinkServer(const std::string& session, int region_fd, int bone_fd)
+    : state_(std::make_unique<State>()) {
     state_->paths = session_paths(session);
     make_runtime_folder(state_->paths.folder);
     state_->lock = take_lock(session, state_->paths.lock);
     state_->listener = listen_at(session, state_->paths.socket);
     state_->region_fd = region_fd;
+    state_->bone_fd = bone_fd;
     state_->clients.reserve(kClientsMax + kSilentMax);
 }
 

@@ -90,11 +90,11 @@ RegionMemory RegionMemory::map(FileDescriptor fd, const RegionIdentity& identity
                       std::to_string(kSealsWanted));
     struct stat status {};
     if (fstat(fd.get(), &status) != 0) return refuse(region + "fstat: " + last_error());
-    const std::uint64_t bytes = kRegionHeaderBytes + identity.bytes;
     const auto file_bytes = static_cast<std::uint64_t>(status.st_size);
     if (file_bytes < kRegionHeaderBytes)
         return refuse(region + "the file size is " + std::to_string(file_bytes) + ", wanted " +
-                      std::to_string(bytes));
+                      (identity.bytes_most > identity.bytes ? "at least " : "") +
+                      std::to_string(kRegionHeaderBytes + identity.bytes));
 
     // The header alone first: a file of another layout is refused by name and hash, not by its size.
     void* const head = mmap(nullptr, kRegionHeaderBytes, PROT_READ, MAP_SHARED, fd.get(), 0);
@@ -107,6 +107,8 @@ RegionMemory RegionMemory::map(FileDescriptor fd, const RegionIdentity& identity
     const std::string why = refuse_region_header(header, ready, file_bytes, identity);
     if (!why.empty()) return refuse(why);
 
+    const std::uint64_t bytes =
+        kRegionHeaderBytes + header.content_bytes;  // as it was found right, and sealed
     void* const base = mmap(nullptr, bytes, PROT_READ, MAP_SHARED | MAP_POPULATE, fd.get(), 0);
     if (base == MAP_FAILED) return refuse(region + "mmap: " + last_error());
     refusal.clear();
@@ -136,6 +138,8 @@ void RegionMemory::mark_ready() noexcept {
     static_cast<SharedRegionHeader*>(base_)->ready.store(kRegionReady,
                                                          std::memory_order_release);  // pairs with map()
 }
+
+std::uint64_t RegionMemory::content_bytes() const { return bytes_ - kRegionHeaderBytes; }
 
 void* RegionMemory::content() const { return static_cast<std::byte*>(base_) + kRegionHeaderBytes; }
 

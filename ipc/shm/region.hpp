@@ -19,7 +19,8 @@ inline constexpr std::uint64_t kRegionMagic = 0x31304D4853544341ULL;
 struct RegionIdentity {
     const char* name;
     std::uint64_t layout_hash;
-    std::uint64_t bytes;  // of R
+    std::uint64_t bytes;           // of R
+    std::uint64_t bytes_most = 0;  // above bytes: the writer chose a size from bytes to this, and tells it
 };
 
 class FileDescriptor {
@@ -36,7 +37,7 @@ private:
     int fd_ = -1;
 };
 
-// Untyped halves; use OwnedRegion<R> and MappedRegion<R>.
+// Untyped halves; use OwnedRegion<R> and MappedRegion<R>, or what a region of another shape has of its own.
 class RegionMemory {
 public:
     static RegionMemory create(const RegionIdentity& identity);  // throws StartupError
@@ -49,6 +50,7 @@ public:
     void mark_ready() noexcept;
     [[nodiscard]] bool empty() const { return base_ == nullptr; }
     [[nodiscard]] void* content() const;
+    [[nodiscard]] std::uint64_t content_bytes() const;
     [[nodiscard]] std::uint64_t generation() const { return generation_; }
     [[nodiscard]] int fd() const { return fd_.get(); }
 

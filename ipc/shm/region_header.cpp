@@ -65,13 +65,15 @@ std::string refuse_region_header(const RegionHeader& header, std::uint64_t ready
         return differ("the name", '"' + shown(header.name) + '"', '"' + shown(probe.name) + '"');
     if (header.layout_hash != wanted.layout_hash)
         return differ("the layout", hex(header.layout_hash), hex(wanted.layout_hash)) + builds;
-    if (header.content_bytes != wanted.bytes)
+    const std::uint64_t most = std::max(wanted.bytes, wanted.bytes_most);
+    if (header.content_bytes < wanted.bytes || header.content_bytes > most)
         return differ("the content size", std::to_string(header.content_bytes),
-                      std::to_string(wanted.bytes)) +
+                      std::to_string(wanted.bytes) +
+                          (most > wanted.bytes ? " to " + std::to_string(most) : std::string())) +
                builds;
-    if (file_bytes != kRegionHeaderBytes + wanted.bytes)
+    if (file_bytes != kRegionHeaderBytes + header.content_bytes)
         return differ("the file size", std::to_string(file_bytes),
-                      std::to_string(kRegionHeaderBytes + wanted.bytes));
+                      std::to_string(kRegionHeaderBytes + header.content_bytes));
     if (header.generation == 0) return differ("the generation", "0", "another number");
     return {};
 }

@@ -1,4 +1,4 @@
-// The two regions: which topics lie in them, and in which order.
+// The regions that every run has: which topics lie in them, and in which order. Bone: ipc/topics/bone_region.hpp.
 //
 // tact.rt   written by tact-rt, read by tact-gui, tact and the recorder
 // tact.gui  written by tact-gui, read by tact-rt

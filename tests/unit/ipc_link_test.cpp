@@ -16,6 +16,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/shm/hello.hpp"
 #include "ipc/shm/link.hpp"
+#include "ipc/topics/bone_region.hpp"
 #include "ipc/topics/regions.hpp"
 
 namespace tact {
@@ -94,6 +95,34 @@ TEST_F(Link, BothSidesReadTheOthersRegion) {
     gui_->commands.push(command);
     EXPECT_TRUE(gui->commands.next(cursor, command));
     EXPECT_EQ(server.refused(), 0U);
+}
+
+TEST_F(Link, TheRegionOfTheBoneGoesOutWithTheOther) {
+    BoneRegionHead head{};
+    head.bricks = 3;
+    head.brick_bytes = 512;
+    OwnedBoneRegion bone(head);
+    bone.mark_ready();
+    LinkServer server("t", rt_.fd(), bone.fd());
+    for (const int own : {gui_.fd(), -1}) {  // to the visual process and to an observer
+        LinkClient client("t", own);
+        client.poll();
+        server.poll(0);
+        LinkClient::News news = client.poll();
+        ASSERT_TRUE(news.arrived);
+        std::string refusal;
+        EXPECT_FALSE(MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal).empty()) << refusal;
+        const auto mapped = MappedBoneRegion::map(std::move(news.bone_fd), refusal);
+        ASSERT_FALSE(mapped.empty()) << refusal;
+        EXPECT_EQ(mapped.generation(), bone.generation());
+    }
+    LinkServer without("plain", rt_.fd());
+    LinkClient client("plain", -1);
+    client.poll();
+    without.poll(0);
+    const LinkClient::News news = client.poll();
+    EXPECT_TRUE(news.arrived && news.rt_fd.valid());
+    EXPECT_FALSE(news.bone_fd.valid());
 }
 
 TEST_F(Link, SecondControllerIsRefusedWithTheFirstOnesProcessId) {
@@ -195,6 +224,12 @@ TEST_F(Link, GarbageIsDroppedAndCountedAndHurtsNobodyElse) {
         const auto s = raw_client();
         say(s, hello(LinkRole::observer), gui_.fd());
         expect_refusal("an observer with a region");
+    }
+    {
+        const auto s = raw_client();
+        const HelloMessage m = hello(LinkRole::gui);
+        EXPECT_TRUE(send_packet(s.get(), std::as_bytes(std::span(&m, 1)), gui_.fd(), gui_.fd()));
+        expect_refusal("a visual process with two regions");
     }
     {
         const auto s = raw_client();

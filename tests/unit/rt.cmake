@@ -22,6 +22,7 @@ tact_test(unit/loop_head_feed_test.cpp USES base hal topics loop LABELS tsan)
 tact_test(unit/loop_supervisor_test.cpp USES base loop LABELS tsan)
 tact_test(unit/loop_config_arm_test.cpp USES base arm hal loop)
 tact_test(unit/loop_house_test.cpp USES base topics loop)
+tact_test(unit/rt_scene_bone_test.cpp USES base shm topics assets force start)
 tact_test(unit/rt_start_bodies_test.cpp USES base assets force start)
 
 tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)

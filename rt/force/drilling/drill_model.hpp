@@ -22,10 +22,8 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <span>
 
-#include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
@@ -152,9 +150,5 @@ private:
     Pose T_model_tool_;
     std::uint64_t grips_ = 0, postponed_ = 0, jumps_ = 0;
 };
-
-// The bone of a scene, eroded in memory of its own, with a tool in it. Fails by StartupError: it is no scene with bone.
-[[nodiscard]] std::unique_ptr<ForceModel> load_drill_model(const SceneFile& scene,
-                                                           const DrillSettings& settings);
 
 }  // namespace tact

@@ -1,0 +1,32 @@
+#include "gui/app/bone_desk.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+namespace tact {
+
+void BoneDesk::use(const SceneContent& content) {
+    changes_ = {};
+    follower_.reset();
+    if (content.bone) follower_ = std::make_unique<BoneFollower>(content.bone->volume, content.checksum);
+}
+
+void BoneDesk::meet(const Controller& controller) {
+    changes_ = {};
+    if (!follower_ || !controller.attached()) return;
+    const std::string why =
+        controller.bone_refusal().empty() ? follower_->attach(controller.bone()) : controller.bone_refusal();
+    if (!why.empty()) spdlog::warn("the bone is shown as baked, not as it is drilled: {}", why);
+}
+
+void BoneDesk::leave() {
+    changes_ = {};
+    if (follower_) follower_->detach();
+}
+
+void BoneDesk::follow() {
+    changes_ = follower_ ? follower_->follow(kBricksAFrame) : std::span<const BrickChange>{};
+}
+
+}  // namespace tact
