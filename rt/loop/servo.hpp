@@ -38,6 +38,7 @@ struct ServoSettings {
     double burr_rad_s = 0.0;       // of a drill while its pedal is pressed
     bool burr_always = false;      // without a pedal; else bit 1 of the first hand's buttons is one
     double irrigation_m3_s = 0.0;  // of water on the burr while it turns
+    bool bone = false;             // the scene is of bone: its picture has particles
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
@@ -85,6 +86,7 @@ public:
 
     static constexpr std::size_t kMeshIndex = kPicturePathIndex;
     static constexpr std::size_t kForceIndex = kForcePathIndex;
+    static constexpr std::size_t kParticlesIndex = kParticlesPathIndex;  // settings.bone
 
 private:
     // The stages, in order.
@@ -137,6 +139,7 @@ private:
     [[nodiscard]] bool look_at_picture(const CycleState& c) noexcept TACT_RT;
     void say_levels(const CycleState& c, std::span<const float> before, bool changed) noexcept TACT_RT;
     void start_interval(Instant now) noexcept TACT_RT;
+    void show_picture(bool present) noexcept TACT_RT;
 
     Clock& clock_;
     RtRegion& region_;
@@ -175,7 +178,7 @@ private:
     double model_cost_s_ = 0.0;
     std::uint64_t levels_sequence_ = 0;
     PictureWatch picture_;
-    std::uint32_t levels_vertices_max_ = 0;
+    std::uint32_t levels_vertices_max_ = 0, levels_particles_max_ = 0;
 
     // At the delay of the last second.
     double stiffness_n_m_max_ = 0.0, damping_n_s_m_max_ = 0.0;
