@@ -46,6 +46,7 @@
 #include "rt/loop/thread_setup.hpp"
 #include "rt/scene_bone.hpp"
 #include "rt/start_bodies.hpp"
+#include "rt/start_drill.hpp"
 
 namespace {
 
@@ -67,7 +68,9 @@ struct Options {
 // The command line goes on top of the file, so it is parsed into these and applied after it.
 struct Overrides {
     std::optional<double> rate_hz, goal_hz, picture_goal_hz, force_scale;
-    std::optional<std::string> law, hand, surface_mode;
+    std::optional<std::string> law, hand, hand2, surface_mode, pedal, burr_shape;
+    std::optional<double> burr_mm, burr_rpm;
+    std::vector<double> hand_at_mm;
     std::optional<int> core, priority;
     bool free_run = false;
 };
@@ -109,7 +112,18 @@ void describe(CLI::App& app, Options& o, Overrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
-    app.add_option("--hand", v.hand, "of the emulated device: passive, wander, stroke or drill");
+    app.add_option("--hand", v.hand,
+                   "of the emulated device: passive, wander, stroke, drill, surgeon or sucker");
+    app.add_option("--hand2", v.hand2,
+                   "a second hand, emulated too, where the configuration has none; sucker: goes with the "
+                   "surgeon in the first");
+    app.add_option("--hand-at-mm", v.hand_at_mm, "X,Y: where an emulated surgeon works")
+        ->delimiter(',')
+        ->expected(2);
+    app.add_option("--pedal", v.pedal, "of the burr: button (of the stylus), line (a foot pedal) or always");
+    app.add_option("--burr-mm", v.burr_mm, "its diameter");
+    app.add_option("--burr-shape", v.burr_shape, "sphere, cylinder or cone");
+    app.add_option("--burr-rpm", v.burr_rpm, "its speed");
     app.add_option("--tool-radius-mm", o.tool_radius_mm,
                    "of the ball that touches a surface, in the hand's space; 0: a point. Of a tool that is a "
                    "mesh: of the balls at its points; 0: as baked")
@@ -142,6 +156,16 @@ RtConfig configure(const Options& o, const Overrides& v) {
     if (v.core) c.servo.core = *v.core;
     if (v.law) c.governor.law = *v.law;
     if (v.hand) c.device.hand = *v.hand;
+    if (v.hand2) {
+        if (c.device2.driver == "none") c.device2.driver = "sim";
+        c.device2.hand = *v.hand2;
+        if (*v.hand2 == "sucker") c.device2.hand_seed = static_cast<std::int64_t>(o.seed);
+    }
+    if (!v.hand_at_mm.empty()) c.device.hand_at_mm = {v.hand_at_mm[0], v.hand_at_mm[1]};
+    if (v.pedal) c.drilling.pedal = *v.pedal;
+    if (v.burr_mm) c.drilling.burr_diameter_mm = *v.burr_mm;
+    if (v.burr_shape) c.drilling.burr_shape = *v.burr_shape;
+    if (v.burr_rpm) c.drilling.burr_rpm = *v.burr_rpm;
     if (v.surface_mode) c.surface.mode = *v.surface_mode;
     if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
     if (v.picture_goal_hz) c.governor.picture_goal_hz = *v.picture_goal_hz;
@@ -166,22 +190,6 @@ DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
     return s;
 }
 
-DrillSettings drill_settings(const Options& o, const RtConfig& config) {
-    const RtConfig::Drilling& d = config.drilling;
-    DrillSettings s;
-    for (std::size_t i = 0; i < kBurrShapeNames.size(); ++i)
-        if (d.burr_shape == kBurrShapeNames[i]) s.tool.shape = static_cast<BurrShape>(i);
-    s.tool.radius_m = 0.5e-3 * d.burr_diameter_mm;
-    s.tool.tip_radius_m = std::min(s.tool.tip_radius_m, s.tool.radius_m);
-    s.tool.length_m = 1e-3 * d.burr_length_mm;
-    s.tool.shaft_radius_m = 0.5e-3 * d.shaft_diameter_mm;
-    s.rate_per_s = d.rate_per_s;
-    s.vibration = d.vibration;
-    s.force_n_max = std::clamp(config.safety.force_n_max, 0.1, 100.0);
-    s.seed = o.seed;
-    return s;
-}
-
 // The one place that knows which model a scene is for.
 std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, const Options& o,
                                        const RtConfig& config) {
@@ -198,8 +206,15 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, 
         return load_surface_model(scene, settings);
     }
     if (bone != nullptr)
-        return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), drill_settings(o, config));
+        return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), burr_settings(config, o.seed));
     return load_docking_model(scene, docking_settings(o, scene));
+}
+
+// Of the second hand.
+std::unique_ptr<ForceModel> load_second(const SceneFile& scene, SceneBone* bone, const Options& o,
+                                        const RtConfig& config) {
+    if (bone == nullptr) return std::make_unique<PointerModel>();
+    return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), sucker_settings(config, o.seed));
 }
 
 struct LevelWish {
@@ -313,7 +328,10 @@ int run(const Options& o, const Overrides& overrides) {
     std::optional<LinkServer> link;
     if (!o.check) link.emplace(o.session, region.fd(), bone ? bone->fd() : -1);
 
-    std::unique_ptr<ForceModel> model = load_model(scene, bone ? &*bone : nullptr, o, config);
+    SceneBone* const drilled = bone ? &*bone : nullptr;
+    std::unique_ptr<ForceModel> model = load_model(scene, drilled, o, config);
+    std::unique_ptr<ForceModel> second;
+    if (two_hands) second = load_second(scene, drilled, o, config);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMail mail;
@@ -324,13 +342,11 @@ int run(const Options& o, const Overrides& overrides) {
     const DeviceInfo info = device->open();
     std::unique_ptr<HapticDevice> device2;
     DeviceInfo info2;
-    std::unique_ptr<ForceModel> pointer;
     if (two_hands) {
         DeviceSettings of_second = device2_settings_from(config);
         of_second.say = of_device.say;
         device2 = device_driver(config.device2.driver).make(of_second);
         info2 = device2->open();
-        pointer = std::make_unique<PointerModel>();
     }
     const std::string hands_on = info.name + (two_hands ? " and " + info2.name : "");
     std::optional<HeadFeed> head;
@@ -340,9 +356,8 @@ int run(const Options& o, const Overrides& overrides) {
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
     const std::string lines_on = lines ? lines->open().name : "no safety lines";
     ServoSettings settings = settings_from(config, emulated);
-    settings.bone = read_meta(scene).kind == SceneKind::drilling;
     const std::array hands{HandParts{device.get(), model.get(), info},
-                           HandParts{device2.get(), pointer.get(), info2}};
+                           HandParts{device2.get(), second.get(), info2}};
 
     ServoClock clock(duration_us(config.servo.spin_us));
     Servo servo({.clock = clock,
@@ -359,10 +374,9 @@ int run(const Options& o, const Overrides& overrides) {
         }
     } const last_model{servo};
     static_cast<void>(model.release());
-    static_cast<void>(pointer.release());
+    static_cast<void>(second.release());
 
-    std::vector<std::string> paths;  // in the governor's order
-    for (const GovernedPath& p : servo.governor().paths()) paths.emplace_back(p.knob.path);
+    const std::vector<std::string> paths{kMeshPath, hands[0].model->knob().path};
     std::vector<LevelWish> wishes;
     for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
     if (o.check) {

@@ -24,6 +24,9 @@ enum LineInput : std::uint8_t {
     kLineStopB = 1U << 1,
     kLineDeadMan = 1U << 2,    // pressed
     kLineAmplifier = 1U << 3,  // the amplifier says that it is on
+    // Of tools, not of safety: they stop nothing. Pressed; one that is not fitted, or cannot be read, is not.
+    kLineBurr = 1U << 4,
+    kLineSuction = 1U << 5,
 };
 // Bits of LinesSample::outputs.
 enum LineOutput : std::uint8_t {

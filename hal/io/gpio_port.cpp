@@ -37,6 +37,8 @@ GpioPort::GpioPort(GpioPortSettings settings) : settings_(std::move(settings)) {
     add(settings_.emergency_stop_b, kLineStopB, false);
     add(settings_.dead_man, kLineDeadMan, false);
     add(settings_.amplifier, kLineAmplifier, false);
+    add(settings_.burr_pedal, kLineBurr, false);
+    add(settings_.suction_pedal, kLineSuction, false);
     add(settings_.enable, kLineEnable, true);
     add(settings_.watchdog, kLineWatchdog, true);
     add(settings_.lamp, kLineLamp, true);

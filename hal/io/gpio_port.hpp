@@ -20,7 +20,7 @@ namespace tact {
 // Each line is a number or a name of the chip's, with a '!' before it where low is active; empty: not fitted.
 struct GpioPortSettings {
     std::string chip;  // label, name or path
-    std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier;
+    std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier, burr_pedal, suction_pedal;
     std::string enable, watchdog, lamp;
     GpioBias bias = GpioBias::as_is;  // of the inputs
     bool edges = false;               // the chip has interrupts

@@ -62,11 +62,11 @@ void SimDevice::advance(Instant now) noexcept {
     const Instant bites_at = fed_at_ + settings_.watchdog;
     if (state_ == DeviceState::powered && now > bites_at) {
         const Instant until = std::max(bites_at, moved_at_);
-        hand_.step(until - moved_at_, shown_);
+        hand_.step(until - moved_at_, shown_, true);
         moved_at_ = until;
         drop(DeviceState::watchdog_tripped);
     }
-    hand_.step(now - moved_at_, shown_);
+    hand_.step(now - moved_at_, shown_, state_ == DeviceState::powered);
     moved_at_ = now;
 }
 
@@ -85,6 +85,7 @@ void SimDevice::sample(Instant now) noexcept {
     newest_.taken_at = now;
     ++newest_.sequence;
     newest_.T_dev_tool = {p, q};
+    newest_.buttons = hand_.buttons();
 }
 
 IoStatus SimDevice::read(DeviceSample& newest, Instant now) noexcept {

@@ -42,9 +42,14 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
       strokes_(settings.script == "stroke"),
       drills_(settings.script == "drill") {
     wanders_ = strokes_ || drills_ || settings.script == "wander";
-    if (settings.script != "passive" && !wanders_) {
-        throw StartupError("emulated hand", "there is no script \"" + settings.script + "\"",
-                           "use \"passive\", \"wander\", \"stroke\" or \"drill\" (device.hand)");
+    if (settings.script == "surgeon" || settings.script == "sucker") {
+        surgeon_.emplace(SimSurgeonSettings{
+            .sucker = settings.script == "sucker", .seed = settings.seed, .at_m = settings.at_m});
+        pose_ = surgeon_->begin();
+    } else if (settings.script != "passive" && !wanders_) {
+        throw StartupError(
+            "emulated hand", "there is no script \"" + settings.script + "\"",
+            "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or \"sucker\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {
@@ -84,15 +89,21 @@ Wrench SimHand::pull() const noexcept {
     return {kPullStiffness * (there - pose_.p_m), kPullTurnStiffness * (turn - rotation_vector_rad(pose_.q))};
 }
 
-void SimHand::step(Duration dt, const Wrench& wrench_dev) noexcept {
+void SimHand::step(Duration dt, const Wrench& wrench_dev, bool powered) noexcept {
     const double h_all = std::min(to_s(dt), kPauseMaxS);
     if (h_all <= 0.0) return;
-    const int substeps = wanders_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
+    const int substeps = wanders_ || surgeon_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
     const double h = h_all / substeps;
     for (int i = 0; i < substeps; ++i) {
         Wrench w = wrench_dev;
         if (wanders_) {
             const Wrench hand = pull();
+            w.force_n += hand.force_n;
+            w.torque_n_m += hand.torque_n_m;
+        }
+        if (surgeon_) {
+            surgeon_->step(h, pose_.p_m, wrench_dev.force_n, powered);
+            const Wrench hand = surgeon_->pull(pose_, twist_);
             w.force_n += hand.force_n;
             w.torque_n_m += hand.torque_n_m;
         }

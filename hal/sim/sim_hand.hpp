@@ -4,24 +4,29 @@
 // Step      exact for a force that is constant over it, so stable at any step and any servo rate
 // Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about. stroke: the
 //           same, mostly sideways, and down, so that it rests on what is there. drill: the same, away from the user, slowly.
+//           surgeon, sucker: sim_surgeon.hpp.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "hal/sim/sim_surgeon.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
 
 namespace tact {
 
+inline constexpr std::array kSimHandNames{"passive", "wander", "stroke", "drill", "surgeon", "sucker"};
+
 // A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (maker's figure
 // for a Premium 1.5) and about as much of fingers. Damping: the grip's 3 to 10 N s/m, as measured for pen
 // grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
 // such that 0.05 N m turns it by 150 degrees a second.
 struct SimHandSettings {
-    std::string script = "passive";  // "passive", "wander", "stroke", "drill"
+    std::string script = "passive";  // or "wander", "stroke", "drill", "surgeon", "sucker"
     std::uint64_t seed = 1;
     double mass_kg = 0.25;
     double damping_n_s_m = 5.0;
@@ -29,14 +34,17 @@ struct SimHandSettings {
     double damping_n_m_s = 0.02;
     double wander_m = 0.03;  // amplitude
     double wander_rad = 0.3;
-    double press_m = 0.03;  // how far down a stroking hand means to be, and away a drilling one
+    double press_m = 0.03;     // how far down a stroking hand means to be, and away a drilling one
+    Vec3 at_m = Vec3::Zero();  // where surgeon and sucker begin
 };
 
 class SimHand {
 public:
     SimHand(const SimHandSettings& settings, const Vec3& reach_m);
 
-    void step(Duration dt, const Wrench& wrench_dev) noexcept TACT_RT;
+    // powered: the device's motors are on.
+    void step(Duration dt, const Wrench& wrench_dev, bool powered = true) noexcept TACT_RT;
+    [[nodiscard]] std::uint32_t buttons() const noexcept { return surgeon_ ? surgeon_->buttons() : 0; }
     [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
     [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
 
@@ -53,6 +61,7 @@ private:
     SimHandSettings settings_;
     Vec3 reach_m_;
     bool wanders_, strokes_, drills_;
+    std::optional<SimSurgeon> surgeon_;
     Waves waves_{};
     double time_s_ = 0.0;
     Pose pose_;

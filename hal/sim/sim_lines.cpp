@@ -20,6 +20,7 @@ LineReading SimBoard::read() noexcept {
     LineReading in{.good = true, .closed = kInputs, .touched = touched_.exchange(0)};
     const bool enabled = (driven_.load() & kLineEnable) != 0;
     const auto open = [&in](int bits) { in.closed = static_cast<std::uint8_t>(in.closed & ~bits); };
+    open((kLineBurr | kLineSuction) & ~pressed_.load());
     if (fault == LinesFault::amplifier_off || (fault != LinesFault::amplifier_on && !enabled))
         open(kLineAmplifier);
     switch (fault) {

@@ -25,7 +25,8 @@ enum class LinesFault : std::uint8_t {
 
 class SimBoard final : public LinePort {
 public:
-    static constexpr std::uint8_t kInputs = kLineStopA | kLineStopB | kLineDeadMan | kLineAmplifier;
+    static constexpr std::uint8_t kInputs =
+        kLineStopA | kLineStopB | kLineDeadMan | kLineAmplifier | kLineBurr | kLineSuction;
     static constexpr std::uint8_t kOutputs = kLineEnable | kLineWatchdog | kLineLamp;
 
     LinePortInfo open() override;
@@ -37,11 +38,13 @@ public:
     void inject(LinesFault fault) noexcept { fault_.store(fault); }
     // A contact that opened and closed again between two looks.
     void touch(std::uint8_t inputs) noexcept { touched_.fetch_or(inputs); }
+    // Pedals of tools that are down: kLineBurr, kLineSuction.
+    void press(std::uint8_t pedals) noexcept { pressed_.store(pedals); }
     [[nodiscard]] std::uint8_t driven() const noexcept { return driven_.load(); }  // LineOutput
 
 private:
     std::atomic<LinesFault> fault_{LinesFault::none};
-    std::atomic<std::uint8_t> touched_{0}, driven_{0};
+    std::atomic<std::uint8_t> touched_{0}, driven_{0}, pressed_{0};
 };
 
 class SimLines final : public Lines {

@@ -39,6 +39,18 @@ std::vector<std::string> lines_names() {
     return names;
 }
 
+constexpr const char* kAsDevice = "same";
+
+std::vector<std::string> sim_hand_names(const char* besides = nullptr) {
+    std::vector<std::string> names(kSimHandNames.begin(), kSimHandNames.end());
+    if (besides != nullptr) names.emplace_back(besides);
+    return names;
+}
+
+Pedal pedal_named(const std::string& name) {
+    return name == "line" ? Pedal::line : name == "always" ? Pedal::always : Pedal::button;
+}
+
 std::vector<std::string> device2_names() {
     std::vector<std::string> names{"none"};
     for (const DeviceEntry& d : device_drivers()) names.emplace_back(d.name);
@@ -55,7 +67,8 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
         {"device.driver", &c.device.driver, 0, 0, {}},
-        {"device.hand", &c.device.hand, 0, 0, {"passive", "wander", "stroke", "drill"}},
+        {"device.hand", &c.device.hand, 0, 0, sim_hand_names()},
+        {"device.hand_at_mm", c.device.hand_at_mm, -100, 100, {}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e7, {}},
         {"device.process_log", &c.device.process_log, 0, 0, {}},
@@ -66,6 +79,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.hd_device", &c.device.hd_device, 0, 0, {}},
         {"device2.driver", &c.device2.driver, 0, 0, device2_names()},
         {"device2.serial", &c.device2.serial, 0, 0, {}},
+        {"device2.hand", &c.device2.hand, 0, 0, sim_hand_names(kAsDevice)},
         {"device2.hand_seed", &c.device2.hand_seed, 0, 9e15, {}},
         {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
         {"tracker.interface", &c.tracker.interface, 0, 0, {}},
@@ -83,6 +97,8 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"lines.emergency_stop_b", &c.lines.emergency_stop_b, 0, 0, {}},
         {"lines.dead_man", &c.lines.dead_man, 0, 0, {}},
         {"lines.amplifier", &c.lines.amplifier, 0, 0, {}},
+        {"lines.burr_pedal", &c.lines.burr_pedal, 0, 0, {}},
+        {"lines.suction_pedal", &c.lines.suction_pedal, 0, 0, {}},
         {"lines.enable", &c.lines.enable, 0, 0, {}},
         {"lines.watchdog", &c.lines.watchdog, 0, 0, {}},
         {"lines.lamp", &c.lines.lamp, 0, 0, {}},
@@ -105,8 +121,12 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"drilling.burr_length_mm", &c.drilling.burr_length_mm, 1, 40, {}},
         {"drilling.shaft_diameter_mm", &c.drilling.shaft_diameter_mm, 0, 20, {}},
         {"drilling.burr_rpm", &c.drilling.burr_rpm, 0, 200000, {}},
-        {"drilling.pedal", &c.drilling.pedal, 0, 0, {"button", "always"}},
+        {"drilling.pedal", &c.drilling.pedal, 0, 0, {"button", "line", "always"}},
         {"drilling.irrigation_ml_min", &c.drilling.irrigation_ml_min, 0, 1000, {}},
+        {"drilling.irrigation", &c.drilling.irrigation, 0, 0, {"pedal", "always"}},
+        {"drilling.sucker_diameter_mm", &c.drilling.sucker_diameter_mm, 0.8, 10, {}},
+        {"drilling.suction", &c.drilling.suction, 0, 0, {"button", "line", "always"}},
+        {"drilling.suction_l_min", &c.drilling.suction_l_min, 0, 200, {}},
         {"drilling.rate_per_s", &c.drilling.rate_per_s, 0, 1e4, {}},
         {"drilling.vibration", &c.drilling.vibration, 0, 0.5, {}},
         {"safety.force_n_max", &c.safety.force_n_max, 0, 100, {}},
@@ -273,6 +293,14 @@ void check_config(const RtConfig& config, const std::string& where) {
             "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
             "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
     }
+    for (const auto& [key, pedal, line] :
+         {std::tuple("drilling.pedal", &config.drilling.pedal, &config.lines.burr_pedal),
+          std::tuple("drilling.suction", &config.drilling.suction, &config.lines.suction_pedal)}) {
+        const bool wired = config.lines.driver == "sim" || (config.lines.driver != "none" && !line->empty());
+        if (*pedal == "line" && !wired)
+            throw StartupError(where + ": " + key, "no line of a pedal is named",
+                               "set lines.driver, and lines.burr_pedal or lines.suction_pedal");
+    }
     const bool arms_told_apart = !config.device.serial.empty() && !config.device2.serial.empty() &&
                                  config.device.serial != config.device2.serial;
     if (config.device2.driver == config.device.driver && !device_driver(config.device2.driver).emulated &&
@@ -298,9 +326,12 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.model_max = duration_us(c.servo.model_us_max);
     s.force_scale = c.shape.force_scale;
     s.damping_n_s_m = c.shape.damping_n_s_m;
-    s.burr_rad_s = c.drilling.burr_rpm * 2.0 * std::numbers::pi / 60.0;
-    s.irrigation_m3_s = c.drilling.irrigation_ml_min * 1e-6 / 60.0;
-    s.burr_always = c.drilling.pedal == "always";
+    s.drives.burr_rad_s = c.drilling.burr_rpm * 2.0 * std::numbers::pi / 60.0;
+    s.drives.irrigation_m3_s = c.drilling.irrigation_ml_min * 1e-6 / 60.0;
+    s.drives.burr = pedal_named(c.drilling.pedal);
+    s.drives.irrigation_always = c.drilling.irrigation == "always";
+    s.drives.suction_m3_s = c.drilling.suction_l_min * 1e-3 / 60.0;
+    s.drives.suction = pedal_named(c.drilling.suction);
     s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
     s.watchdogs.late_max = duration_us(c.safety.late_us_max);
     s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);
@@ -338,6 +369,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.driver = c.device.driver;
     d.sim.hand.script = c.device.hand;
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device.hand_seed);
+    d.sim.hand.at_m = 1e-3 * Vec3(c.device.hand_at_mm[0], c.device.hand_at_mm[1], 0.0);
     d.process_log = c.device.process_log;
     d.firmware = c.device.firmware;
     d.hd_library = c.device.hd_library;
@@ -355,6 +387,7 @@ DeviceSettings device2_settings_from(const RtConfig& c) {
     DeviceSettings d = device_settings_from(c);
     d.driver = c.device2.driver;
     d.serial = c.device2.serial;
+    if (c.device2.hand != kAsDevice) d.sim.hand.script = c.device2.hand;
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device2.hand_seed);
     if (!d.process_log.empty()) d.process_log += ".2";
     return d;

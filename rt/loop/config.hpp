@@ -34,6 +34,7 @@ struct RtConfig {
         std::string driver = "sim";
         std::string hand = "passive";  // of the emulated device
         std::int64_t hand_seed = 1;
+        std::array<double, 2> hand_at_mm{0.0, 0.0};  // x, y: where an emulated surgeon works
         double watchdog_us = 10000.0;
         std::string process_log;                     // of sim-process: file for its changes of state
         std::string serial;                          // of a real device; empty: the only one
@@ -43,8 +44,9 @@ struct RtConfig {
         std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
     } device;
     struct Device2 {
-        std::string driver = "none";  // of the second hand, a pointer; the bodies are in the first one
+        std::string driver = "none";  // of the second hand: the sucker where bone is drilled, else a pointer
         std::string serial;
+        std::string hand = "same";  // of an emulated one: as device.hand, or another
         std::int64_t hand_seed = 2;
     } device2;
     struct Tracker {
@@ -65,6 +67,7 @@ struct RtConfig {
         std::string chip = "cp2112_gpio";  // label, name or path
         // A line each: number or name, '!' before it where low is active; "": not fitted.
         std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier;
+        std::string burr_pedal, suction_pedal;  // of tools; they stop nothing
         std::string enable, watchdog, lamp;
         std::string bias = "none";  // of the inputs, where the chip has one: "up", "down"
         bool edges = false;         // the chip has interrupts
@@ -88,10 +91,14 @@ struct RtConfig {
         double burr_length_mm = 8.0;        // of the head of those
         double shaft_diameter_mm = 2.4;     // 0: no shaft
         double burr_rpm = 60000.0;          // while the pedal is pressed
-        std::string pedal = "button";       // the stylus's second button; or "always"
-        double irrigation_ml_min = 20.0;    // of water on the burr while it turns
-        double rate_per_s = 40.0;           // of erosion, at 60 000 rpm
-        double vibration = 0.0;             // of the running burr, over the elastic force
+        std::string pedal = "button";       // the stylus's second button; or "line", "always"
+        double irrigation_ml_min = 20.0;    // of water on the burr
+        std::string irrigation = "pedal";   // with the burr; or "always"
+        double sucker_diameter_mm = 2.0;    // of the tube in the second hand
+        std::string suction = "button";     // the second hand's second button; or "line", "always"
+        double suction_l_min = 20.0;
+        double rate_per_s = 40.0;  // of erosion, at 60 000 rpm
+        double vibration = 0.0;    // of the running burr, over the elastic force
     } drilling;
     struct Safety {
         double force_n_max = 3.3;

@@ -11,6 +11,8 @@ LinesSettings lines_settings_from(const RtConfig& c) {
     l.gpio.emergency_stop_b = c.lines.emergency_stop_b;
     l.gpio.dead_man = c.lines.dead_man;
     l.gpio.amplifier = c.lines.amplifier;
+    l.gpio.burr_pedal = c.lines.burr_pedal;
+    l.gpio.suction_pedal = c.lines.suction_pedal;
     l.gpio.enable = c.lines.enable;
     l.gpio.watchdog = c.lines.watchdog;
     l.gpio.lamp = c.lines.lamp;

@@ -45,6 +45,12 @@ struct LinesCycle {
     std::uint64_t trips_at_arming = 0;
 };
 
+// What is driven in this cycle.
+struct DrivesCycle {
+    double burr_rad_s = 0.0;
+    bool irrigation = false, suction = false;
+};
+
 struct CycleState {
     std::uint64_t cycle = 0;
     Instant planned{}, now{}, before{};
@@ -59,6 +65,7 @@ struct CycleState {
     RunStatus run;
     Trip trip;
     LinesCycle lines;
+    DrivesCycle drives;
     std::uint64_t drops_seen = 0;  // by the supervisor
     std::uint32_t hands = 0;
     HandCycle hand[kHandsMax];

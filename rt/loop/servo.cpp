@@ -11,8 +11,6 @@ namespace {
 
 // The picture's path. Its floor is what a person still recognizes; its slew is the law's.
 constexpr KnobSpec kMeshKnob{.path = kMeshPath, .floor = 0.01F, .start = 1.0F};
-// A twentieth of the dust still says where the burr cuts.
-constexpr KnobSpec kParticlesKnob{.path = kParticlesPath, .floor = 0.05F, .start = 1.0F};
 
 // A stop ramps out in rt/safety's ramp_out_s; the amplifier goes off after this at the latest.
 constexpr Duration kStopMax = std::chrono::milliseconds(100);
@@ -51,13 +49,12 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
         h.chain = OutputChain(for_device(settings.chain, parts.hands[i].info));
     }
     c_->house.gui_heartbeat_ns = -1;
-    const bool ok = governor_.add(kMeshKnob) == kMeshIndex &&
-                    governor_.add(c_->hand[0].model->knob()) == kForceIndex &&
-                    (!settings_.bone || governor_.add(kParticlesKnob) == kParticlesIndex);
+    const bool ok =
+        governor_.add(kMeshKnob) == kMeshIndex && governor_.add(c_->hand[0].model->knob()) == kForceIndex;
     if (!ok)
         throw StartupError("the knobs of the scene", "the force model's knob is impossible",
                            "report this scene");
-    show_picture(false);
+    governor_.set_present(kMeshIndex, false);
     const ModelBodies bodies = c_->hand[0].model->bodies();
     if (bodies.active < bodies.count) governed_structure_ = bodies.structure[bodies.active];
     bound_by_delay();
@@ -152,15 +149,33 @@ void Servo::pose(CycleState& c) noexcept {
     }
 }
 
-// Where no force is let through, nothing is cut either.
-double Servo::burr_rad_s(const CycleState& c) const noexcept {
-    const bool pressed = settings_.burr_always || (c.hand[0].tool.buttons & kDrillPedal) != 0;
-    return c.run.state == RunState::active && pressed && !dry_ ? settings_.burr_rad_s : 0.0;
+bool Servo::pressed(const CycleState& c, Pedal pedal, std::uint32_t hand, LineInput line) const noexcept {
+    switch (pedal) {
+        case Pedal::button:
+            return hand < c.hands && (c.hand[hand].tool.buttons & kDrillPedal) != 0;
+        case Pedal::line:  // one that nobody can read is not pressed
+            return lines_ != nullptr && c.lines.sample.sequence != 0 &&
+                   c.lines.age <= settings_.lines_age_max && (c.lines.sample.inputs & line) != 0;
+        case Pedal::always:
+            return true;
+    }
+    return false;
+}
+
+// Where no force is let through, nothing is cut either, and nothing runs.
+void Servo::look_at_pedals(CycleState& c) noexcept {
+    const DrivesSettings& s = settings_.drives;
+    const bool may = c.run.state == RunState::active && !dry_;
+    const bool turns = may && pressed(c, s.burr, 0, kLineBurr);
+    c.drives.burr_rad_s = turns ? s.burr_rad_s : 0.0;
+    c.drives.irrigation = may && s.irrigation_m3_s > 0.0 && (s.irrigation_always || turns);
+    c.drives.suction = may && s.suction_m3_s > 0.0 && pressed(c, s.suction, 1, kLineSuction);
 }
 
 void Servo::model(CycleState& c) noexcept {
     take_model(c);
     ask_for_model(c);
+    look_at_pedals(c);
     const Instant begin = clock_.now();
     const Budget budget{.fidelity = governor_.level(kForceIndex),
                         .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max(),
@@ -168,7 +183,7 @@ void Servo::model(CycleState& c) noexcept {
     c.fresh = 0.0;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
-        h.model->drive({.burr_rad_s = burr_rad_s(c), .step_s = to_s(c.dt)});
+        h.model->drive({.burr_rad_s = i == 0 ? c.drives.burr_rad_s : 0.0, .step_s = to_s(c.dt)});
         h.step = h.model->step(h.tool, budget);
         if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
         c.fresh += static_cast<double>(h.step.load.fresh) / c.hands;

@@ -26,6 +26,23 @@
 
 namespace tact {
 
+// What says that a tool is to be driven.
+enum class Pedal : std::uint8_t {
+    button,  // the second one of the stylus that holds the tool
+    line,    // a foot pedal on one of the lines (hal/api/lines.hpp): on or off
+    always,  // while the force is on
+};
+
+// Of drilling: the burr is in the first hand, the sucker in the second.
+struct DrivesSettings {
+    double burr_rad_s = 0.0;  // while its pedal is pressed
+    Pedal burr = Pedal::button;
+    double irrigation_m3_s = 0.0;  // of water on the burr while it turns
+    bool irrigation_always = false;
+    double suction_m3_s = 0.0;
+    Pedal suction = Pedal::button;
+};
+
 struct ServoSettings {
     Duration period = std::chrono::milliseconds(1);
     bool free_running = false;
@@ -35,10 +52,7 @@ struct ServoSettings {
     double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
     double hand_damping_n_s_m = 3.0;  // of hand and arm: what stiffness is stable at a delay hangs on it
     Pose T_world_dev;
-    double burr_rad_s = 0.0;       // of a drill while its pedal is pressed
-    bool burr_always = false;      // without a pedal; else bit 1 of the first hand's buttons is one
-    double irrigation_m3_s = 0.0;  // of water on the burr while it turns
-    bool bone = false;             // the scene is of bone: its picture has particles
+    DrivesSettings drives;
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
@@ -86,7 +100,6 @@ public:
 
     static constexpr std::size_t kMeshIndex = kPicturePathIndex;
     static constexpr std::size_t kForceIndex = kForcePathIndex;
-    static constexpr std::size_t kParticlesIndex = kParticlesPathIndex;  // settings.bone
 
 private:
     // The stages, in order.
@@ -131,7 +144,9 @@ private:
     void publish_trace(const CycleState& c) noexcept TACT_RT;
     [[nodiscard]] double rate_for_law(Duration interval) const noexcept TACT_RT;
     [[nodiscard]] double rate_kept_up(const CycleState& c, double rate_hz) const noexcept TACT_RT;
-    [[nodiscard]] double burr_rad_s(const CycleState& c) const noexcept TACT_RT;
+    void look_at_pedals(CycleState& c) noexcept TACT_RT;
+    [[nodiscard]] bool pressed(const CycleState& c, Pedal pedal, std::uint32_t hand,
+                               LineInput line) const noexcept TACT_RT;
     [[nodiscard]] bool holds_rate() const noexcept TACT_RT;
     [[nodiscard]] Instant rest() noexcept TACT_RT;
     [[nodiscard]] double share_of_step(const CycleState& c) noexcept TACT_RT;
@@ -139,7 +154,6 @@ private:
     [[nodiscard]] bool look_at_picture(const CycleState& c) noexcept TACT_RT;
     void say_levels(const CycleState& c, std::span<const float> before, bool changed) noexcept TACT_RT;
     void start_interval(Instant now) noexcept TACT_RT;
-    void show_picture(bool present) noexcept TACT_RT;
 
     Clock& clock_;
     RtRegion& region_;
@@ -178,7 +192,7 @@ private:
     double model_cost_s_ = 0.0;
     std::uint64_t levels_sequence_ = 0;
     PictureWatch picture_;
-    std::uint32_t levels_vertices_max_ = 0, levels_particles_max_ = 0;
+    std::uint32_t levels_vertices_max_ = 0;
 
     // At the delay of the last second.
     double stiffness_n_m_max_ = 0.0, damping_n_s_m_max_ = 0.0;

@@ -131,13 +131,15 @@ void Servo::publish_drill(const CycleState& c) noexcept {
         h.cut_levels = static_cast<std::uint32_t>(tool.cut_levels);
         h.kind = tool.cuts ? DrillKind::burr : DrillKind::sucker;
         h.shape = static_cast<DrillShape>(tool.shape);
-        if (tool.cuts) h.irrigation = tool.burr_rad_s > 0.0 ? 1.0F : 0.0F;
+        h.irrigation = tool.cuts && c.drives.irrigation ? 1.0F : 0.0F;
+        h.suction = !tool.cuts && c.drives.suction ? 1.0F : 0.0F;
     }
     if (!there) return;
     t.taken_at_ns = to_ns(c.now);
     t.cycle = c.cycle;
-    t.burr_rad_s_most = static_cast<float>(settings_.burr_rad_s);
-    t.irrigation_m3_s_most = static_cast<float>(settings_.irrigation_m3_s);
+    t.burr_rad_s_most = static_cast<float>(settings_.drives.burr_rad_s);
+    t.irrigation_m3_s_most = static_cast<float>(settings_.drives.irrigation_m3_s);
+    t.suction_m3_s_most = static_cast<float>(settings_.drives.suction_m3_s);
     region_.drill.publish(t);
 }
 
@@ -235,7 +237,6 @@ void Servo::publish_lateness(const CycleState& c) noexcept {
 
 void Servo::publish_levels(const CycleState& c) noexcept {
     levels_vertices_max_ = c.house.gui_vertices_max;
-    levels_particles_max_ = c.house.gui_particles_max;
     LevelsTopic t{};
     t.taken_at_ns = to_ns(c.now);
     t.sequence = levels_sequence_;
@@ -260,13 +261,6 @@ void Servo::publish_levels(const CycleState& c) noexcept {
     mesh.items_max = c.house.gui_vertices_max;
     mesh.items = static_cast<std::uint32_t>(static_cast<double>(mesh.level) * mesh.items_max + 0.5);
     mesh.cost_s = c.house.gui_busy_s;
-    if (settings_.bone) {
-        PathLevel& particles = t.path[kParticlesIndex];
-        particles.items_max = c.house.gui_particles_max;
-        particles.items =
-            static_cast<std::uint32_t>(static_cast<double>(particles.level) * particles.items_max + 0.5);
-        particles.cost_s = c.house.gui_particles_s;
-    }
     PathLevel& force = t.path[kForceIndex];
     force.items = model.items(force.level);
     force.items_max = model.items(1.0F);

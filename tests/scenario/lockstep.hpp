@@ -2,8 +2,10 @@
 // repeats.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "hal/sim/sim_device.hpp"
@@ -14,17 +16,25 @@
 
 namespace tact {
 
+// Of another hand, where there is one.
+struct SecondHand {
+    SimSettings sim;
+    ForceModel* model = nullptr;
+};
+
 class Lockstep {
 public:
     // Lines that are given are open; a model that is given is felt instead of the spring.
     explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {}, Lines* lines = nullptr,
-                      ForceModel* model = nullptr)
-        : region_(new RtRegion{}), device_(sim) {
+                      ForceModel* model = nullptr, const SecondHand& second = {})
+        : region_(new RtRegion{}), device_(sim), device2_(second.sim) {
         settings.model_deadline = false;
         settings.dry_cycles = 20;
         clock_.advance(std::chrono::seconds(100));
-        hand_ = {&device_, model != nullptr ? model : &model_, device_.open()};
-        servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mail_, lines}, settings);
+        hands_ = {HandParts{&device_, model != nullptr ? model : &model_, device_.open()},
+                  HandParts{&device2_, second.model, device2_.open()}};
+        const std::span<const HandParts> hands(hands_.data(), second.model != nullptr ? 2 : 1);
+        servo_.emplace(ServoParts{clock_, hands, *region_, mail_, lines}, settings);
         servo_->warm_up();
     }
 
@@ -73,10 +83,10 @@ public:
 
     ManualClock clock_;
     std::unique_ptr<RtRegion> region_;
-    SimDevice device_;
+    SimDevice device_, device2_;
     SpringModel model_;
     ServoMail mail_;
-    HandParts hand_{};
+    std::array<HandParts, 2> hands_{};
     std::optional<Servo> servo_;
     std::uint64_t sequence_ = 0;
 };

@@ -3,9 +3,7 @@
 
 #include <cstring>
 
-#include "rt/force/drilling/drill_model.hpp"
 #include "tests/scenario/lockstep.hpp"
-#include "tests/support/bone_block.hpp"
 
 namespace tact {
 namespace {
@@ -210,106 +208,6 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
     loop.cycles(1);
     loop.mail_.model.collect().reset();
     EXPECT_EQ(destroyed, 1);
-}
-
-// A wall of bone some 5 mm away from the hand at rest, and a hand that presses a burr into it.
-struct DrillScenario {
-    BoneBlock block{64, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
-    DrillBone bone{block.bricks, block.density, block.revision};
-    DrillModel model{meta(), bone, burr()};
-    Lockstep loop;
-
-    explicit DrillScenario(bool pedal) : loop(settings(pedal), sim(), nullptr, &model) {}
-
-    static SceneMeta meta() {
-        SceneMeta m{};
-        m.kind = SceneKind::drilling;
-        m.world_per_model = 1.0;
-        for (double& c : m.centre_model_m) c = 0.016;
-        return m;
-    }
-    static DrillSettings burr() {
-        DrillSettings s;
-        s.tool.radius_m = 2e-3;
-        s.tool.shaft_radius_m = 0.0;
-        return s;
-    }
-    static ServoSettings settings(bool pedal) {
-        ServoSettings s;
-        s.burr_rad_s = 6283.0;
-        s.burr_always = pedal;
-        return s;
-    }
-    static SimSettings sim() {
-        SimSettings s;
-        s.hand.script = "drill";
-        s.hand.press_m = 0.012;
-        return s;
-    }
-};
-
-TEST(DrillScenario, bone_is_cut_only_while_the_force_is_on) {
-    DrillScenario drill(true);
-    drill.loop.cycles(2000);  // the hand is in the bone by then
-    EXPECT_EQ(drill.loop.state(), RunState::ready);
-    EXPECT_EQ(drill.model.removed_levels(), 0U);
-    drill.loop.order(CommandKind::arm);
-    drill.loop.cycles(2000);
-    EXPECT_EQ(drill.loop.state(), RunState::active);
-    const std::uint64_t cut = drill.model.removed_levels();
-    EXPECT_GT(cut, 255U * 20U);
-    drill.loop.order(CommandKind::disarm);
-    drill.loop.cycles(2);
-    const std::uint64_t then = drill.model.removed_levels();
-    drill.loop.cycles(1000);
-    EXPECT_EQ(drill.model.removed_levels(), then);
-}
-
-TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_hand) {
-    DrillScenario drill(false);
-    drill.loop.active();
-    drill.loop.cycles(3000);
-    EXPECT_EQ(drill.model.removed_levels(), 0U);
-    EXPECT_GT(drill.loop.shown_n(), 0.2);
-    EXPECT_GT(drill.loop.tool().pos_world_m[2], -6.5e-3);  // the wall is at -5.25 mm, the burr's radius 2
-    EXPECT_LT(drill.loop.tool().pos_world_m[2], -3.25e-3);
-}
-
-TEST(DrillScenario, what_the_tool_is_and_took_is_published) {
-    DrillScenario drill(true);
-    drill.loop.active();
-    drill.loop.cycles(2000);
-    const DrillTopic t = drill.loop.drill();
-    EXPECT_EQ(t.cycle, drill.loop.tool().cycle);
-    EXPECT_EQ(t.removed_levels, drill.model.removed_levels());
-    EXPECT_NEAR(t.level_m3 * static_cast<double>(t.removed_levels), drill.model.removed_m3(), 1e-15);
-    const DrillHand& burr = t.hand[0];
-    EXPECT_EQ(burr.kind, DrillKind::burr);
-    EXPECT_EQ(burr.shape, DrillShape::sphere);
-    EXPECT_FLOAT_EQ(burr.radius_m, 2e-3F);
-    EXPECT_FLOAT_EQ(burr.length_m, 4e-3F);
-    EXPECT_FLOAT_EQ(burr.burr_rad_s, 6283.0F);
-    EXPECT_EQ(burr.irrigation, 1.0F);
-    EXPECT_EQ(burr.removed_levels, t.removed_levels);
-    EXPECT_EQ(burr.cut_levels, drill.model.cut().removed);
-    EXPECT_GT(burr.depth, 0.0F);
-    EXPECT_GT(burr.elastic_n, 0.0F);
-    EXPECT_NEAR(burr.pos_model_m[2], drill.loop.tool().pos_world_m[2] + 0.016, 1e-12);
-    EXPECT_EQ(t.hand[1].kind, DrillKind::none);
-    drill.loop.order(CommandKind::disarm);
-    drill.loop.cycles(2);
-    EXPECT_EQ(drill.loop.drill().hand[0].burr_rad_s, 0.0F);
-    EXPECT_EQ(drill.loop.drill().hand[0].irrigation, 0.0F);
-}
-
-TEST(DrillScenario, the_same_run_leaves_the_same_bone) {
-    const auto run = [] {
-        DrillScenario drill(true);
-        drill.loop.active();
-        drill.loop.cycles(2000);
-        return std::pair(drill.block.density, drill.loop.tool().pos_world_m[2]);
-    };
-    EXPECT_EQ(run(), run());
 }
 
 }  // namespace

@@ -141,6 +141,96 @@ TEST(SimHand, a_stroking_hand_goes_down_and_rests_on_what_holds_it) {
     EXPECT_GT(farthest, 0.005);
 }
 
+// A wall of so many newtons a metre, 20 mm away.
+struct Walled {
+    SimHand hand;
+    double push_n = 0.0;
+    explicit Walled(const char* script, std::uint64_t seed = 1)
+        : hand(settings(script, seed), Vec3::Constant(0.2)) {}
+    static SimHandSettings settings(const char* script, std::uint64_t seed) {
+        SimHandSettings s;
+        s.script = script;
+        s.seed = seed;
+        s.at_m = Vec3(0.01, -0.005, 0.0);
+        return s;
+    }
+    void step(double n_m, bool powered = true) {
+        push_n = powered ? std::max(0.0, n_m * (-0.02 - hand.pose().p_m.z())) : 0.0;
+        hand.step(milliseconds(1), {Vec3(0.0, 0.0, push_n), Vec3::Zero()}, powered);
+    }
+};
+
+TEST(SimSurgeon, presses_and_strokes_where_it_was_held_and_lifts_hand_and_pedal_in_between) {
+    Walled a("surgeon"), again("surgeon"), other("surgeon", 2);
+    EXPECT_EQ(a.hand.pose().p_m, Vec3(0.01, -0.005, 0.0));
+    double most_n = 0.0, aside_m = 0.0;
+    int pressed = 0, lifted = 0, while_lifted = 0;
+    for (int i = 0; i < 30000; ++i) {
+        for (Walled* w : {&a, &again, &other}) w->step(1500.0);
+        ASSERT_EQ(a.hand.pose().p_m, again.hand.pose().p_m);
+        most_n = std::max(most_n, a.push_n);
+        aside_m = std::max(aside_m, (a.hand.pose().p_m - Vec3(0.01, -0.005, 0.0)).head<2>().norm());
+        const bool pedal = (a.hand.buttons() & 2U) != 0;
+        pressed += pedal && a.push_n > 0.2;
+        lifted += !pedal && a.hand.pose().p_m.z() > -0.018 && i > 6000;
+        while_lifted += !pedal && a.push_n > 0.0 && i > 6000;
+    }
+    EXPECT_NE(a.hand.pose().p_m, other.hand.pose().p_m);
+    EXPECT_GT(most_n, 0.7);
+    EXPECT_LT(most_n, 2.5);
+    EXPECT_GT(aside_m, 2e-3);
+    EXPECT_LT(aside_m, 10e-3);
+    EXPECT_GT(pressed, 12000);
+    EXPECT_GT(lifted, 1000);
+    EXPECT_LT(while_lifted, 1000);  // on its way up
+}
+
+TEST(SimSurgeon, keeps_still_until_the_device_is_on_and_goes_back_when_it_goes_off) {
+    Walled w("surgeon");
+    const Vec3 begin_m = w.hand.pose().p_m;
+    for (int i = 0; i < 3000; ++i) w.step(1500.0, false);
+    EXPECT_LT((w.hand.pose().p_m - begin_m).norm(), 1e-6);
+    for (int i = 0; i < 6000; ++i) w.step(1500.0);
+    EXPECT_GT((w.hand.pose().p_m - begin_m).norm(), 0.01);
+    for (int i = 0; i < 3000; ++i) w.step(1500.0, false);
+    EXPECT_LT((w.hand.pose().p_m - begin_m).norm(), 1e-4);
+    EXPECT_EQ(w.hand.buttons(), 0U);
+}
+
+TEST(SimSurgeon, tries_beside_where_it_met_nothing) {
+    Walled w("surgeon");
+    double deepest_m = 0.0;
+    Vec3 second_m = Vec3::Zero();
+    for (int i = 0; i < 14000; ++i) {
+        w.step(0.0);
+        deepest_m = std::min(deepest_m, w.hand.pose().p_m.z());
+        if (i > 7000 && i < 9500 && w.hand.pose().p_m.z() < -0.02) second_m = w.hand.pose().p_m;
+        EXPECT_EQ(w.hand.buttons(), 0U);
+    }
+    EXPECT_NEAR(deepest_m, -SimSurgeon::kReachM, 3e-3);
+    EXPECT_NEAR((second_m - Vec3(0.01, -0.005, 0.0)).head<2>().norm(), 4e-3, 1e-3);
+}
+
+TEST(SimSurgeon, the_hand_with_the_sucker_touches_lightly_and_keeps_beside_the_burr) {
+    Walled burr("surgeon"), sucker("sucker");
+    double most_n = 0.0, nearest_m = 1.0;
+    bool in_the_middle = false;
+    for (int i = 0; i < 30000; ++i) {
+        burr.step(1500.0);
+        sucker.step(1500.0);
+        most_n = std::max(most_n, sucker.push_n);
+        const double apart_m = (burr.hand.pose().p_m - sucker.hand.pose().p_m).norm();
+        if (burr.push_n > 0.0) nearest_m = std::min(nearest_m, apart_m);
+        const double off_m = (sucker.hand.pose().p_m - Vec3(0.01, -0.005, 0.0)).head<2>().norm();
+        in_the_middle = in_the_middle || off_m < 3e-3;
+    }
+    EXPECT_GT(most_n, 0.1);
+    EXPECT_LT(most_n, 0.8);
+    EXPECT_GT(nearest_m, 1e-3);
+    EXPECT_TRUE(in_the_middle);
+    EXPECT_EQ(sucker.hand.buttons(), 2U);
+}
+
 TEST(SimHand, an_unknown_script_is_refused_in_words) {
     SimHandSettings settings;
     settings.script = "dance";

@@ -57,6 +57,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.device.driver, defaults.device.driver);
     EXPECT_EQ(config.device.hand, defaults.device.hand);
     EXPECT_EQ(config.device.hand_seed, defaults.device.hand_seed);
+    EXPECT_EQ(config.device.hand_at_mm, defaults.device.hand_at_mm);
     EXPECT_EQ(config.device.watchdog_us, defaults.device.watchdog_us);
     EXPECT_EQ(config.device.process_log, defaults.device.process_log);
     EXPECT_EQ(config.device.serial, defaults.device.serial);
@@ -64,6 +65,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.device.firmware, defaults.device.firmware);
     EXPECT_EQ(config.device2.driver, defaults.device2.driver);
     EXPECT_EQ(config.device2.serial, defaults.device2.serial);
+    EXPECT_EQ(config.device2.hand, defaults.device2.hand);
     EXPECT_EQ(config.device2.hand_seed, defaults.device2.hand_seed);
     EXPECT_EQ(config.safety.hand_damping_n_s_m, defaults.safety.hand_damping_n_s_m);
     EXPECT_EQ(config.tracker.driver, defaults.tracker.driver);
@@ -82,6 +84,8 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.lines.emergency_stop_b, defaults.lines.emergency_stop_b);
     EXPECT_EQ(config.lines.dead_man, defaults.lines.dead_man);
     EXPECT_EQ(config.lines.amplifier, defaults.lines.amplifier);
+    EXPECT_EQ(config.lines.burr_pedal, defaults.lines.burr_pedal);
+    EXPECT_EQ(config.lines.suction_pedal, defaults.lines.suction_pedal);
     EXPECT_EQ(config.lines.enable, defaults.lines.enable);
     EXPECT_EQ(config.lines.watchdog, defaults.lines.watchdog);
     EXPECT_EQ(config.lines.lamp, defaults.lines.lamp);
@@ -94,6 +98,15 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.lines.age_us_max, defaults.lines.age_us_max);
     EXPECT_EQ(config.shape.force_scale, defaults.shape.force_scale);
     EXPECT_EQ(config.shape.damping_n_s_m, defaults.shape.damping_n_s_m);
+    EXPECT_EQ(config.drilling.burr_diameter_mm, defaults.drilling.burr_diameter_mm);
+    EXPECT_EQ(config.drilling.burr_shape, defaults.drilling.burr_shape);
+    EXPECT_EQ(config.drilling.burr_rpm, defaults.drilling.burr_rpm);
+    EXPECT_EQ(config.drilling.pedal, defaults.drilling.pedal);
+    EXPECT_EQ(config.drilling.irrigation_ml_min, defaults.drilling.irrigation_ml_min);
+    EXPECT_EQ(config.drilling.irrigation, defaults.drilling.irrigation);
+    EXPECT_EQ(config.drilling.sucker_diameter_mm, defaults.drilling.sucker_diameter_mm);
+    EXPECT_EQ(config.drilling.suction, defaults.drilling.suction);
+    EXPECT_EQ(config.drilling.suction_l_min, defaults.drilling.suction_l_min);
     EXPECT_EQ(config.safety.force_n_max, defaults.safety.force_n_max);
     EXPECT_EQ(config.safety.torque_n_m_max, defaults.safety.torque_n_m_max);
     EXPECT_EQ(config.safety.force_slew_n_s, defaults.safety.force_slew_n_s);
@@ -241,6 +254,44 @@ TEST(Config, only_where_nobodys_hand_is_on_the_device_may_its_own_watchdog_latch
                   config.safety.timing_latches == "always")
             << word;
     }
+}
+
+TEST(Config, a_foot_pedal_needs_a_line) {
+    RtConfig config;
+    config.drilling.pedal = "line";
+    const auto refused = [&config](const char* key) {
+        try {
+            check_config(config, "here");
+        } catch (const StartupError& e) {
+            return std::string(e.what()).find(key) != std::string::npos;
+        }
+        return false;
+    };
+    EXPECT_TRUE(refused("drilling.pedal"));
+    config.lines.driver = "gpio";
+    config.lines.dead_man = "1";
+    EXPECT_TRUE(refused("drilling.pedal"));
+    config.lines.burr_pedal = "2";
+    check_config(config, "here");
+    config.drilling.suction = "line";
+    EXPECT_TRUE(refused("drilling.suction"));
+    config.lines.suction_pedal = "3";
+    check_config(config, "here");
+    EXPECT_EQ(settings_from(config, true).drives.burr, Pedal::line);
+    EXPECT_EQ(settings_from(config, true).drives.suction, Pedal::line);
+    EXPECT_EQ(lines_settings_from(config).gpio.burr_pedal, "2");
+    EXPECT_EQ(lines_settings_from(config).gpio.suction_pedal, "3");
+}
+
+TEST(Config, the_second_emulated_hand_has_a_script_of_its_own) {
+    RtConfig config;
+    config.device.hand = "surgeon";
+    config.device.hand_at_mm = {-8.0, 2.0};
+    EXPECT_EQ(device2_settings_from(config).sim.hand.script, "surgeon");
+    config.device2.hand = "sucker";
+    EXPECT_EQ(device_settings_from(config).sim.hand.script, "surgeon");
+    EXPECT_EQ(device2_settings_from(config).sim.hand.script, "sucker");
+    EXPECT_TRUE(device2_settings_from(config).sim.hand.at_m.isApprox(Vec3(-8e-3, 2e-3, 0.0)));
 }
 
 }  // namespace

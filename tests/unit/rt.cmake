@@ -29,6 +29,7 @@ tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force loop)
+tact_test(scenario/drill_scenario_test.cpp USES base topics hal force loop)
 tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force loop safety)
 tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force loop LABELS tsan)
 tact_test(scenario/servo_faults_scenario_test.cpp USES base topics hal force loop)

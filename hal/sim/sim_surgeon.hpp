@@ -1,0 +1,67 @@
+// An emulated surgeon's hand: one that leads a burr over bone, or one that follows it with a sucker.
+//
+// Knows    the force that it is shown, where it is, and the time since the device was switched on; nothing of the scene
+// Burr     goes away from the user until something holds it, and there works out a bowl: series of strokes to and fro, each
+//          in another direction, slowly wider and deeper. Between two series it lifts the burr and the pedal. Where nothing
+//          is met it tries again a little beside.
+// Sucker   feels its way in the same manner, keeps to the rim of the bowl, and goes into its middle while a surgeon
+//          of the same seed has lifted the burr.
+// Pedal    the second button, held while it works
+// Switched off, or not on yet: the hand goes back to where it began.
+// Frame    device
+// Repeats  the same seed, steps and forces give the same motion.
+// Thread   that of the device; no allocation
+#pragma once
+
+#include <cstdint>
+
+#include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+struct SimSurgeonSettings {
+    bool sucker = false;
+    std::uint64_t seed = 1;
+    Vec3 at_m = Vec3::Zero();  // in front of the bone; the bowl is worked out straight behind it
+};
+
+class SimSurgeon {
+public:
+    static constexpr double kDepthM = 12e-3, kBowlM = 7e-3;  // of the bowl when it is done
+    static constexpr double kPressMostN = 1.6;
+    static constexpr double kReachM = 60e-3;  // how far it looks for bone
+    static constexpr double kSeriesS = 6.0;   // strokes and the lift after them
+
+    explicit SimSurgeon(const SimSurgeonSettings& settings) noexcept;
+
+    // Before pull(): where the hand is and what it felt for a time h.
+    void step(double h_s, const Vec3& at_m, const Vec3& felt_n, bool powered) noexcept TACT_RT;
+    [[nodiscard]] Wrench pull(const Pose& pose, const Twist& twist) const noexcept TACT_RT;
+
+    [[nodiscard]] Pose begin() const noexcept;
+    [[nodiscard]] std::uint32_t buttons() const noexcept { return works_ ? 1U << 1 : 0U; }
+    [[nodiscard]] bool met() const noexcept { return met_; }
+
+private:
+    // One series of strokes, by its number.
+    struct Series {
+        Vec3 along = Vec3::UnitX(), across = Vec3::UnitY();
+        double press_n = 1.0;
+    };
+    [[nodiscard]] Series series(std::uint64_t number) const noexcept TACT_RT;
+    void seek(double h_s, const Vec3& at_m) noexcept TACT_RT;
+    void work(double h_s) noexcept TACT_RT;
+    void towards(const Vec3& goal_m, double h_s) noexcept TACT_RT;
+
+    SimSurgeonSettings settings_;
+    Vec3 begin_m_, spot_m_, target_m_;
+    Vec3 met_m_ = Vec3::Zero();
+    bool met_ = false, works_ = false, back_ = false;
+    double on_s_ = 0.0, worked_s_ = 0.0, felt_n_ = 0.0, press_n_ = 0.0;
+    std::uint32_t missed_ = 0;
+    std::uint64_t number_ = 0;
+    Series series_;
+};
+
+}  // namespace tact
