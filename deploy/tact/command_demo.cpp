@@ -1,4 +1,5 @@
 // tact demo dock: a synthetic ring of six, started away from its place, is drawn into its 12 A map.
+// tact demo drill: a surgeon opens the mastoid of a synthetic temporal bone, a second hand sucks.
 // tact demo touch: a hand strokes a rough terrain, or a rough or smooth sphere.
 #include <memory>
 
@@ -8,6 +9,11 @@
 #include "deploy/tact/tool_options.hpp"
 
 namespace tact::launch {
+namespace {
+
+constexpr const char* kMastoidMm = "-8.5,0";  // of the synthetic bone
+
+}  // namespace
 
 void add_demo(CLI::App& app, int& exit_code) {
     auto* const demo = app.add_subcommand("demo", "show what Tact does, without files or devices");
@@ -25,6 +31,22 @@ void add_demo(CLI::App& app, int& exit_code) {
                 options->controller.insert(options->controller.end(), {name, value});
         const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+    auto* const drill =
+        demo->add_subcommand("drill", "two hands open a temporal bone with a burr and a sucker");
+    const auto drill_options = std::make_shared<RunOptions>();
+    const auto voxels = std::make_shared<std::string>("256");
+    drill->add_option("--voxels", *voxels, "of the bone along each axis")->capture_default_str();
+    add_run_options(*drill, *drill_options);
+    drill->callback([drill_options, voxels, &exit_code] {
+        let_the_hands_drill(*drill_options);
+        // Behind the ear canal, over the antrum.
+        if (drill_options->has_controller_option("surgeon") &&
+            !drill_options->has_controller_option("--hand-at-mm"))
+            drill_options->controller.insert(drill_options->controller.end(), {"--hand-at-mm", kMastoidMm});
+        const auto scene =
+            baked_scene({.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *drill_options);
     });
     auto* const touch = demo->add_subcommand("touch", "a rough terrain, or a dense sphere, is felt");
     const auto touch_options = std::make_shared<RunOptions>();

@@ -9,6 +9,7 @@ namespace tact::launch {
 
 void add_demo(CLI::App& app, int& exit_code);
 void add_dock(CLI::App& app, int& exit_code);
+void add_drill(CLI::App& app, int& exit_code);
 void add_touch(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);

@@ -8,7 +8,7 @@
 #include "ipc/base/error.hpp"
 
 int main(int argc, char** argv) {
-    CLI::App app{"Tact: feel density maps, structures and surfaces. Start with: tact demo dock"};
+    CLI::App app{"Tact: feel density maps, structures, surfaces and bone. Start with: tact demo dock"};
     app.set_version_flag("--version", "tact " TACT_VERSION);
     app.require_subcommand(1);
     app.footer("Exit codes: 0 as asked; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     using namespace tact::launch;
     add_demo(app, exit_code);
     add_dock(app, exit_code);
+    add_drill(app, exit_code);
     add_touch(app, exit_code);
     add_run(app, exit_code);
     add_status(app, exit_code);

@@ -30,7 +30,13 @@ constexpr Passed kController[] = {
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},
     {"--force-scale", "X", "gain of the shown force"},
-    {"--hand", "NAME", "what the emulated hand does: passive, wander or stroke"},
+    {"--hand", "NAME", "what the emulated hand does: passive, wander, stroke, drill or surgeon"},
+    {"--hand2", "NAME", "an emulated second hand; sucker: beside a surgeon"},
+    {"--hand-at-mm", "X,Y", "where an emulated surgeon works"},
+    {"--pedal", "NAME", "of the burr: button, line or always"},
+    {"--burr-mm", "MM", "diameter of the burr"},
+    {"--burr-shape", "NAME", "sphere, cylinder or cone"},
+    {"--burr-rpm", "RPM", "its speed"},
     {"--tool-radius-mm", "R", "of the ball that touches a surface; 0: a point"},
     {"--stiffness", "N/M", "of a surface"},
     {"--friction", "MU", "of a surface"},
@@ -46,6 +52,13 @@ bool RunOptions::has_controller_option(const std::string& name) const {
 void let_the_hand_stroke(RunOptions& options) {
     if (!options.has_controller_option("--hand") && !options.has_controller_option("--config"))
         options.controller.insert(options.controller.end(), {"--hand", "stroke"});
+}
+
+void let_the_hands_drill(RunOptions& options) {
+    if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return;
+    options.controller.insert(options.controller.end(), {"--hand", "surgeon"});
+    if (!options.has_controller_option("--hand2"))
+        options.controller.insert(options.controller.end(), {"--hand2", "sucker"});
 }
 
 void RunOptions::settle() {

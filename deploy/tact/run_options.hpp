@@ -36,6 +36,9 @@ struct RunOptions {
 // A surface moves nobody: without a device and without another wish, the emulated hand strokes it.
 void let_the_hand_stroke(RunOptions& options);
 
+// And bone: a surgeon with a burr, and a hand with a sucker.
+void let_the_hands_drill(RunOptions& options);
+
 void add_run_options(CLI::App& app, RunOptions& options);
 
 }  // namespace tact::launch

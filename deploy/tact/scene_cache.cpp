@@ -46,6 +46,25 @@ void prune(const std::filesystem::path& folder, const std::filesystem::path& kee
 
 }  // namespace
 
+std::vector<std::filesystem::path> scan_files(const std::filesystem::path& scan) {
+    const std::string ending = scan.extension();
+    const bool folder = std::filesystem::is_directory(scan);
+    if (!folder && ending != ".mhd" && ending != ".nhdr") return {scan};
+    std::vector<std::filesystem::path> files;
+    const auto home = folder ? scan : std::filesystem::absolute(scan).parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(home)) {
+        if (!entry.is_regular_file()) continue;
+        const auto& file = entry.path();
+        if (folder || (file.filename() != scan.filename() &&
+                       file.filename().string().starts_with(scan.stem().string() + ".")))
+            files.push_back(file);
+    }
+    std::sort(files.begin(), files.end());
+    // The scan's own name is the scene's.
+    if (!folder) files.insert(files.begin(), scan);
+    return files;
+}
+
 std::filesystem::path baked_scene(const BakeRequest& request) {
     const auto prep = find_program("tact-prep");
     const auto scene = path_for(request, prep);
