@@ -21,8 +21,8 @@ enum class CellState : std::uint8_t { free, grain, liquid, paste };
 
 class ParticleCells {
 public:
-    // A voxel is bone from this density on. Cells of the margin never are.
-    static constexpr std::uint8_t kBoneFrom = 64;
+    // A voxel is bone from this density on: soft structures too, which are 40 (prep/synthetic). Cells of the margin never are.
+    static constexpr std::uint8_t kBoneFrom = 32;
 
     // density: as `bricks` orders it, or empty where there is no bone; it must outlive the object.
     ParticleCells(const BoneBricks& bricks, std::span<const std::uint8_t> density, std::uint32_t margin);

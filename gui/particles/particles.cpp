@@ -12,13 +12,15 @@ constexpr std::size_t kBetweenLooks = 64;  // moves between two looks at the clo
 constexpr std::size_t kFetchAhead = 8;
 constexpr double kFewest = 0.1;    // of the particles that a step should be able to move
 constexpr double kBelieved = 0.2;  // of a new measurement
-constexpr double kDrawInShare = 0.1, kGiveUpShare = 0.25;  // of the budget
+constexpr double kPassByShare = 0.1, kGiveUpShare = 0.25;  // of the budget
+constexpr std::uint32_t kRoomShare = 50;
 constexpr int kRounds = 4;
 constexpr double kLongestBudgetS = 10.0;
 constexpr std::size_t kSamples = 128;
-constexpr double kDrawnFrom = 3.0;   // radii of the tip
-constexpr double kDrawnSpeed = 0.6;  // of the fastest, at the tip's radius
-constexpr float kScatter = 0.3F;     // of the speed that dust flies off with
+constexpr double kDrawnFrom = 3.0;                       // radii of the tip
+constexpr double kDrawnSpeed = 0.6;                      // of the fastest, at the tip's radius
+constexpr float kFlungOut = 0.25F, kFlungAlong = 0.35F;  // of the fastest
+constexpr float kScatter = 0.3F;                         // of the speed that dust flies off with
 
 float squared(const std::array<float, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
@@ -37,7 +39,8 @@ Particles::Particles(const BoneBricks& bricks, std::span<const std::uint8_t> den
     : settings_(settings),
       cells_(bricks, density, settings.margin),
       groups_(settings.most),
-      random_(settings.seed) {
+      random_(settings.seed),
+      most_(settings.most) {
     if (settings.most == 0 || settings.grain_levels == 0 || !(settings.fastest_m_s > 0.0) ||
         !(settings.drag_per_s >= 0.0) || !settings.gravity_m_s2.allFinite())
         throw StartupError("the settings of the particles are not possible",
@@ -80,7 +83,7 @@ bool Particles::emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) 
 }
 
 bool Particles::spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint16_t mass) noexcept {
-    if (particle_.size() == settings_.most) return false;
+    if (particle_.size() >= most_) return false;
     const auto size = cells_.size();
     for (Eigen::Index i = 0; i < 3; ++i)
         if (!(at[i] >= 0.0) || !(at[i] < size[static_cast<std::size_t>(i)])) return false;
@@ -146,36 +149,58 @@ void Particles::move_group(std::size_t group, std::size_t moves, Instant deadlin
     }
 }
 
-// Goes on through all particles, some of them a step, and looks for those near the tip.
-void Particles::draw_in(const Suction& suction, Instant deadline, ParticleStep& step) noexcept {
-    if (!(suction.radius_m > 0.0) || !suction.tip_m.allFinite()) return;
-    const Vec3 tip = cells_.to_cells(suction.tip_m);
+// Goes on through all particles, some of them a step, and looks for those near the sucker's tip and in the head that
+// turns.
+void Particles::pass_by(const Suction& suction, const Stir& stir, Instant deadline,
+                        ParticleStep& step) noexcept {
+    bool sucks = suction.radius_m > 0.0 && suction.tip_m.allFinite();
+    const Vec3 tip = sucks ? cells_.to_cells(suction.tip_m) : Vec3(Vec3::Zero());
     const double radius = suction.radius_m / cells_.cell_m();
-    step.suction_blocked = blocked(tip, radius);
-    if (step.suction_blocked) return;
-    const auto centre = floats(tip);
-    const auto taken2 = static_cast<float>(radius * radius),
-               drawn2 = static_cast<float>(kDrawnFrom * kDrawnFrom) * taken2;
+    step.suction_blocked = sucks && blocked(tip, radius);
+    sucks = sucks && !step.suction_blocked;
+    const bool stirs = stir.radius_m > 0.0 && stir.centre_m.allFinite() && stir.spin_rad_s.allFinite();
+    if (!sucks && !stirs) return;
+    const auto centre = floats(tip), head = floats(stirs ? cells_.to_cells(stir.centre_m) : tip),
+               spin = floats(stir.spin_rad_s);
+    const auto taken2 = sucks ? static_cast<float>(radius * radius) : 0.0F,
+               drawn2 = static_cast<float>(kDrawnFrom * kDrawnFrom) * taken2,
+               stirred2 = stirs ? static_cast<float>(std::pow(stir.radius_m / cells_.cell_m(), 2)) : 0.0F;
     for (std::size_t looks = 1, all = particle_.size(); looks <= all && !particle_.empty(); ++looks) {
         if (looks % kBetweenLooks == 0 && looks >= kSamples && settings_.now() >= deadline) return;
-        if (drawn_in_ >= particle_.size()) drawn_in_ = 0;
-        Particle& p = particle_[drawn_in_];
+        if (passed_ >= particle_.size()) passed_ = 0;
+        Particle& p = particle_[passed_];
         const std::array<float, 3> way = {centre[0] - p.at[0], centre[1] - p.at[1], centre[2] - p.at[2]};
         const float away2 = squared(way);
-        if (away2 > drawn2) {
-            ++drawn_in_;
-        } else if (away2 <= taken2) {
+        if (away2 <= taken2) {
             cells_.set({static_cast<int>(p.at[0]), static_cast<int>(p.at[1]), static_cast<int>(p.at[2])},
                        CellState::free);
             ++step.sucked;
-            remove(static_cast<std::uint32_t>(drawn_in_), ledger_.sucked);
-        } else {
+            remove(static_cast<std::uint32_t>(passed_), ledger_.sucked);
+            continue;
+        }
+        if (away2 <= drawn2) {
             const float speed = static_cast<float>(kDrawnSpeed) * fastest_ * taken2 / away2;
             for (std::size_t i = 0; i < 3; ++i) p.velocity[i] = speed * way[i] / std::sqrt(away2);
-            regroup(static_cast<std::uint32_t>(drawn_in_));
-            ++drawn_in_;
+            regroup(static_cast<std::uint32_t>(passed_));
+        } else if (const std::array<float, 3> off = {p.at[0] - head[0], p.at[1] - head[1], p.at[2] - head[2]};
+                   squared(off) < stirred2) {
+            fling(p, off, spin);
+            regroup(static_cast<std::uint32_t>(passed_));
         }
+        ++passed_;
     }
+}
+
+// Out of a turning head and along its surface.
+void Particles::fling(Particle& p, const std::array<float, 3>& off,
+                      const std::array<float, 3>& spin) const noexcept {
+    const std::array<float, 3> along = {spin[1] * off[2] - spin[2] * off[1],
+                                        spin[2] * off[0] - spin[0] * off[2],
+                                        spin[0] * off[1] - spin[1] * off[0]};
+    const float turns = std::sqrt(squared(along)), far = std::sqrt(squared(off));
+    for (std::size_t i = 0; i < 3; ++i)
+        p.velocity[i] = fastest_ * (kFlungOut * (far > 0.0F ? off[i] / far : 0.0F) +
+                                    kFlungAlong * (turns > 0.0F ? along[i] / turns : 0.0F));
 }
 
 float Particles::importance(const Particle& p, const std::array<float, 3>& looked_at) const noexcept {
@@ -215,8 +240,8 @@ void Particles::give_up(std::size_t count, const Vec3& looked_at, Instant deadli
     }
 }
 
-ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at_m,
-                             const Suction& suction) noexcept {
+ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction,
+                             const Stir& stir) noexcept {
     ParticleStep step;
     const auto after = [begin = settings_.now()](double s) {
         return begin + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(s));
@@ -224,9 +249,11 @@ ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at
     budget_s = std::clamp(budget_s, 0.0, kLongestBudgetS);
     const Instant deadline = after(budget_s);
     now_s_ += std::max(dt_s, 0.0);
-    draw_in(suction, after(kDrawInShare * budget_s), step);
+    pass_by(suction, stir, after(kPassByShare * budget_s), step);
     const auto moves_left = [&](Instant now) { return std::max(to_s(deadline - now), 0.0) / move_s_; };
-    const auto most = static_cast<std::size_t>(moves_left(settings_.now()) / kFewest);
+    // Room for what comes in the next step.
+    const std::size_t most = std::min<std::size_t>(
+        static_cast<std::size_t>(moves_left(settings_.now()) / kFewest), most_ - most_ / kRoomShare);
     if (particle_.size() > most && looked_at_m.allFinite())
         give_up(particle_.size() - most, cells_.to_cells(looked_at_m), after(kGiveUpShare * budget_s), step);
     const Instant prepared = settings_.now();

@@ -11,6 +11,7 @@
 // Thread   one; no allocation after construction
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,6 +49,13 @@ struct Suction {
         0.0;  // within which particles are taken; they are drawn from three times as far. 0: off
 };
 
+// A head that turns among the particles: what is inside is carried out along its turn.
+struct Stir {
+    Vec3 centre_m = Vec3::Zero();
+    double radius_m = 0.0;  // 0: none
+    Vec3 spin_rad_s = Vec3::Zero();
+};
+
 struct Ledger {  // levels of bone
     std::uint64_t drilled = 0, pooled = 0, carried = 0, sucked = 0, left = 0, given_up = 0;
     [[nodiscard]] bool balances() const noexcept {
@@ -74,7 +82,10 @@ public:
                  const Vec3& velocity_m_s) noexcept;
     // One particle. False: there is no room near, or no more are possible.
     bool emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) noexcept;
-    ParticleStep step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction) noexcept;
+    ParticleStep step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction,
+                      const Stir& stir = {}) noexcept;
+    // From now on there are no more than so many, nor than the settings allow: the least important go.
+    void keep_at_most(std::uint32_t most) noexcept { most_ = std::min(most, settings_.most); }
 
     [[nodiscard]] std::span<const Particle> all() const noexcept { return particle_; }
     [[nodiscard]] Vec3 place_m(const Particle& p) const noexcept {
@@ -90,7 +101,8 @@ private:
     bool spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint16_t mass) noexcept;
     void remove(std::uint32_t i, std::uint64_t& account) noexcept;
     void move_group(std::size_t group, std::size_t moves, Instant deadline, ParticleStep& step) noexcept;
-    void draw_in(const Suction& suction, Instant deadline, ParticleStep& step) noexcept;
+    void pass_by(const Suction& suction, const Stir& stir, Instant deadline, ParticleStep& step) noexcept;
+    void fling(Particle& p, const std::array<float, 3>& off, const std::array<float, 3>& spin) const noexcept;
     void give_up(std::size_t count, const Vec3& looked_at, Instant deadline, ParticleStep& step) noexcept;
     [[nodiscard]] float importance(const Particle& p, const std::array<float, 3>& looked_at) const noexcept;
     [[nodiscard]] float importance_below(double share, const std::array<float, 3>& looked_at) noexcept;
@@ -115,9 +127,10 @@ private:
     Cell down_{};
     std::array<Cell, 4> sideways_{};
     float fastest_ = 1.0F;  // cells / s
+    std::uint32_t most_;
     double now_s_ = 0.0;
-    double move_s_ = 100e-9;                   // measured: of one move
-    std::size_t drawn_in_ = 0, given_up_ = 0;  // where the passes over all go on
+    double move_s_ = 100e-9;                 // measured: of one move
+    std::size_t passed_ = 0, given_up_ = 0;  // where the passes over all go on
 };
 
 }  // namespace tact

@@ -263,6 +263,55 @@ TEST(Particles, ThatMatterLeastAreGivenUpWhereTimeIsShort) {
     EXPECT_LT(mean_m(), before_m);
 }
 
+TEST(Particles, KeepToANumberByGivingUpTheLeastImportant) {
+    const Box box;
+    Particles particles(box.bricks, {}, few());
+    for (int i = 0; i < 12000; ++i) {
+        const Vec3 at = box.at(2 + i % 36, 2 + i / 36 % 28, 2 + i / 1008);
+        ASSERT_TRUE(particles.emit(Matter::dust, at, Vec3::Zero()));
+    }
+    particles.keep_at_most(3000);
+    EXPECT_FALSE(particles.emit(Matter::dust, box.at(38, 38, 38), Vec3::Zero()));
+    std::uint32_t given_up = 0;
+    for (int i = 0; i < 5; ++i) {
+        const ParticleStep step = particles.step(0.0, kPlenty, box.at(20, 15, 7), {});
+        given_up += step.given_up;
+    }
+    EXPECT_LE(particles.all().size(), 3000U);
+    EXPECT_GE(particles.all().size(), 2800U);
+    EXPECT_EQ(given_up + particles.all().size(), 12000U);
+    EXPECT_TRUE(particles.emit(Matter::dust, box.at(38, 38, 38), Vec3::Zero()));  // room for what comes
+    particles.keep_at_most(1U << 30U);
+    for (int i = 0; i < 10000; ++i)
+        static_cast<void>(particles.emit(Matter::water, box.at(38, 38, 2), Vec3::Zero()));
+    EXPECT_LE(particles.all().size(), 20000U);
+}
+
+TEST(Particles, AreCarriedOutOfAHeadThatTurnsAlongItsTurn) {
+    const Box box;
+    Particles particles(box.bricks, {}, {.most = 20000, .margin = 4, .gravity_m_s2 = Vec3(0.0, -1e-6, 0.0)});
+    const Vec3 centre = box.at(20, 20, 20);
+    for (int i = 0; i < 125; ++i)
+        ASSERT_TRUE(
+            particles.emit(Matter::dust, box.at(18 + i % 5, 18 + i / 5 % 5, 18 + i / 25), Vec3::Zero()));
+    const Stir stir{centre, 2e-3, Vec3(0.0, 0.0, 1000.0)};
+    static_cast<void>(particles.step(1e-4, kPlenty, centre, {}, stir));
+    double along = 0.0;
+    for (const Particle& p : particles.all()) {
+        const Vec3 off = particles.place_m(p) - centre;
+        along += Vec3(0.0, 0.0, 1.0)
+                     .cross(off)
+                     .dot(Vec3(static_cast<double>(p.velocity[0]), static_cast<double>(p.velocity[1]),
+                               static_cast<double>(p.velocity[2])));
+    }
+    EXPECT_GT(along, 0.0);
+    for (int i = 0; i < 20; ++i) static_cast<void>(particles.step(1e-3, kPlenty, centre, {}, stir));
+    for (const Particle& p : particles.all()) EXPECT_GT((particles.place_m(p) - centre).norm(), 1.9e-3);
+    expect_one_a_cell(particles);
+    const Stir broken{Vec3::Constant(std::nan("")), 2e-3, Vec3::Zero()};
+    EXPECT_EQ(particles.step(1e-3, kPlenty, centre, {}, broken).alive, 125U);
+}
+
 TEST(Particles, RefuseWhatCannotBe) {
     const Box box;
     Particles particles(box.bricks, box.density, few());

@@ -1,0 +1,185 @@
+// Dust, water and blood in the pixels.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/x_server.hpp"
+#include "gui/app/window.hpp"
+#include "gui/render/camera.hpp"
+#include "gui/render/particle_cloud.hpp"
+#include "gui/render/target.hpp"
+
+// Graphics drivers and X libraries keep memory to the end on purpose.
+extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+
+namespace tact {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+Particle particle(Matter matter, float x, float y, float z) {
+    Particle p{};
+    p.at = {x, y, z};
+    p.matter = matter;
+    return p;
+}
+
+// A slab of so many layers across the view, its face in z = 0.
+std::vector<Particle> slab(Matter matter, int layers) {
+    std::vector<Particle> all;
+    for (int z = 0; z < layers; ++z)
+        for (int y = -14; y <= 14; ++y)
+            for (int x = -14; x <= 14; ++x)
+                all.push_back(
+                    particle(matter, static_cast<float>(x), static_cast<float>(y), static_cast<float>(-z)));
+    return all;
+}
+
+TEST(ParticleDots, SolidsComeFirstAndFluidsHaveABox) {
+    const std::vector<Particle> particles{
+        particle(Matter::water, 1, 2, 3), particle(Matter::dust, 90, 90, 90),
+        particle(Matter::blood, -4, 5, 6), particle(Matter::paste, 7, 8, 9)};
+    std::vector<ParticleDot> dots;
+    const DotRanges r = build_dots(particles, dots);
+    ASSERT_EQ(r.solids, 2U);
+    ASSERT_EQ(r.fluids, 2U);
+    EXPECT_EQ(dots[0].matter, Matter::dust);
+    EXPECT_EQ(dots[1].matter, Matter::paste);
+    EXPECT_EQ(r.fluids_low, (std::array{-4.0F, 2.0F, 3.0F}));
+    EXPECT_EQ(r.fluids_high, (std::array{1.0F, 5.0F, 6.0F}));
+    EXPECT_EQ(build_dots({}, dots).fluids, 0U);
+    EXPECT_TRUE(dots.empty());
+}
+
+class GuiCloud : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (launch::find_in_path("Xvfb").empty()) return;
+        char name[] = "/tmp/tact-gui-cloud-XXXXXX";
+        folder_ = mkdtemp(name);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
+        for (const auto& [key, value] : server_->environment())
+            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
+        window_ = std::make_unique<Window>(kWidth, kHeight, true);
+        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
+    }
+    static void TearDownTestSuite() {
+        target_.reset();
+        window_.reset();
+        server_.reset();
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+    void SetUp() override {
+        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        target_->bind();
+        camera_.frame(12.0F);
+        // Along -z: a particle's x and y are those of the picture.
+        view_.eye_from_cells = Eigen::Matrix4f::Identity();
+        view_.eye_from_cells(2, 3) = -camera_.distance_a();
+        view_.projection = camera_.projection(static_cast<float>(kWidth) / kHeight);
+        view_.width_px = kWidth;
+        view_.height_px = kHeight;
+        cloud_ = std::make_unique<ParticleCloud>();
+    }
+    void TearDown() override {
+        cloud_.reset();
+        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+    }
+    // Over white, with everything at this depth in clip space (1: nothing is there).
+    Image picture(std::span<const Particle> particles, double depth = 1.0) {
+        glViewport(0, 0, kWidth, kHeight);
+        glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
+        glClearDepth(depth);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        glClearDepth(1.0);
+        cloud_->fill(particles);
+        cloud_->draw(view_);
+        GLint frame = 0;
+        glGetIntegerv(GL_FRAMEBUFFER_BINDING, &frame);
+        EXPECT_EQ(glIsEnabled(GL_SCISSOR_TEST), GL_FALSE);
+        EXPECT_EQ(glIsEnabled(GL_BLEND), GL_FALSE);
+        target_->bind();
+        GLint own = 0;
+        glGetIntegerv(GL_FRAMEBUFFER_BINDING, &own);
+        EXPECT_EQ(frame, own);
+        return read_pixels(kWidth, kHeight);
+    }
+    // Of clip space, at this z of the particles.
+    double depth_at(float z) const {
+        const Eigen::Vector4f clip =
+            view_.projection * (view_.eye_from_cells * Eigen::Vector4f(0.0F, 0.0F, z, 1.0F));
+        return 0.5 + 0.5 * static_cast<double>(clip.z() / clip.w());
+    }
+    static std::array<int, 3> middle(const Image& image) {
+        const std::size_t at = std::size_t{3} * (kHeight / 2 * kWidth + kWidth / 2);
+        return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+    }
+    static std::size_t touched(const Image& image) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+            count += image.rgb[i] != 255 || image.rgb[i + 1] != 255 || image.rgb[i + 2] != 255 ? 1U : 0U;
+        return count;
+    }
+
+    static std::string folder_;
+    static std::unique_ptr<launch::XServer> server_;
+    static std::unique_ptr<Window> window_;
+    static std::unique_ptr<OffscreenTarget> target_;
+    std::unique_ptr<ParticleCloud> cloud_;
+    Camera camera_;
+    ParticleCloud::View view_;
+};
+std::string GuiCloud::folder_;
+std::unique_ptr<launch::XServer> GuiCloud::server_;
+std::unique_ptr<Window> GuiCloud::window_;
+std::unique_ptr<OffscreenTarget> GuiCloud::target_;
+
+TEST_F(GuiCloud, NothingIsDrawnOfNothing) { EXPECT_EQ(touched(picture({})), 0U); }
+
+TEST_F(GuiCloud, BloodHidesWhatLiesBehindAndWaterDoesNot) {
+    const auto blood = middle(picture(slab(Matter::blood, 3))),
+               water = middle(picture(slab(Matter::water, 3)));
+    EXPECT_GT(blood[0], 50);
+    EXPECT_LT(blood[1], 60);
+    EXPECT_LT(blood[2], 60);
+    for (const int c : water) EXPECT_GT(c, 150);
+    EXPECT_GT(touched(picture(slab(Matter::water, 3))), 2000U);  // but it is seen
+    const auto dust = middle(picture(slab(Matter::dust, 1)));
+    EXPECT_GT(dust[0], dust[2]);  // ivory
+}
+
+TEST_F(GuiCloud, WhatLiesBehindTheSceneIsNotDrawn) {
+    for (const Matter matter : {Matter::dust, Matter::water, Matter::blood, Matter::paste}) {
+        const std::vector<Particle> particles = slab(matter, 2);
+        EXPECT_GT(touched(picture(particles, depth_at(-6.0F))), 2000U) << static_cast<int>(matter);
+        EXPECT_EQ(touched(picture(particles, depth_at(4.0F))), 0U) << static_cast<int>(matter);
+    }
+}
+
+TEST_F(GuiCloud, DropsThatTouchAreOneBodyAndFarOnesAreNot) {
+    const auto gap = [&](float apart) {
+        const std::array drops{particle(Matter::blood, -0.5F * apart, 0, 0),
+                               particle(Matter::blood, 0.5F * apart, 0, 0)};
+        return middle(picture(drops))[1];
+    };
+    EXPECT_LT(gap(1.0F), 150);
+    EXPECT_EQ(gap(8.0F), 255);
+}
+
+TEST_F(GuiCloud, AViewOfAnotherSizeOrFromCloseByDoesNoHarm) {
+    const std::vector<Particle> particles = slab(Matter::water, 2);
+    view_.x_px = 40;
+    view_.y_px = 30;
+    view_.width_px = 61;
+    view_.height_px = 43;
+    EXPECT_GT(touched(picture(particles)), 500U);
+    view_.eye_from_cells(2, 3) = -0.5F;  // the eye is in it
+    static_cast<void>(picture(particles));
+    view_.eye_from_cells(2, 3) = 50.0F;  // behind it
+    EXPECT_EQ(touched(picture(particles)), 0U);
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,258 @@
+// Dust, water, blood and suction about a burr, and whether it is seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "gui/app/site.hpp"
+#include "gui/particles/burr_sight.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kVoxels = BoneBricks::kVoxels;
+
+// A block of bone, open above z = 24, with a vessel of label 1 ("Sigmoid Sinus") in x < 8.
+struct Block {
+    BoneVolumeView view;
+    BoneLabelsView labels;
+    std::vector<std::uint8_t> density, label;
+    std::vector<std::uint8_t> before, after;
+    std::vector<BrickChange> changes;
+    DrillTopic drill{};
+
+    Block() {
+        view.bricks.size = {48, 48, 48};
+        view.bricks.voxel_m = 3e-4;
+        density.assign(view.bricks.bytes(), 0);
+        label.assign(view.bricks.bytes(), 0);
+        for (std::uint32_t z = 0; z < 24; ++z)
+            for (std::uint32_t y = 0; y < 48; ++y)
+                for (std::uint32_t x = 0; x < 48; ++x) {
+                    density[view.bricks.voxel(x, y, z)] = 240;
+                    label[view.bricks.voxel(x, y, z)] = x < 8 ? 1 : 0;
+                }
+        view.density = density;
+        labels.structure.push_back({"Sigmoid Sinus", {}, true});
+        labels.label = label;
+        DrillHand& burr = drill.hand[0];
+        burr.kind = DrillKind::burr;
+        burr.radius_m = 1.5e-3F;
+        burr.quat_model_tool_xyzw[3] = 1.0;
+        drill.hand[1].quat_model_tool_xyzw[3] = 1.0;
+        drill.irrigation_m3_s_most = 3e-7F;
+        place(24, 24, 26);
+    }
+    void place(double x, double y, double z) {
+        const Vec3 at = view.bricks.to_model(Vec3(x, y, z));
+        std::copy(at.begin(), at.end(), drill.hand[0].pos_model_m);
+    }
+    // The voxels of a layer within some voxels of (x, y) lose these levels.
+    std::uint64_t cut(std::uint32_t x0, std::uint32_t y0, std::uint32_t z, std::uint8_t levels,
+                      bool now = true) {
+        before = density;
+        std::uint64_t lost = 0;
+        for (std::uint32_t y = y0 - 3; y <= y0 + 3; ++y)
+            for (std::uint32_t x = x0 - 3; x <= x0 + 3; ++x) {
+                std::uint8_t& v = density[view.bricks.voxel(x, y, z)];
+                const std::uint8_t off = std::min(v, levels);
+                v = static_cast<std::uint8_t>(v - off);
+                lost += off;
+            }
+        after = density;
+        changes.clear();
+        for (std::size_t i = 0; i < view.bricks.brick_count(); ++i)
+            changes.push_back({static_cast<std::uint32_t>(i),
+                               std::span<const std::uint8_t>(before).subspan(i * kVoxels, kVoxels),
+                               std::span<const std::uint8_t>(after).subspan(i * kVoxels, kVoxels), now});
+        return lost;
+    }
+    Site::Frame frame() const {
+        return {0.02, &drill, changes, 1.0F, view.bricks.to_model(Vec3(24, 24, 200))};
+    }
+};
+
+std::size_t count(const Site& site, Matter matter) {
+    const auto all = site.particles().all();
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [matter](const Particle& p) { return p.matter == matter; }));
+}
+
+TEST(Site, DustIsWhatTheBoneLost) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    std::uint64_t lost = 0;
+    for (std::uint32_t z = 23; z > 15; --z) {
+        lost += bone.cut(24, 24, z, 130);
+        site.step(bone.frame());
+    }
+    EXPECT_EQ(site.particles().ledger().drilled, lost);
+    EXPECT_TRUE(site.particles().ledger().balances());
+    EXPECT_GT(count(site, Matter::dust), 30U);
+    // What was drilled before the window came is gone, and no dust.
+    static_cast<void>(bone.cut(24, 24, 12, 200, false));
+    site.step(bone.frame());
+    EXPECT_EQ(site.particles().ledger().drilled, lost);
+}
+
+TEST(Site, WaterComesWhileTheBurrIsSprayedAndNotFasterThanTheParticlesAllow) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    for (int i = 0; i < 25; ++i) site.step(bone.frame());
+    EXPECT_EQ(count(site, Matter::water), 0U);
+    bone.drill.hand[0].irrigation = 1.0F;
+    for (int i = 0; i < 25; ++i) site.step(bone.frame());
+    const std::size_t half_a_second = count(site, Matter::water);
+    EXPECT_GT(half_a_second, 500U);
+    EXPECT_LE(half_a_second, 5000U);  // 3e-7 m3/s of drops of 2.7e-11 m3 would be 5600
+}
+
+TEST(Site, AnOpenedVesselBleedsAndBoneFarFromOneDoesNot) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    static_cast<void>(bone.cut(30, 24, 23, 240));
+    site.step(bone.frame());
+    bone.changes.clear();
+    for (int i = 0; i < 50; ++i) site.step(bone.frame());
+    EXPECT_EQ(count(site, Matter::blood), 0U);
+    static_cast<void>(bone.cut(4, 24, 23, 240));
+    site.step(bone.frame());
+    bone.changes.clear();
+    for (int i = 0; i < 50; ++i) site.step(bone.frame());
+    EXPECT_GT(count(site, Matter::blood), 100U);
+}
+
+TEST(Site, MarrowStainsAndIsSealedByPaste) {
+    Block bone;
+    for (auto& v : bone.density) v = v > 0 ? 120 : 0;
+    Bleeding bleeding(bone.view.bricks, {}, {}, 1);
+    Particles particles(bone.view.bricks, bone.density,
+                        {.most = 5000, .gravity_m_s2 = Vec3(0.0, 0.0, -9.81)});
+    for (std::uint32_t x = 0; x < 48; ++x)
+        for (std::uint32_t y = 0; y < 48; ++y) {
+            bone.density[bone.view.bricks.voxel(x, y, 23)] = 0;
+            bleeding.cut(x, y, 23, 120);
+        }
+    const std::size_t wounds = bleeding.wounds();
+    EXPECT_GT(wounds, 10U);
+    EXPECT_LT(wounds, 200U);
+    for (std::uint32_t x = 0; x < 48; ++x)
+        for (std::uint32_t y = 0; y < 48; ++y)
+            ASSERT_TRUE(
+                particles.emit(Matter::paste, bone.view.bricks.to_model(Vec3(x, y, 23)), Vec3::Zero()));
+    for (int i = 0; i < 20; ++i) bleeding.step(0.1, 1000, particles);
+    EXPECT_EQ(bleeding.wounds(), 0U);
+    EXPECT_EQ(bleeding.drops(), 0U);
+    bleeding.cut(99999, 0, 0, 120);  // no such voxel
+    EXPECT_EQ(bleeding.wounds(), 0U);
+}
+
+TEST(Site, TheSuckerTakesWhatIsAtItsTip) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    bone.drill.hand[0].irrigation = 1.0F;
+    for (int i = 0; i < 25; ++i) site.step(bone.frame());
+    bone.drill.hand[0].irrigation = 0.0F;
+    const std::size_t there = count(site, Matter::water);
+    DrillHand& sucker = bone.drill.hand[1];
+    sucker.kind = DrillKind::sucker;
+    sucker.radius_m = 3e-3F;
+    const Vec3 tip = bone.view.bricks.to_model(Vec3(24, 24, 27));
+    std::copy(tip.begin(), tip.end(), sucker.pos_model_m);
+    Site::Frame frame = bone.frame();
+    for (int i = 0; i < 25; ++i) site.step(frame);
+    const std::size_t without = count(site, Matter::water);
+    sucker.suction = 1.0F;
+    for (int i = 0; i < 25; ++i) site.step(bone.frame());
+    EXPECT_LT(count(site, Matter::water), without / 2);
+    EXPECT_GT(without, there / 4);
+    EXPECT_FALSE(site.figures().suction_blocked);
+    sucker.pos_model_m[2] = bone.view.bricks.to_model(Vec3(24, 24, 8)).z();
+    site.step(bone.frame());
+    EXPECT_TRUE(site.figures().suction_blocked);
+}
+
+TEST(Site, TheLevelBoundsHowManyThereAre) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    bone.drill.hand[0].irrigation = 1.0F;
+    Site::Frame frame = bone.frame();
+    for (int i = 0; i < 60; ++i) site.step(frame);
+    EXPECT_GT(site.figures().alive, 3000U);
+    frame.level = 0.02F;
+    for (int i = 0; i < 5; ++i) site.step(frame);
+    EXPECT_LE(site.figures().alive, 2000U);
+    EXPECT_EQ(site.figures().most, Site::kMost);
+    EXPECT_TRUE(site.particles().ledger().balances());
+}
+
+TEST(Site, SurvivesWhatAControllerMaySend) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    Site::Frame frame = bone.frame();
+    frame.drill = nullptr;
+    frame.dt_s = 1e9;
+    site.step(frame);
+    frame = bone.frame();
+    DrillHand& burr = bone.drill.hand[0];
+    burr.irrigation = 1.0F;
+    burr.burr_rad_s = 1e6F;
+    burr.depth = 2.0F;
+    burr.radius_m = 1.0F;
+    burr.pos_model_m[0] = 999.0;
+    bone.drill.irrigation_m3_s_most = 1.0F;
+    for (int i = 0; i < 5; ++i) site.step(frame);
+    burr.pos_model_m[0] = 0.0;
+    burr.radius_m = std::numeric_limits<float>::min();
+    for (int i = 0; i < 5; ++i) site.step(frame);
+    frame.level = std::numeric_limits<float>::quiet_NaN();
+    site.step(frame);
+    EXPECT_TRUE(site.particles().ledger().balances());
+}
+
+TEST(BurrSight, BloodAndBoneHideTheHeadAndWaterDoesNot) {
+    const Block bone;
+    const auto seen = [&](Matter matter, int layers) {
+        Particles particles(bone.view.bricks, bone.density,
+                            {.most = 20000, .gravity_m_s2 = Vec3(0.0, 0.0, -9.81)});
+        for (int z = 0; z < layers; ++z)
+            for (int y = 10; y < 38; ++y)
+                for (int x = 10; x < 38; ++x)
+                    EXPECT_TRUE(
+                        particles.emit(matter, bone.view.bricks.to_model(Vec3(x, y, 34 + z)), Vec3::Zero()));
+        return share_seen(particles, bone.view.bricks.to_model(Vec3(24, 24, 26)), 1.5e-3,
+                          bone.view.bricks.to_model(Vec3(24, 24, 300)));
+    };
+    EXPECT_EQ(seen(Matter::blood, 0), 1.0);
+    EXPECT_LT(seen(Matter::blood, 2), 0.1);
+    EXPECT_LT(seen(Matter::dust, 2), 0.1);
+    EXPECT_GT(seen(Matter::water, 2), 0.7);
+    Particles none(bone.view.bricks, bone.density, {.most = 10});
+    const Vec3 head = bone.view.bricks.to_model(Vec3(24, 24, 30));
+    EXPECT_EQ(share_seen(none, head, 1.5e-3, bone.view.bricks.to_model(Vec3(24, 24, -300))),
+              0.0);  // through bone
+    EXPECT_EQ(share_seen(none, head, 1.5e-3, Vec3::Constant(std::nan(""))), 0.0);
+}
+
+TEST(Site, CountsHowLongTheBurrWasSeenWhileItDrilled) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    DrillHand& burr = bone.drill.hand[0];
+    for (int i = 0; i < 10; ++i) site.step(bone.frame());
+    EXPECT_EQ(site.figures().drilling_s, 0.0);  // it stands
+    burr.burr_rad_s = 3000.0F;
+    burr.depth = 0.3F;
+    for (int i = 0; i < 50; ++i) site.step(bone.frame());
+    EXPECT_NEAR(site.figures().drilling_s, 1.0, 1e-9);
+    EXPECT_NEAR(site.figures().seen_s, 1.0, 1e-9);
+    Site::Frame from_below = bone.frame();
+    from_below.eye_model_m = bone.view.bricks.to_model(Vec3(24, 24, -200));
+    bone.place(24, 24, 20);
+    for (int i = 0; i < 50; ++i) site.step(from_below);
+    EXPECT_NEAR(site.figures().drilling_s, 2.0, 1e-9);
+    EXPECT_LT(site.figures().seen_s, 1.1);
+}
+
+}  // namespace
+}  // namespace tact
