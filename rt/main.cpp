@@ -356,6 +356,7 @@ int run(const Options& o, const Overrides& overrides) {
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
     const std::string lines_on = lines ? lines->open().name : "no safety lines";
     ServoSettings settings = settings_from(config, emulated);
+    settings.bone = read_meta(scene).kind == SceneKind::drilling;
     const std::array hands{HandParts{device.get(), model.get(), info},
                            HandParts{device2.get(), second.get(), info2}};
 
@@ -376,7 +377,8 @@ int run(const Options& o, const Overrides& overrides) {
     static_cast<void>(model.release());
     static_cast<void>(second.release());
 
-    const std::vector<std::string> paths{kMeshPath, hands[0].model->knob().path};
+    std::vector<std::string> paths;  // in the governor's order
+    for (const GovernedPath& p : servo.governor().paths()) paths.emplace_back(p.knob.path);
     std::vector<LevelWish> wishes;
     for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
     if (o.check) {

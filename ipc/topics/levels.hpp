@@ -44,8 +44,11 @@ static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) =
 
 // Places in LevelsTopic::path that are always theirs.
 inline constexpr std::size_t kPicturePathIndex = 0, kForcePathIndex = 1;
+// And where the scene is of bone.
+inline constexpr std::size_t kParticlesPathIndex = 2;
 
 inline constexpr char kMeshPath[] = "gui.mesh";
+inline constexpr char kParticlesPath[] = "gui.particles";
 inline constexpr char kDockingPath[] = "docking.force";
 
 }  // namespace tact

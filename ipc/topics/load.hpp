@@ -9,10 +9,10 @@
 
 namespace tact {
 
-enum class FramePart : std::uint8_t { adapt, upload, scene, panels, swap, count };
+enum class FramePart : std::uint8_t { adapt, upload, scene, panels, swap, particles, count };
 
 struct alignas(64) LoadTopic {
-    static constexpr TopicInfo kInfo{.name = "load", .version = 1, .writer = Writer::gui};
+    static constexpr TopicInfo kInfo{.name = "load", .version = 2, .writer = Writer::gui};
     std::int64_t taken_at_ns;
     std::uint64_t frame;
     std::uint64_t levels_sequence;  // of the LevelsTopic that this frame obeyed
@@ -23,8 +23,10 @@ struct alignas(64) LoadTopic {
     double fps;    // over the last second
     std::uint32_t vertices_drawn;
     std::uint32_t triangles_drawn;
-    std::uint32_t vertices_max;  // of the full mesh
-    std::uint32_t reserved[3];   // zero
+    std::uint32_t vertices_max;    // of the full mesh
+    std::uint32_t particles;       // that there are
+    std::uint32_t particle_moves;  // made for this frame
+    std::uint32_t particles_max;   // that there may be at level 1
 };
 static_assert(std::is_trivially_copyable_v<LoadTopic> && sizeof(LoadTopic) == 128);
 

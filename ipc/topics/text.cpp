@@ -253,6 +253,8 @@ const char* frame_part_text(FramePart part) noexcept {
             return "panels";
         case FramePart::swap:
             return "swap";
+        case FramePart::particles:
+            return "particles";
         case FramePart::count:
             break;
     }

@@ -101,7 +101,8 @@ bool plausible(const LoadTopic& load) {
     const auto time = [](double s) { return std::isfinite(s) && s >= 0.0 && s < 1e9; };
     bool good = time(load.frame_s) && time(load.busy_s) && time(load.cpu_s) && std::isfinite(load.fps) &&
                 load.fps >= 0.0 && load.fps < 1e6 && load.vertices_drawn <= load.vertices_max &&
-                load.vertices_max < 1U << 31U;
+                load.vertices_max < 1U << 31U && load.particles <= load.particles_max &&
+                load.particle_moves <= load.particles_max && load.particles_max < 1U << 31U;
     for (const double s : load.part_s) good = good && time(s);
     return good;
 }
@@ -193,6 +194,8 @@ void House::attend_gui() {
             report_.gui_cpu_s = load.cpu_s;
             report_.gui_vertices = load.vertices_drawn;
             report_.gui_vertices_max = load.vertices_max;
+            report_.gui_particles_max = load.particles_max;
+            report_.gui_particles_s = load.part_s[static_cast<std::size_t>(FramePart::particles)];
             if (settings_.arm_with_gui && load.vertices_drawn > 0) {
                 settings_.arm_with_gui = false;
                 order(CommandKind::arm, 0.0, 0);

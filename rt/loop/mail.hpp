@@ -42,6 +42,8 @@ struct HouseReport {
     double gui_cpu_s;   // processor time since its start
     std::uint32_t gui_vertices;
     std::uint32_t gui_vertices_max;
+    std::uint32_t gui_particles_max;
+    double gui_particles_s;      // of the frame, for moving and drawing them
     std::uint32_t gui_attached;  // 0 or 1
     std::uint32_t reserved;
 };

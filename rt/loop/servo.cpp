@@ -11,6 +11,8 @@ namespace {
 
 // The picture's path. Its floor is what a person still recognizes; its slew is the law's.
 constexpr KnobSpec kMeshKnob{.path = kMeshPath, .floor = 0.01F, .start = 1.0F};
+// A twentieth of the dust still says where the burr cuts.
+constexpr KnobSpec kParticlesKnob{.path = kParticlesPath, .floor = 0.05F, .start = 1.0F};
 
 // A stop ramps out in rt/safety's ramp_out_s; the amplifier goes off after this at the latest.
 constexpr Duration kStopMax = std::chrono::milliseconds(100);
@@ -49,12 +51,13 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
         h.chain = OutputChain(for_device(settings.chain, parts.hands[i].info));
     }
     c_->house.gui_heartbeat_ns = -1;
-    const bool ok =
-        governor_.add(kMeshKnob) == kMeshIndex && governor_.add(c_->hand[0].model->knob()) == kForceIndex;
+    const bool ok = governor_.add(kMeshKnob) == kMeshIndex &&
+                    governor_.add(c_->hand[0].model->knob()) == kForceIndex &&
+                    (!settings_.bone || governor_.add(kParticlesKnob) == kParticlesIndex);
     if (!ok)
         throw StartupError("the knobs of the scene", "the force model's knob is impossible",
                            "report this scene");
-    governor_.set_present(kMeshIndex, false);
+    show_picture(false);
     const ModelBodies bodies = c_->hand[0].model->bodies();
     if (bodies.active < bodies.count) governed_structure_ = bodies.structure[bodies.active];
     bound_by_delay();

@@ -53,6 +53,7 @@ struct ServoSettings {
     double hand_damping_n_s_m = 3.0;  // of hand and arm: what stiffness is stable at a delay hangs on it
     Pose T_world_dev;
     DrivesSettings drives;
+    bool bone = false;  // the scene is of bone: its picture has particles
     WatchdogSettings watchdogs;
     ChainSettings chain;
     GovernorSettings governor;
@@ -100,6 +101,7 @@ public:
 
     static constexpr std::size_t kMeshIndex = kPicturePathIndex;
     static constexpr std::size_t kForceIndex = kForcePathIndex;
+    static constexpr std::size_t kParticlesIndex = kParticlesPathIndex;  // settings.bone
 
 private:
     // The stages, in order.
@@ -154,6 +156,7 @@ private:
     [[nodiscard]] bool look_at_picture(const CycleState& c) noexcept TACT_RT;
     void say_levels(const CycleState& c, std::span<const float> before, bool changed) noexcept TACT_RT;
     void start_interval(Instant now) noexcept TACT_RT;
+    void show_picture(bool present) noexcept TACT_RT;
 
     Clock& clock_;
     RtRegion& region_;
@@ -192,7 +195,7 @@ private:
     double model_cost_s_ = 0.0;
     std::uint64_t levels_sequence_ = 0;
     PictureWatch picture_;
-    std::uint32_t levels_vertices_max_ = 0;
+    std::uint32_t levels_vertices_max_ = 0, levels_particles_max_ = 0;
 
     // At the delay of the last second.
     double stiffness_n_m_max_ = 0.0, damping_n_s_m_max_ = 0.0;

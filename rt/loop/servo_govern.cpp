@@ -22,6 +22,12 @@ void Servo::start_interval(Instant now) noexcept {
     interval_fresh_ = 0.0;
 }
 
+// The visual paths come and go together.
+void Servo::show_picture(bool present) noexcept {
+    governor_.set_present(kMeshIndex, present);
+    if (settings_.bone) governor_.set_present(kParticlesIndex, present);
+}
+
 void Servo::govern(CycleState& c) noexcept {
     ++interval_cycles_;
     interval_model_cost_ += c.model_cost;
@@ -45,9 +51,11 @@ void Servo::govern(CycleState& c) noexcept {
     if (interval < settings_.governor_interval) return;
     law_rate_hz_ = rate_kept_up(c, rate_for_law(interval));
     model_cost_s_ = to_s(interval_model_cost_) / static_cast<double>(interval_cycles_);
-    governor_.set_present(kMeshIndex, c.house.gui_attached != 0);
+    show_picture(c.house.gui_attached != 0);
     const bool changed = governor_.step(law_rate_hz_, interval);
-    say_levels(c, before, changed || levels_vertices_max_ != c.house.gui_vertices_max);
+    const bool resized = levels_vertices_max_ != c.house.gui_vertices_max ||
+                         levels_particles_max_ != c.house.gui_particles_max;
+    say_levels(c, before, changed || resized);
     start_interval(c.now);
 }
 

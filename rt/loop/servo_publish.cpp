@@ -237,6 +237,7 @@ void Servo::publish_lateness(const CycleState& c) noexcept {
 
 void Servo::publish_levels(const CycleState& c) noexcept {
     levels_vertices_max_ = c.house.gui_vertices_max;
+    levels_particles_max_ = c.house.gui_particles_max;
     LevelsTopic t{};
     t.taken_at_ns = to_ns(c.now);
     t.sequence = levels_sequence_;
@@ -261,6 +262,13 @@ void Servo::publish_levels(const CycleState& c) noexcept {
     mesh.items_max = c.house.gui_vertices_max;
     mesh.items = static_cast<std::uint32_t>(static_cast<double>(mesh.level) * mesh.items_max + 0.5);
     mesh.cost_s = c.house.gui_busy_s;
+    if (settings_.bone) {
+        PathLevel& particles = t.path[kParticlesIndex];
+        particles.items_max = c.house.gui_particles_max;
+        particles.items =
+            static_cast<std::uint32_t>(static_cast<double>(particles.level) * particles.items_max + 0.5);
+        particles.cost_s = c.house.gui_particles_s;
+    }
     PathLevel& force = t.path[kForceIndex];
     force.items = model.items(force.level);
     force.items_max = model.items(1.0F);

@@ -84,6 +84,64 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
     EXPECT_FLOAT_EQ(picture.level(), 1.0F);
 }
 
+// --- bone: the picture's particles ---
+
+PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[Servo::kParticlesIndex]; }
+
+TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
+    ServoSettings settings = with_picture_goal(Law::elastic, 30.0);
+    EXPECT_EQ(Lockstep(settings).levels().count, 2U);
+    settings.bone = true;
+    Lockstep loop(settings);
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(100);
+    ASSERT_EQ(loop.levels().count, 3U);
+    EXPECT_STREQ(particles_of(loop).path, kParticlesPath);
+    EXPECT_EQ(particles_of(loop).haptic, 0);
+    loop.active();
+    Picture picture{loop, 0.2};
+    picture.report.gui_particles_max = 80000;
+    picture.report.gui_particles_s = 0.003;
+    for (int i = 0; i < 60; ++i) picture.frame();
+    const PathLevel p = particles_of(loop);
+    EXPECT_LT(p.level, 0.5F);
+    EXPECT_GE(p.level, p.floor);
+    EXPECT_EQ(p.items_max, 80000U);
+    EXPECT_NEAR(p.items, 80000.0 * static_cast<double>(p.level), 1.0);
+    EXPECT_EQ(p.cost_s, 0.003);
+    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    picture.frame_s = 0.006;  // the machine is free again
+    for (int i = 0; i < 2000; ++i) picture.frame();
+    EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
+}
+
+TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_before_the_force) {
+    ServoSettings settings;
+    settings.free_running = true;
+    settings.bone = true;
+    settings.governor = {.law = Law::sensitus, .goal_hz = 1000.0};
+    settings.watchdogs.timing_latches = false;
+    Lockstep loop(settings);
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(990);
+    loop.active();
+    Picture picture{loop, 0.004};
+    for (int i = 0; i < 3; ++i) picture.frame();
+    ASSERT_EQ(particles_of(loop).level, 1.0F);
+    loop.model_.cost = microseconds(4000);
+    const float force_before = loop.levels().path[Servo::kForceIndex].level;
+    bool force_fell = false;
+    for (int i = 0; i < 400 && !force_fell; ++i) {
+        picture.frame();
+        const LevelsTopic l = loop.levels();
+        force_fell = l.path[Servo::kForceIndex].level < force_before;
+        if (!force_fell) continue;
+        EXPECT_EQ(l.path[Servo::kParticlesIndex].level, l.path[Servo::kParticlesIndex].floor);
+        EXPECT_EQ(l.path[Servo::kMeshIndex].level, l.path[Servo::kMeshIndex].floor);
+    }
+    EXPECT_TRUE(force_fell);
+}
+
 // --- free running: the rate within a tenth of a second ---
 
 struct FreeLoop : Lockstep {

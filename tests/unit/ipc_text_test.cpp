@@ -34,7 +34,7 @@ TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(level_reason_text, LevelReason::picture_high, false);
     expect_own_words(command_kind_text, kLastCommand, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
-    expect_own_words(frame_part_text, FramePart::swap, false);
+    expect_own_words(frame_part_text, FramePart::particles, false);
 }
 
 TEST(Text, HeadCodesAreSpelledOut) {

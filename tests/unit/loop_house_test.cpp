@@ -151,6 +151,14 @@ TEST(House, a_load_must_be_possible) {
     load.busy_s = 0.0;
     load.fps = std::numeric_limits<double>::infinity();
     EXPECT_FALSE(plausible(load));
+    load.fps = 60.0;
+    load.particles = load.particle_moves = load.particles_max = 50000;
+    EXPECT_TRUE(plausible(load));
+    load.particles = 50001;
+    EXPECT_FALSE(plausible(load));
+    load.particles = 50000;
+    load.particle_moves = 50001;
+    EXPECT_FALSE(plausible(load));
 }
 
 }  // namespace
