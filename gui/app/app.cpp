@@ -30,6 +30,7 @@
 #include "gui/app/scene_loader.hpp"
 #include "gui/app/second_hand.hpp"
 #include "gui/app/show_controller.hpp"
+#include "gui/app/site.hpp"
 #include "gui/app/window.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/error.hpp"
@@ -110,6 +111,8 @@ private:
         clock_.end_part(FramePart::adapt);
         if (view_) view_->upload();
         clock_.end_part(FramePart::upload);
+        move_particles();
+        clock_.end_part(FramePart::particles);
         draw_scene(now_ns);
         clock_.end_part(FramePart::scene);
         draw_panels();
@@ -197,8 +200,11 @@ private:
         list_.start(homes);
         if (controller_.have_bodies) list_.follow(controller_.bodies);
         desk_.use(content_);
+        site_.reset();
         bone_.use(*content_);
         bone_.meet(controller_);
+        if (content_->bone)
+            site_.emplace(*bone_.volume(), content_->bone->labels, content_->meta.world_per_model);
         detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
         window_.set_title(std::string("Tact: ") + state_.scene.title);
@@ -262,6 +268,17 @@ private:
         view_->approach_vertices(static_cast<std::uint32_t>(std::lround(vertices_share_ * most)),
                                  adapt_budget_s(clock_.frame_s()));
         state_.scene.mesh_error_m = view_->error_m();
+    }
+
+    void move_particles() {
+        if (!site_) return;
+        const bool told = controller_.attached() && controller_.have_drill;
+        const PathLevel* const path = controller_.attached() && controller_.have_levels
+                                          ? find_path(controller_.levels, kParticlesPath)
+                                          : nullptr;
+        if (path != nullptr) particles_level_ = path->level;
+        site_->step({clock_.frame_s(), told ? &controller_.drill : nullptr, bone_.changes(), particles_level_,
+                     content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>()});
     }
 
     // On a surface the hand is shown as a pen whose tip is the proxy: where the tool would be, were the surface
@@ -380,6 +397,7 @@ private:
         view_options_.depth_cue = t.depth_cue;
         view_->molecules().set_look(
             {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
+        view.particles = site_ ? &site_->particles() : nullptr;
         view_->draw(camera_, view_options_, view);
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
@@ -436,6 +454,11 @@ private:
         load.vertices_drawn = drawn ? view_->vertices() : 0;
         load.triangles_drawn = drawn ? view_->triangles() : 0;
         load.vertices_max = view_ ? view_->vertices_max() : 0;
+        if (site_) {
+            load.particles = site_->figures().alive;
+            load.particle_moves = std::min(site_->figures().moves, site_->figures().most);
+            load.particles_max = site_->figures().most;
+        }
         region_->load.publish(load);
         state_.load = load;
         const bool levels = controller_.have_levels && controller_.attached();
@@ -460,6 +483,8 @@ private:
     FitDesk desk_;
     DetailDesk detail_;
     BoneDesk bone_;
+    std::optional<Site> site_;      // of a scene of bone; goes before the bone that it reads
+    float particles_level_ = 1.0F;  // stays as the controller last told
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;

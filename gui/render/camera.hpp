@@ -28,6 +28,9 @@ public:
     [[nodiscard]] Eigen::Quaternionf orientation() const { return q_eye_scene_; }
     [[nodiscard]] Eigen::Vector3f target_a() const { return target_a_; }
     [[nodiscard]] float distance_a() const { return distance_a_; }
+    [[nodiscard]] Eigen::Vector3f eye_a() const {
+        return target_a_ + q_eye_scene_.conjugate() * Eigen::Vector3f(0.0F, 0.0F, distance_a_);
+    }
     [[nodiscard]] float near_a() const;
     [[nodiscard]] float far_a() const;
     [[nodiscard]] float radius_a() const { return radius_a_; }

@@ -123,6 +123,7 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     if (options.surface && !detail)
         contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
     glDisable(GL_BLEND);
+    if (frame.particles != nullptr) draw_particles(pass);
     // Always seen, also inside the structures: everything else is drawn, so its depth may go.
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
@@ -231,6 +232,19 @@ void SceneView::draw_touch(const Pass& pass) {
     touch_marks_.fill(marks, GL_STREAM_DRAW);
     programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
     touch_marks_.draw();
+}
+
+// Over all that is solid, which hides them by its depth.
+void SceneView::draw_particles(const Pass& pass) {
+    if (!cloud_) cloud_ = std::make_unique<ParticleCloud>();
+    const ParticleCells& cells = pass.frame.particles->cells();
+    cloud_->fill(pass.frame.particles->all());
+    Eigen::Matrix4f model_from_cells = Eigen::Matrix4f::Identity();
+    model_from_cells.topLeftCorner<3, 3>() *= static_cast<float>(cells.cell_m());
+    model_from_cells.topRightCorner<3, 1>() = cells.to_model(Vec3::Zero()).cast<float>();
+    cloud_->draw({pass.eye_from_scene * scene_from_model(content_->centre_model_m) * model_from_cells,
+                  pass.projection, static_cast<float>(cells.cell_m()) * kAPerM, pass.haze, pass.frame.x_px,
+                  pass.frame.y_px, pass.frame.width_px, pass.frame.height_px});
 }
 
 void SceneView::draw_box(const Pass& pass) {

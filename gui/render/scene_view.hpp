@@ -14,6 +14,7 @@
 #include "gui/render/contours.hpp"
 #include "gui/render/detail_mesh.hpp"
 #include "gui/render/molecules.hpp"
+#include "gui/render/particle_cloud.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/second_hand.hpp"
@@ -41,6 +42,7 @@ struct ViewFrame {
     std::optional<DrawnHand> second_hand;
     std::optional<DrawnTouch> touch;
     std::optional<Pose> T_model_tool;  // of the tool that touches a surface
+    const Particles* particles = nullptr;
 };
 
 class SceneView {
@@ -84,6 +86,7 @@ private:
     void draw_touch(const Pass& pass);
     void draw_tool(const Pass& pass);
     void draw_box(const Pass& pass);
+    void draw_particles(const Pass& pass);
     void draw_detail(const Pass& pass);
     static Points make_points(const Codebook::Level& level);
 
@@ -92,6 +95,7 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
+    std::unique_ptr<ParticleCloud> cloud_;        // from the first particles on
     TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
 };
