@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "gui/app/app.hpp"
+#include "gui/app/bench_particles.hpp"
 
 int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("tact-gui"));
@@ -13,6 +14,10 @@ int main(int argc, char** argv) {
     int exit_code = 0;
     if (!tact::parse_gui_options(argc, argv, options, exit_code)) return exit_code;
     try {
+        if (options.bench_particles) {
+            std::printf("%s\n", tact::bench_particles().dump(2).c_str());
+            return 0;
+        }
         return tact::run_gui(options);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-gui: %s\n", e.what());

@@ -20,7 +20,8 @@ struct GuiOptions {
     MoleculeLook look;                    // of all bodies at the start
     std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;
-    double fps_max = -1.0;  // 0: no limit; below: 60 where the display does not pace
+    bool bench_particles = false;  // instead of a window
+    double fps_max = -1.0;         // 0: no limit; below: 60 where the display does not pace
 };
 
 // Prints help and errors itself. Returns false where the program is to end with `exit_code`.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "gui/app/bench_particles.hpp"
 #include "gui/app/site.hpp"
 #include "gui/particles/burr_sight.hpp"
 
@@ -233,6 +234,19 @@ TEST(BurrSight, BloodAndBoneHideTheHeadAndWaterDoesNot) {
     EXPECT_EQ(share_seen(none, head, 1.5e-3, bone.view.bricks.to_model(Vec3(24, 24, -300))),
               0.0);  // through bone
     EXPECT_EQ(share_seen(none, head, 1.5e-3, Vec3::Constant(std::nan(""))), 0.0);
+}
+
+TEST(ParticlesBench, SaysWhatAMoveCostsAndHowWellABudgetIsKept) {
+    const auto all = bench_particles({.steps = 8, .budget_s = 1e-5});
+    for (const char* const key :
+         {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99", "particle_ns_each_1000",
+          "particle_moves_10000", "particles_alive_100000"}) {
+        ASSERT_TRUE(all.contains(key)) << key;
+        EXPECT_TRUE(std::isfinite(all[key].get<double>())) << key;
+    }
+    EXPECT_GT(all["particle_ns_each"], 0.0);
+    EXPECT_LE(all["particle_moves_1000"], 1000.0);
+    EXPECT_EQ(all["particle_budget_error"], all["particle_budget_error_100000"]);
 }
 
 TEST(Site, CountsHowLongTheBurrWasSeenWhileItDrilled) {
