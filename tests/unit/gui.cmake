@@ -3,6 +3,7 @@ if(TACT_GUI)
     find_package(CLI11 REQUIRED)
     tact_test(unit/gui_plot_series_test.cpp USES gui_panels)
     tact_test(unit/gui_particles_test.cpp USES gui_particles assets base)
+    tact_test(scenario/site_scenario_test.cpp USES gui_site gui_link gui_particles topics shm assets hal force loop base)
     tact_test(unit/gui_site_test.cpp USES gui_site gui_link gui_particles topics shm assets base
         SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_cloud_test.cpp USES gui_app gui_particles gui_panels gui_render launch assets base
