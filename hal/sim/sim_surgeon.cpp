@@ -9,14 +9,15 @@
 namespace tact {
 namespace {
 
-constexpr double kWaitS = 0.7;  // until the force has faded in
+constexpr double kWaitS = 0.7;    // until the force has faded in
+constexpr double kForgetS = 0.5;  // switched off
 constexpr double kSeekM_S = 0.015, kMoveM_S = 0.06;
 constexpr double kFeltN = 0.3, kFeltS = 0.02;
 constexpr double kSuckerFeltN = 0.1, kSuckerPressN = 0.25, kSuckerAboveM = 5e-4;
 constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series; then it lifts
 constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes in radii of the bowl
 constexpr double kLiftM = 6e-3;
-constexpr double kFeedM_S = 4e-4, kBowlFirstM = 3e-3, kWidenM_S = 2e-4;
+constexpr double kFeedM_S = 5e-4, kBowlFirstM = 3e-3, kWidenM_S = 3e-4;
 constexpr double kRimM = 3.5e-3;  // beyond the bowl's radius
 constexpr double kAsideM = 4e-3;  // after a miss, times the root of how many there were
 constexpr double kStiffnessN_M = 250.0, kDampingN_S_M = 8.0, kSidewaysMostN = 3.0, kUpMostN = 2.0;
@@ -109,6 +110,8 @@ void SimSurgeon::work(double h_s) noexcept {
 void SimSurgeon::step(double h_s, const Vec3& at_m, const Vec3& felt_n, bool powered) noexcept {
     felt_n_ += std::min(h_s / kFeltS, 1.0) * (felt_n.z() - felt_n_);
     if (!powered) {
+        off_s_ += h_s;
+        if (off_s_ < kForgetS) return;  // a watchdog that dropped for a moment
         on_s_ = worked_s_ = 0.0;
         met_ = works_ = back_ = false;
         spot_m_ = begin_m_;
@@ -117,6 +120,7 @@ void SimSurgeon::step(double h_s, const Vec3& at_m, const Vec3& felt_n, bool pow
         towards(begin_m_, h_s);
         return;
     }
+    off_s_ = 0.0;
     on_s_ += h_s;
     if (on_s_ < kWaitS) return;
     if (!met_)

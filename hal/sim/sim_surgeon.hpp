@@ -44,6 +44,7 @@ public:
     [[nodiscard]] bool met() const noexcept { return met_; }
 
 private:
+    static constexpr double kOffAtFirstS = 1e3;  // off long since
     // One series of strokes, by its number.
     struct Series {
         Vec3 along = Vec3::UnitX(), across = Vec3::UnitY();
@@ -58,7 +59,7 @@ private:
     Vec3 begin_m_, spot_m_, target_m_;
     Vec3 met_m_ = Vec3::Zero();
     bool met_ = false, works_ = false, back_ = false;
-    double on_s_ = 0.0, worked_s_ = 0.0, felt_n_ = 0.0, press_n_ = 0.0;
+    double on_s_ = 0.0, off_s_ = kOffAtFirstS, worked_s_ = 0.0, felt_n_ = 0.0, press_n_ = 0.0;
     std::uint32_t missed_ = 0;
     std::uint64_t number_ = 0;
     Series series_;

@@ -197,6 +197,17 @@ TEST(SimSurgeon, keeps_still_until_the_device_is_on_and_goes_back_when_it_goes_o
     EXPECT_EQ(w.hand.buttons(), 0U);
 }
 
+TEST(SimSurgeon, goes_on_after_a_moment_without_power) {
+    Walled w("surgeon");
+    for (int i = 0; i < 9000; ++i) w.step(1500.0);
+    const double deep_m = w.hand.pose().p_m.z();
+    for (int i = 0; i < 100; ++i) w.step(1500.0, false);
+    for (int i = 0; i < 1000; ++i) w.step(1500.0);
+    EXPECT_NEAR(w.hand.pose().p_m.z(), deep_m, 2e-3);
+    EXPECT_GT(w.push_n, 0.2);
+    EXPECT_EQ(w.hand.buttons(), 2U);
+}
+
 TEST(SimSurgeon, tries_beside_where_it_met_nothing) {
     Walled w("surgeon");
     double deepest_m = 0.0;
