@@ -87,11 +87,20 @@ private:
                 gui.arguments.insert(gui.arguments.end(), {"--screenshot", options_.screenshot.string()});
             if (options_.seconds > 0.0)
                 gui.arguments.insert(gui.arguments.end(), {"--seconds", std::to_string(options_.seconds)});
+            if (places_.meta().kind == SceneKind::drilling) {
+                facts_.trainee = scratch().path() / "drilling.json";
+                gui.arguments.insert(gui.arguments.end(), {"--report", facts_.trainee.string()});
+            }
             gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
             gui.grace = options_.grace;
             gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
         }
         started_ = Monotonic::now();
+    }
+
+    const ScratchFolder& scratch() {
+        if (!scratch_) scratch_.emplace();
+        return *scratch_;
     }
 
     void prepare_display() {
@@ -101,8 +110,7 @@ private:
                 height < 64 || width > 16384 || height > 16384)
                 throw StartupError("reading --size " + options_.size, "it is not WIDTHxHEIGHT in 64..16384",
                                    "--size 1280x800");
-            scratch_.emplace();
-            x_.emplace(scratch_->path(), width, height);
+            x_.emplace(scratch().path(), width, height);
             display_ = x_->environment();
             return;
         }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/observer.hpp"
+#include "deploy/tact/report_drilling.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/topics/text.hpp"
@@ -217,6 +218,8 @@ json run_report(const RtRegion* region, const Places* places, const RunFacts& fa
     if (region != nullptr && places != nullptr) {
         j["bodies"] = bodies_report(*region, *places);
         j["fit"] = fit_report(*region, *places, facts);
+        if (json drilling = drilling_report(*region, facts.trainee); drilling.is_object())
+            j["drilling"] = std::move(drilling);
     }
     if (j.contains("gui")) {
         // The controller's last word is from when the window was closing.
@@ -261,6 +264,7 @@ std::string report_summary(const json& r) {
             number(r["servo"]["allocations"]), number(r["servo"]["locks"]), number(r["servo"]["page_faults"]),
             r["servo"]["schedule"].get<std::string>().c_str());
     }
+    if (r.contains("drilling")) text += drilling_summary(r["drilling"]);
     if (r.contains("fit") && r["fit"].is_object()) {
         const json& f = r["fit"];
         if (f.contains("at_start"))

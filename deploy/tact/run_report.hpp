@@ -24,6 +24,7 @@ struct RunFacts {
     bool intended = false;                            // all went as asked
     std::map<std::string, Ending> endings;            // by program
     std::optional<std::vector<BodyAt>> bodies_start;  // when the controller was first seen
+    std::filesystem::path trainee;                    // of drilling: what the window wrote; empty: nothing
     std::optional<double> fps_median;                 // over the looks at a window that was drawing
 };
 

@@ -21,6 +21,7 @@
 #include "gui/app/controller.hpp"
 #include "gui/app/describe.hpp"
 #include "gui/app/detail_desk.hpp"
+#include "gui/app/drill_desk.hpp"
 #include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
 #include "gui/app/grounds.hpp"
@@ -91,6 +92,9 @@ public:
             if (!last) clock_.pace(fps_max_);
         }
         desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
+        std::optional<BurrVisibility> visibility;
+        if (site_) visibility = {site_->figures().drilling_s, site_->figures().seen_s};
+        drilling_.save(options_.report, visibility);
         if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
         return picture_failed_ ? 1 : 0;
     }
@@ -105,6 +109,7 @@ private:
         follow_controller(now_ns);
         follow_scene();
         bone_.follow();
+        drilling_.follow(controller_, bone_.changes(), state_);
         handle_input();
         if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
         obey_level();
@@ -133,6 +138,7 @@ private:
         }
         if (news.arrived) {
             bone_.meet(controller_);
+            drilling_.meet();
             spdlog::info("attached to the controller of session {}", options_.session);
             list_.forget_motion();
             second_hand_.forget();
@@ -202,6 +208,7 @@ private:
         desk_.use(content_);
         site_.reset();
         bone_.use(*content_);
+        drilling_.use(content_);
         bone_.meet(controller_);
         if (content_->bone)
             site_.emplace(*bone_.volume(), content_->bone->labels, content_->meta.world_per_model);
@@ -216,7 +223,7 @@ private:
         const ImGuiIO& io = ImGui::GetIO();
         if (!io.WantCaptureMouse) {
             const float height =
-                layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, state_.scene.placed()).view.height;
+                layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_.scene)).view.height;
             if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
             if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
@@ -345,7 +352,7 @@ private:
     void draw_scene(std::int64_t now_ns) {
         const Window::Size size = window_.size();
         const Layout layout = layout_for(theme_, static_cast<float>(size.width),
-                                         static_cast<float>(size.height), state_.scene.placed());
+                                         static_cast<float>(size.height), middle_card(state_.scene));
         const PixelRect& rect = layout.view;
         const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
         ViewFrame view{};
@@ -485,6 +492,7 @@ private:
     BoneDesk bone_;
     std::optional<Site> site_;      // of a scene of bone; goes before the bone that it reads
     float particles_level_ = 1.0F;  // stays as the controller last told
+    DrillDesk drilling_;
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;

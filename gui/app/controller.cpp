@@ -26,7 +26,7 @@ Controller::News Controller::poll() {
         seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_health_ = seen_levels_ =
             0;
         have_tool = have_second = have_bodies = have_touch = have_drill = have_health = have_levels = false;
-        cursor_ = RingCursor{};
+        cursor_ = trace_cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
     }
@@ -64,6 +64,10 @@ Controller::Fresh Controller::read() {
 
 bool Controller::next_event(EventTopic& event) {
     return !region_.empty() && region_->events.next(cursor_, event);
+}
+
+bool Controller::next_cycle(TraceTopic& cycle) {
+    return !region_.empty() && region_->trace.next(trace_cursor_, cycle);
 }
 
 std::string Controller::scene_path() const {

@@ -29,6 +29,8 @@ public:
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
+    [[nodiscard]] bool next_cycle(TraceTopic& cycle);
+    [[nodiscard]] std::uint64_t cycles_missed() const { return trace_cursor_.missed; }
 
     [[nodiscard]] bool attached() const { return !region_.empty(); }
     [[nodiscard]] const std::string& status_text() const {
@@ -64,7 +66,7 @@ private:
     MappedRegion<RtRegion> region_;
     MappedBoneRegion bone_;
     std::string refusal_, bone_refusal_;
-    RingCursor cursor_;
+    RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_drill_ = 0,
                   seen_health_ = 0, seen_levels_ = 0;
     std::uint64_t refused_ = 0;

@@ -16,6 +16,8 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end");
+    app.add_option("--report", options.report,
+                   "write a report of what was drilled as JSON at the end, where the scene is of bone");
     app.add_option("--size", size, "size of the window in pixels, as 1280x720")
         ->check(CLI::Validator(
             [&options](std::string& text) -> std::string {

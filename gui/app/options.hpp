@@ -13,6 +13,7 @@ struct GuiOptions {
     std::string scene;  // empty: the controller's
     std::string session = "default";
     std::string screenshot;  // empty: none
+    std::string report;      // of drilling, JSON, at the end; empty: none
     double seconds = 0.0;    // 0: until closed
     int width_px = 1280, height_px = 720;
     bool hidden = false;

@@ -7,7 +7,11 @@
 
 namespace tact {
 
-Layout layout_for(const Theme& theme, float width_px, float height_px, bool with_fit) {
+MiddleCard middle_card(const SceneFacts& scene) {
+    return scene.bone ? MiddleCard::drilling : scene.placed() ? MiddleCard::fit : MiddleCard::none;
+}
+
+Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle) {
     const float gap = std::round(theme.px(6.0F));
     const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
     const float below = std::round(std::min(theme.px(196.0F), 0.45F * height_px));
@@ -18,7 +22,10 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, bool with
     // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
     const float usable = height_px - 4.0F * gap;
     const float health = std::round(std::min(theme.px(330.0F), 0.48F * usable));
-    const float fit = with_fit ? std::round(std::min(theme.px(212.0F), 0.3F * usable)) : 0.0F;
+    const float wanted = middle == MiddleCard::fit        ? std::min(theme.px(212.0F), 0.3F * usable)
+                         : middle == MiddleCard::drilling ? std::min(theme.px(300.0F), 0.42F * usable)
+                                                          : 0.0F;
+    const float between = std::round(wanted);
     const float inner = at_least_one(left - 2.0F * gap);
     float y = gap;
     const auto card = [&](float height) {
@@ -27,11 +34,9 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, bool with
         return rect;
     };
     l.health = card(health);
-    if (with_fit)
-        l.fit = card(fit);
-    else
-        l.fit = {gap, y, 0.0F, 0.0F};
-    l.scene = card(usable - health - fit + (with_fit ? 0.0F : gap));
+    const bool any = middle != MiddleCard::none;
+    l.middle = any ? card(between) : PixelRect{gap, y, 0.0F, 0.0F};
+    l.scene = card(usable - health - between + (any ? 0.0F : gap));
 
     const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
     const float top = l.view.height, height = at_least_one(below - gap);
@@ -41,11 +46,12 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, bool with
 }
 
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px) {
-    const bool with_fit = state.scene.placed();
-    const Layout layout = layout_for(theme, width_px, height_px, with_fit);
+    const MiddleCard middle = middle_card(state.scene);
+    const Layout layout = layout_for(theme, width_px, height_px, middle);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
     draw_health(theme, state, layout.health);
-    if (with_fit) draw_fit(theme, state, layout.fit);
+    if (middle == MiddleCard::fit) draw_fit(theme, state, layout.middle);
+    if (middle == MiddleCard::drilling) draw_drilling(theme, state, layout.middle);
     draw_scene(theme, state, layout.scene);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);

@@ -116,6 +116,31 @@ struct FitFacts {
     double from_file_m = 0.0, from_file_rad = 0.0;
 };
 
+// A tool that drills or sucks, in the hand's space.
+struct ToolFacts {
+    bool there = false;
+    int shape = 0;  // ball, cylinder, cone
+    double diameter_m = 0.0, length_m = 0.0;
+    double rpm = 0.0;  // 0: it stands
+    bool water = false, suction = false;
+    double depth = 0.0;  // of its radius, in bone
+};
+
+struct DrillingFacts {
+    struct Structure {
+        std::string name;
+        ImU32 colour = colour::kText;
+        double burr_m = 0.0, closing_m_s = 0.0;  // below zero: in it
+        double sucker_m = 1e9;
+    };
+    bool known = false, labelled = false;
+    ToolFacts burr, sucker;
+    double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
+    std::uint64_t strokes = 0, injuries = 0;
+    double stroke_m = 0.0, stroke_m_s = 0.0;
+    std::vector<Structure> structures;  // to keep away from, the nearest first
+};
+
 struct ContourRow {
     // What a person chose.
     double level = 0.0;  // in the map's unit
@@ -170,6 +195,7 @@ struct DashboardState {
     FittingFacts fitting;
     ContourFacts contours;
     DetailFacts detail;
+    DrillingFacts drilling;
     History history;
     std::deque<EventLine> events;  // newest first
     std::uint64_t events_missed = 0;
@@ -200,12 +226,14 @@ struct PixelRect {
 // clear per card): ImGui fills areas through its font texture, which costs several milliseconds where the
 // processor draws.
 struct Layout {
-    PixelRect view, health, fit, scene, plots, events;
+    PixelRect view, health, middle, scene, plots, events;
 
-    [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, fit, scene, plots, events}; }
+    [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
 };
-// with_fit: false where nothing is fitted; its place goes to the scene.
-[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, bool with_fit = true);
+// The card between the controller's and the scene's: of a fit, of drilling, or none, and its place goes to the scene.
+enum class MiddleCard : std::uint8_t { none, fit, drilling };
+[[nodiscard]] MiddleCard middle_card(const SceneFacts& scene);
+[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle);
 
 // Draws everything but the 3D view and the cards' ground.
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px);

@@ -7,6 +7,7 @@ namespace tact {
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card);
 void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card);
+void draw_drilling(const Theme& theme, const DashboardState& state, const PixelRect& card);
 void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card);
 // Inside the scene's card.
 void draw_bodies_tab(const Theme& theme, DashboardState& state);

@@ -104,6 +104,31 @@ Verdict memory_verdict(const HealthTopic& health) {
     return {health.allocations + health.locks > 0 ? Grade::bad : Grade::watch, words};
 }
 
+Verdict distance_verdict(double distance_m, double closing_m_s, bool turns) {
+    constexpr double kRedM = 1e-3, kAmberM = 2e-3, kAheadS = 1.0;
+    if (!std::isfinite(distance_m)) return {Grade::unknown, "unknown"};
+    if (distance_m < 0.0) return {Grade::bad, "in it"};
+    if (distance_m < kRedM) return {Grade::bad, "too near"};
+    if (turns && closing_m_s > 0.0) {
+        const double ahead_s = (distance_m - kRedM) / closing_m_s;
+        if (ahead_s < kAheadS) {
+            char text[48];
+            std::snprintf(text, sizeof text, "at 1 mm in %.1f s", ahead_s);
+            return {Grade::watch, text};
+        }
+    }
+    if (distance_m < kAmberM) return {Grade::watch, "near"};
+    return {Grade::good, "clear"};
+}
+
+Verdict force_verdict(double force_n, double excess_s) {
+    constexpr double kExcessN = 2.0;
+    char text[48];
+    std::snprintf(text, sizeof text, "above 2 N for %.1f s", excess_s);
+    if (force_n > kExcessN) return {Grade::watch, text};
+    return {Grade::good, excess_s >= 0.05 ? text : "never above 2 N"};
+}
+
 // The numbers are those of DeviceState in the device interface, which this process does not see.
 const char* device_state_text(std::uint8_t device_state) noexcept {
     static constexpr const char* kTexts[] = {"closed", "ready", "powered", "its watchdog tripped", "fault"};

@@ -31,6 +31,10 @@ struct Verdict {
 [[nodiscard]] Verdict state_verdict(RunState state, RunReason reason);
 // Allocations, locks and page faults inside servo cycles: there should be none.
 [[nodiscard]] Verdict memory_verdict(const HealthTopic& health);
+// From a burr to a structure to keep away from: 1 mm is bad, 2 mm is worth a look, and so is being at 1 mm within a second.
+[[nodiscard]] Verdict distance_verdict(double distance_m, double closing_m_s, bool turns);
+// Of the hand on a burr; above 2 N is worth a look. excess_s: how long it was so, drilling.
+[[nodiscard]] Verdict force_verdict(double force_n, double excess_s);
 [[nodiscard]] const char* device_state_text(std::uint8_t device_state) noexcept;
 // What a device asks for is worth a look, what keeps it from showing force is bad.
 [[nodiscard]] Grade notice_grade(DeviceNotice notice) noexcept;

@@ -83,7 +83,9 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
     if (bone) {
         BoneLabelsView labels;
         if (has_bone_labels(file)) labels = read_bone_labels(file, bone->bricks);
-        content->bone.reset(new SceneBoneContent{std::move(file), *bone, std::move(labels)});
+        std::vector<DistanceField> distances = read_distance_fields(file, labels.structure.size());
+        content->bone.reset(
+            new SceneBoneContent{std::move(file), *bone, std::move(labels), std::move(distances)});
         return content;
     }
     if (content->meta.kind == SceneKind::surface && file.count({'F', 'R', 'S', 'T'}) > 0) {

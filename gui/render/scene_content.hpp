@@ -14,6 +14,7 @@
 #include "ipc/assets/bone_volume.hpp"
 #include "ipc/assets/contour_scale.hpp"
 #include "ipc/assets/density_map.hpp"
+#include "ipc/assets/distance_field.hpp"
 #include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/structure.hpp"
@@ -34,7 +35,8 @@ struct SurfaceDetail {
 struct SceneBoneContent {
     SceneFile file;
     BoneVolumeView volume;
-    BoneLabelsView labels;  // none: no structures
+    BoneLabelsView labels;                 // none: no structures
+    std::vector<DistanceField> distances;  // to the critical ones
 };
 
 struct SceneContent {

@@ -47,9 +47,15 @@ struct EventTopic {
 };
 static_assert(std::is_trivially_copyable_v<EventTopic> && sizeof(EventTopic) == 40);
 
+// Of TraceTopic::status, where bone is drilled by the first hand.
+enum TraceFlag : std::uint32_t {
+    kTraceBurrTurns = 1U << 16,
+    kTraceCuts = 1U << 17,  // bone went in this cycle
+};
+
 // One servo cycle, for traces, the flight recorder and plots.
 struct TraceTopic {
-    static constexpr TopicInfo kInfo{.name = "trace", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "trace", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int32_t lateness_ns;
@@ -59,7 +65,7 @@ struct TraceTopic {
     float pos_world_m[3];
     float force_world_n[3];
     float torque_world_n_m[3];
-    std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15
+    std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15, TraceFlag
     float model_error_n;   // bound of the reduced force's distance from the exact one, in this step
     std::uint32_t items;   // points summed in this step; fewer than the level has where older sums were used
 };

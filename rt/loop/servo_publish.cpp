@@ -290,6 +290,8 @@ void Servo::publish_trace(const CycleState& c) noexcept {
     put(t.force_world_n, h.shown_world.force_n);
     put(t.torque_world_n_m, h.shown_world.torque_n_m);
     t.status = static_cast<std::uint32_t>(c.run.state) | static_cast<std::uint32_t>(h.step.status) << 8;
+    if (c.drives.burr_rad_s > 0.0) t.status |= kTraceBurrTurns;
+    if (h.model->drill().cut_levels > 0) t.status |= kTraceCuts;
     t.model_error_n = static_cast<float>(h.step.load.error);
     t.items = static_cast<std::uint32_t>(h.step.load.fresh * static_cast<float>(h.step.load.items) + 0.5F);
     region_.trace.push(t);

@@ -355,5 +355,28 @@ TEST(BodyList, LeavesOutBodiesOfStructuresThatTheSceneDoesNotHave) {
     EXPECT_EQ(list.active(), 0U);  // its place among those that are shown
 }
 
+TEST(Verdicts, OfADistanceAreRedBelowOneMillimetreAmberBelowTwoAndLookAhead) {
+    EXPECT_EQ(distance_verdict(-1e-4, 0.0, false).words, "in it");
+    EXPECT_EQ(distance_verdict(-1e-4, 0.0, false).grade, Grade::bad);
+    EXPECT_EQ(distance_verdict(0.99e-3, 0.0, false).grade, Grade::bad);
+    EXPECT_EQ(distance_verdict(1.01e-3, 0.0, false).grade, Grade::watch);
+    EXPECT_EQ(distance_verdict(1.99e-3, 0.0, false).grade, Grade::watch);
+    EXPECT_EQ(distance_verdict(2.01e-3, 0.0, false).grade, Grade::good);
+    // 4 mm away and 10 mm/s: at 1 mm in 0.3 s, if it turns.
+    EXPECT_EQ(distance_verdict(4e-3, 1e-2, true).words, "at 1 mm in 0.3 s");
+    EXPECT_EQ(distance_verdict(4e-3, 1e-2, true).grade, Grade::watch);
+    EXPECT_EQ(distance_verdict(4e-3, 1e-2, false).grade, Grade::good);
+    EXPECT_EQ(distance_verdict(4e-3, 2e-3, true).grade, Grade::good);
+    EXPECT_EQ(distance_verdict(4e-3, -1e-2, true).grade, Grade::good);
+    EXPECT_EQ(distance_verdict(std::nan(""), 0.0, true).grade, Grade::unknown);
+}
+
+TEST(Verdicts, OfTheForceOnABurrSayHowLongItWasTooMuch) {
+    EXPECT_EQ(force_verdict(1.0, 0.0).words, "never above 2 N");
+    EXPECT_EQ(force_verdict(1.0, 3.21).words, "above 2 N for 3.2 s");
+    EXPECT_EQ(force_verdict(1.0, 3.21).grade, Grade::good);
+    EXPECT_EQ(force_verdict(2.1, 3.21).grade, Grade::watch);
+}
+
 }  // namespace
 }  // namespace tact

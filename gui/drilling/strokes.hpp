@@ -1,0 +1,46 @@
+// The strokes of a burr that cuts: a way from one turning point to the next, or until it cuts nothing for a while.
+//
+// Method   a turning point is where the burr was farthest from the stroke's beginning when it has come kBackM nearer to it
+//          again. Strokes shorter than kLeastM are none.
+// Unit     metres of the hand's space, seconds
+// Thread   one; no allocation
+#pragma once
+
+#include <cstdint>
+
+#include "ipc/base/pose.hpp"
+
+namespace tact {
+
+struct StrokeFigures {
+    std::uint64_t count = 0;
+    double length_m = 0.0, time_s = 0.0;  // of all together; straight from turning point to turning point
+    [[nodiscard]] double mean_length_m() const {
+        return count > 0 ? length_m / static_cast<double>(count) : 0.0;
+    }
+    [[nodiscard]] double mean_speed_m_s() const { return time_s > 0.0 ? length_m / time_s : 0.0; }
+};
+
+class Strokes {
+public:
+    static constexpr double kBackM = 5e-4, kLeastM = 1e-3, kPauseS = 0.15;
+
+    // Where the burr is, every cycle; cuts: bone went.
+    void step(double t_s, const Vec3& at_m, bool cuts);
+    // The stroke under way counts as well.
+    [[nodiscard]] StrokeFigures figures() const;
+
+private:
+    struct Point {
+        double t_s = 0.0;
+        Vec3 at_m = Vec3::Zero();
+    };
+    void end_at(const Point& to, StrokeFigures& figures) const;
+
+    StrokeFigures done_;
+    bool under_way_ = false;
+    Point from_, farthest_;
+    double far_m_ = 0.0, cut_s_ = 0.0;
+};
+
+}  // namespace tact

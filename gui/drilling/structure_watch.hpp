@@ -1,0 +1,59 @@
+// How far a tool's surface is from each labelled structure, and how soon it would be there.
+//
+// Distance   from the head of the tool (of a sucker: its tip) to the structure's surface; below zero the head is in it.
+//            Right within the field's error (ipc/assets/distance_field.hpp). Metres of the hand's space.
+// Closing    how fast it becomes less, over the last 0.2 s
+// Thread     one
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ipc/assets/distance_field.hpp"
+#include "ipc/assets/scene_meta.hpp"
+#include "ipc/topics/drill.hpp"
+
+namespace tact {
+
+// Balls along a tool's axis that its head's surface is told by. Model metres.
+struct HeadBalls {
+    static constexpr std::size_t kMax = 5;
+    std::array<Vec3, kMax> centre_m;
+    std::array<double, kMax> radius_m{};
+    std::size_t count = 0;
+};
+[[nodiscard]] HeadBalls head_balls(const DrillHand& hand, double world_per_model);
+// The same head elsewhere, turned as it is.
+[[nodiscard]] HeadBalls moved(const HeadBalls& head, const Vec3& way_m);
+[[nodiscard]] double distance_m(const DistanceField& field, const HeadBalls& head, double world_per_model);
+
+class StructureWatch {
+public:
+    static constexpr double kSmoothS = 0.2;
+
+    struct Reading {
+        std::uint32_t label = 0;
+        double distance_m = 0.0, closing_m_s = 0.0;
+    };
+
+    // The fields must outlive it.
+    StructureWatch(std::span<const DistanceField> fields, double world_per_model)
+        : fields_(fields), world_per_model_(world_per_model) {}
+
+    // One hand's, in the order of the fields; none where the hand holds no tool. Valid until the next call for it.
+    std::span<const Reading> look(const DrillTopic& drill, std::size_t hand);
+
+private:
+    struct Hand {
+        std::vector<Reading> reading;
+        std::int64_t at_ns = 0;
+        bool known = false;
+    };
+    std::span<const DistanceField> fields_;
+    double world_per_model_;
+    std::array<Hand, kDrillHands> hand_;
+};
+
+}  // namespace tact

@@ -1,0 +1,85 @@
+// Drilling: the tools, what they took, the force, and how far the burr is from each structure to keep away from.
+#include <algorithm>
+
+#include "gui/panels/panels.hpp"
+#include "gui/panels/widgets.hpp"
+
+namespace tact {
+namespace {
+
+std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
+
+void tools(const Theme& theme, const DrillingFacts& d) {
+    static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
+    const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
+    std::string does =
+        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(d.burr.rpm + 0.5)) + " rpm" : "stands";
+    if (d.burr.water) does += ", water";
+    row(theme, "Burr", size, does);
+    if (d.sucker.there)
+        row(theme, "Sucker", mm_text(d.sucker.diameter_m), d.sucker.suction ? "suction on" : "suction off");
+}
+
+void figures(const Theme& theme, const DrillingFacts& d) {
+    row(theme, "Bone taken", fixed(1e9 * d.removed_m3, 1) + " mm³",
+        format("in %.0f s of drilling", d.drilling_s));
+    row(theme, "Force", fixed(d.force_n, 2) + " N", force_verdict(d.force_n, d.excess_s));
+    row(theme, "Strokes", grouped(d.strokes),
+        d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
+                      : std::string());
+}
+
+void structure(const Theme& theme, const DrillingFacts& d, const DrillingFacts::Structure& s) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float edge = theme.px(8.0F), h = ImGui::GetTextLineHeight();
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x, at.y + 0.5F * (h - edge)}, {at.x + edge, at.y + 0.5F * (h + edge)}, s.colour, theme.px(2.0F));
+    ImGui::SetCursorScreenPos({at.x + edge + theme.px(5.0F), at.y});
+    const Verdict v = distance_verdict(s.burr_m, s.closing_m_s, d.burr.rpm > 0.0);
+    const bool calm = v.grade == Grade::good;
+    text_coloured(calm ? colour::kDim : colour::kText, s.name);
+    ImGui::SameLine(theme.px(122.0F));
+    text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
+    if (calm) return;
+    ImGui::SameLine(0.0F, theme.px(8.0F));
+    text_coloured(grade_colour(v.grade), v.words);
+}
+
+void tip(const DrillingFacts& d) {
+    if (!ImGui::IsItemHovered()) return;
+    std::string text =
+        "From the burr's surface to each structure to keep away from; below zero the burr is in it.";
+    if (d.sucker.there)
+        for (const auto& s : d.structures)
+            if (s.sucker_m < 2e-3) text += "\nsucker: " + mm_text(s.sucker_m) + " from the " + s.name;
+    ImGui::SetTooltip("%s", text.c_str());
+}
+
+}  // namespace
+
+void draw_drilling(const Theme& theme, const DashboardState& state, const PixelRect& card) {
+    begin_card(theme, "Drilling", card, true);
+    const DrillingFacts& d = state.drilling;
+    if (!d.known) {
+        text_small(theme, colour::kDim, "no tool yet: it comes with the controller");
+    } else {
+        if (d.injuries > 0) {
+            ImGui::SameLine();
+            badge(theme, format("%llu injured", static_cast<unsigned long long>(d.injuries)), colour::kBad);
+        }
+        tools(theme, d);
+        figures(theme, d);
+        if (d.structures.empty()) {
+            text_small(theme, colour::kDim,
+                       d.labelled ? "No structure to keep away from is labelled."
+                                  : "No structure is labelled, so nothing warns (tact drill --labels).");
+        } else {
+            text_small(theme, colour::kDim, "From the burr's surface to");
+            tip(d);
+            for (const DrillingFacts::Structure& s : d.structures) structure(theme, d, s);
+        }
+    }
+    end_card();
+}
+
+}  // namespace tact
