@@ -116,6 +116,7 @@ void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, 
     if (!reach_.empty())
         reach_[u] =
             std::max(reach_[u] + place.shift.norm(), reach_[v] + (b.at() - a.at() - place.shift).norm());
+    facing_[u] += facing_[v];
     a.q = sum.about(place.shift);
     for (std::size_t i = 0; i < 3; ++i) a.p[i] += place.shift[static_cast<Eigen::Index>(i)];
     a.first = first;
@@ -169,6 +170,8 @@ bool Contractor::ahead(QueuedPair& pair, float& due) {
         if (!queue_.pop(next.pair, next.due)) break;
         __builtin_prefetch(vertex_.data() + (next.pair.u & ~kNoEdge));
         __builtin_prefetch(vertex_.data() + next.pair.v);
+        __builtin_prefetch(facing_.data() + (next.pair.u & ~kNoEdge));
+        __builtin_prefetch(facing_.data() + next.pair.v);
         ++waiting_end_;
         const auto stage = [&](std::uint32_t back, auto&& fetch) {
             if (waiting_end_ - waiting_first_ < back + 1) return;

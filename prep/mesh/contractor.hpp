@@ -15,6 +15,7 @@
 #include "prep/mesh/bucket_queue.hpp"
 #include "prep/mesh/placement.hpp"
 #include "prep/mesh/simplify.hpp"
+#include "prep/mesh/turn_limits.hpp"
 
 namespace tact {
 
@@ -61,7 +62,6 @@ private:
     void add_planes();
     void add_borders();
     void add_border(std::uint32_t u, std::uint32_t w);
-    void bound_bends();
     void queue_all(const Progress& progress);
     void queue_near();
     void push(std::uint32_t u, std::uint32_t v, std::uint32_t flag = 0);
@@ -98,7 +98,7 @@ private:
     void keep_border(const Quadric& sum, std::uint32_t u, std::uint32_t v, Place& place);
     [[nodiscard]] bool topology_allows(std::uint32_t u, std::uint32_t v);
     bool turns_over(const Star& star, std::uint32_t other, const Eigen::Vector3f& from,
-                    const Eigen::Vector3f& to);
+                    const Eigen::Vector3f& to, const Side<float>& side);
     bool folds(std::uint32_t u, std::uint32_t v, bool joining);
     [[nodiscard]] bool folds_outward(const Leaf& leaf, std::uint32_t u, std::uint32_t v);
     void measure_bend(std::uint32_t w);
@@ -129,6 +129,8 @@ private:
     float locality_ = 0.0F;  // the square of the setting
     HugeVector<float>
         reach_;  // of each vertex: how far those went that it stands for; empty without locality
+    // Of each vertex: the sum of the double areas that it stands for, as vectors, and of their sizes.
+    HugeVector<Eigen::Vector4f> facing_;
     HugeVector<std::uint8_t> bend_;  // of each vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // the triangles that a contraction would leave at the new vertex

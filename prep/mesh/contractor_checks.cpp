@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "prep/mesh/contractor.hpp"
-#include "prep/mesh/turn_limits.hpp"
 
 namespace tact {
 namespace {
@@ -61,7 +60,7 @@ bool Contractor::topology_allows(std::uint32_t u, std::uint32_t v) {
 }
 
 bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::Vector3f& from,
-                            const Eigen::Vector3f& to) {
+                            const Eigen::Vector3f& to, const Side<float>& side) {
     for (const Wing& wing : star) {
         if (wing.next == other || wing.last == other) continue;
         const Eigen::Vector3f before = (wing.p_next - from).cross(wing.p_last - from);
@@ -73,6 +72,7 @@ bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::
         if (turns || roundness(wing.p_next - to, wing.p_last - to, area) < kThin) {
             if (roundness(wing.p_next - from, wing.p_last - from, was) > kThin) return true;
         }
+        if (side.left_by(before, was, after, area)) return true;
         Leaf leaf{wing.next, wing.last, other, 2.0F, Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
         if (area > 0.0F) leaf.normal = after * (1.0F / area);
         if (!turns) {
@@ -169,8 +169,10 @@ void Contractor::note_bends(std::uint32_t u) {
 bool Contractor::spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
                         const Eigen::Vector3f& to, bool joining) {
     leaf_.clear();
-    return turns_over(star_u_, v, Eigen::Vector3f::Zero(), to) || turns_over(star_v_, u, across, to) ||
-           folds(u, v, joining);
+    const Eigen::Vector4f facing = facing_[u] + facing_[v];
+    const Side<float> side(facing.head<3>(), facing.w());
+    return turns_over(star_u_, v, Eigen::Vector3f::Zero(), to, side) ||
+           turns_over(star_v_, u, across, to, side) || folds(u, v, joining);
 }
 
 }  // namespace tact

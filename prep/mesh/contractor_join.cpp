@@ -43,6 +43,7 @@ Contractor::Tried Contractor::absorb(std::uint32_t into, QueuedPair& pair, float
         for (std::uint32_t k = 0; k < vertex_[w].count; ++k)
             triangle_[touch_[vertex_[w].first + k]][0] = kNone;
     }
+    for (const std::uint32_t w : part_) facing_[into] += facing_[w];
     for (std::size_t i = 1; i < part_.size(); ++i) record(gone, part_[i], cost, sum.trace());
     record(into, gone, cost, sum.trace());
     sum += vertex_[into].q;

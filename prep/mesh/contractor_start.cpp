@@ -68,6 +68,7 @@ void Contractor::touch() {
 
 void Contractor::add_planes() {
     HugeVector<Eigen::Vector3f> mean(vertex_.size(), Eigen::Vector3f::Zero());
+    facing_.assign(vertex_.size(), Eigen::Vector4f::Zero());
     for (const Corners& c : triangle_) {
         const Eigen::Vector3f normal = double_area(c);
         const float area = normal.norm();
@@ -76,6 +77,7 @@ void Contractor::add_planes() {
         for (const std::uint32_t v : c) {
             vertex_[v].q.add_plane(unit, 0.5F * area);
             mean[v] += unit;
+            facing_[v] += Eigen::Vector4f(normal.x(), normal.y(), normal.z(), area);
         }
     }
     // The first bound of bend_: twice the largest distance from the mean.

@@ -59,6 +59,7 @@ public:
     void store();
 
 private:
+    void take_sides();
     void take_samples();
     void take_border_samples();
     void pull(Sample& sample);
@@ -87,8 +88,7 @@ private:
     MeshStars star_;
     std::vector<Sample> sample_;
     std::vector<Row> row_;
-    // The sum of the normals of the samples that are nearest to a triangle, and nearest to a vertex.
-    std::vector<Vec> facing_, facing_at_;
+    std::vector<Side<double>> side_;          // of each vertex
     std::vector<std::array<Vec, 2>> border_;  // edges of the original
     std::optional<MeshGrid> grid_;            // of the original, where vertices are held to it
     std::vector<double> stray_;               // of each vertex: how far from it, squared
@@ -115,12 +115,28 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
         at_.emplace_back(p[0], p[1], p[2]);
     }
     for (const Corners& c : triangle_) start_.push_back(double_area(c));
+    take_sides();
     take_samples();
     take_border_samples();
 }
 
 // Coarse, as the queries are few.
 void Relaxer::hold() { grid_.emplace(original_, 64.0); }
+
+void Relaxer::take_sides() {
+    std::vector<Vec> facing(at_.size(), Vec::Zero());
+    std::vector<double> area(at_.size(), 0.0);
+    for (std::size_t t = 0; t < original_.triangles(); ++t) {
+        const std::uint32_t* c = &original_.triangle[3 * t];
+        const Vec normal = (original(c[1]) - original(c[0])).cross(original(c[2]) - original(c[0]));
+        for (const std::uint32_t v : {went_[c[0]], went_[c[1]], went_[c[2]]}) {
+            if (v == kNoIndex) continue;
+            facing[v] += normal;
+            area[v] += normal.norm();
+        }
+    }
+    for (std::size_t v = 0; v < at_.size(); ++v) side_.emplace_back(facing[v], area[v]);
+}
 
 // Centres of triangles, weighted by area; of every so many where there are more than are worth their time.
 void Relaxer::take_samples() {
@@ -182,8 +198,6 @@ void Relaxer::pull(Sample& sample) {
         static_cast<std::size_t>(std::max_element(best.part.begin(), best.part.end()) - best.part.begin());
     sample.near = c[largest];
     const Vec n = double_area(c);
-    facing_[triangle] += sample.weight * sample.normal;
-    facing_at_[sample.near] += sample.weight * sample.normal;
     if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a part that is gone
     const Vec foot = best.part[0] * at_[c[0]] + best.part[1] * at_[c[1]] + best.part[2] * at_[c[2]];
     row_.push_back({c, best.part, sample.normal, sample.weight, sample.normal.dot(sample.at - foot)});
@@ -305,10 +319,8 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
         if (!(was.dot(now) > kTurnCosine<double> * was.norm() * now.norm()) || now.norm() < 0.1 * was.norm())
             return refuse();
         if (now.dot(start_[t]) < kStartCosine * now.norm() * start_[t].norm()) return refuse();
-        const Corners& c = triangle_[t];
-        Vec facing = facing_[t];
-        if (facing.isZero(0.0)) facing = facing_at_[c[0]] + facing_at_[c[1]] + facing_at_[c[2]];
-        if (now.dot(facing) < 0.0 && was.dot(facing) >= 0.0) return refuse();
+        for (const std::uint32_t w : triangle_[t])
+            if (side_[w].left_by(was, was.norm(), now, now.norm())) return refuse();
     }
     for (const auto& [was, t] : before) {
         const Vec now = double_area(triangle_[t]);
@@ -325,8 +337,6 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
 
 void Relaxer::round() {
     row_.clear();
-    facing_.assign(triangle_.size(), Vec::Zero());
-    facing_at_.assign(at_.size(), Vec::Zero());
     for (Sample& sample : sample_) {
         if (sample.border)
             pull_border(sample);

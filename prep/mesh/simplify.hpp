@@ -6,7 +6,8 @@
 //           planes upright on them. Any mesh is taken; what cannot be contracted soundly is left as it
 //           is.
 // Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or
-//           comes to lie within 26 degrees on a neighbour, at the new vertex or across from it.
+//           comes to lie within 26 degrees on a neighbour, at the new vertex or across from it. Where the surface that a
+//           vertex stands for looks to one side, its triangles stay within 60 degrees of it however many steps they took.
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of
 //           its mean over the planes that a vertex stands for, never falling along the sequence.
 // Repeats   the same mesh and settings give the same sequence.

@@ -8,6 +8,7 @@
 #include "prep/mesh/near_pairs.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/mesh/relax.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
 namespace tact::test {
@@ -72,6 +73,34 @@ TEST(Contraction, LeavesNoFoldAtAnyLevelOfACrumpledShell) {
         relax(fine, coarse, 2);
         EXPECT_GT(topology(coarse.mesh).sharpest, -0.9) << n;
         EXPECT_EQ(topology(coarse.mesh).flat_triangles, 0U) << n;
+    }
+}
+
+// Of a surface that is seen whole from the origin: the cosine of its outward normals to the way out.
+double least_outward(const TriangleMesh& mesh) {
+    double least = 1.0;
+    for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+        std::array<Vec3, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float* const at = &mesh.position_m[3 * std::size_t{mesh.triangle[3 * t + i]}];
+            p[i] = Vec3(at[0], at[1], at[2]);
+        }
+        const Vec3 area = (p[1] - p[0]).cross(p[2] - p[0]), out = p[0] + p[1] + p[2];
+        least = std::min(least, area.dot(out) / (area.norm() * out.norm()));
+    }
+    return least;
+}
+
+// Each step alone, and neighbours held off their folds, would let one turn over in many.
+TEST(Contraction, NoTriangleComesToFaceTheOtherSide) {
+    const TriangleMesh fine = rough_sphere(60);
+    ASSERT_GT(least_outward(fine), 0.5);
+    for (const std::uint32_t n : {3000U, 1000U, 300U}) {
+        Simplified coarse = simplify(fine, {.vertices_min = n});
+        EXPECT_EQ(coarse.mesh.vertices(), n);
+        EXPECT_GT(least_outward(coarse.mesh), 0.25) << n;
+        relax(fine, coarse, 2);
+        EXPECT_GT(least_outward(coarse.mesh), 0.25) << n;
     }
 }
 
