@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ipc/assets/bone_bricks.hpp"
+#include "ipc/base/prefetch.hpp"
 
 namespace tact {
 
@@ -58,12 +59,12 @@ public:
 
     // What the next questions about a cell, which is inside, will read.
     void fetch(const Cell& c) const noexcept {
-        __builtin_prefetch(&state_[index(c) / 4]);
+        prefetch(&state_[index(c) / 4]);
         const auto x = static_cast<std::uint32_t>(c[0] - margin_),
                    y = static_cast<std::uint32_t>(c[1] - margin_),
                    z = static_cast<std::uint32_t>(c[2] - margin_);
         if (density_.empty() || x >= bricks_.size[0] || y >= bricks_.size[1] || z >= bricks_.size[2]) return;
-        __builtin_prefetch(&density_[bricks_.voxel(x, y, z)]);
+        prefetch(&density_[bricks_.voxel(x, y, z)]);
     }
 
     [[nodiscard]] Vec3 to_cells(const Vec3& model_m) const noexcept {

@@ -130,7 +130,7 @@ void Particles::move_group(std::size_t group, std::size_t moves, Instant deadlin
     for (std::size_t k = 0; k < moves && groups_.held(group) > 0; ++k) {
         if (k % kBetweenLooks == kBetweenLooks - 1 && settings_.now() >= deadline) return;
         const std::uint32_t i = groups_.next(group);
-        __builtin_prefetch(&particle_[groups_.next(group, kFetchAhead)]);
+        prefetch(&particle_[groups_.next(group, kFetchAhead)]);
         const Particle& soon = particle_[groups_.next(group, kFetchAhead / 2)];
         cells_.fetch(
             {static_cast<int>(soon.at[0]), static_cast<int>(soon.at[1]), static_cast<int>(soon.at[2])});

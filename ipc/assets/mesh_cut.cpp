@@ -25,6 +25,8 @@
 #include <array>
 #include <cstring>
 
+#include "ipc/base/prefetch.hpp"
+
 namespace tact {
 namespace {
 
@@ -58,7 +60,7 @@ std::uint64_t replace(PackedVertex& old, const PackedVertex& now) {
 void fetch_list(const MeshPatches& p, const MeshPatches::List& list) {
     const auto fetch = [](const auto* from, std::size_t count) {
         constexpr std::size_t kLine = 64 / sizeof(*from);
-        for (std::size_t i = 0; i < count; i += kLine) __builtin_prefetch(from + i, 0, 2);
+        for (std::size_t i = 0; i < count; i += kLine) prefetch(from + i);
     };
     fetch(p.vertex.data() + list.vertex_first, list.vertices);
     fetch(p.parent.data() + list.vertex_first, list.vertices);

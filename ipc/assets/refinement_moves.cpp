@@ -1,5 +1,6 @@
 // Splits and merges: what changes in the cut, and what must be so before.
 #include "ipc/assets/refinement.hpp"
+#include "ipc/base/prefetch.hpp"
 
 namespace tact {
 namespace {
@@ -13,30 +14,30 @@ constexpr std::uint32_t kFirst = 18, kSecond = 12, kThird = 6;
 void Refinement::fetch_ahead(const Queue& queue, std::uint32_t i) const noexcept {
     if (i + kFirst < queue.count) {
         const std::uint32_t n = queue.node[i + kFirst];
-        __builtin_prefetch(&forest_.node(n));
-        __builtin_prefetch(&state_[n], 1);
+        prefetch(&forest_.node(n));
+        prefetch_to_write(&state_[n]);
     }
     if (i + kSecond < queue.count) {
         const std::uint32_t n = queue.node[i + kSecond];
         const ForestNode& node = forest_.node(n);
-        __builtin_prefetch(forest_.first_need_of(n));
+        prefetch(forest_.first_need_of(n));
         if (!node.first_is_leaf()) {
-            __builtin_prefetch(&node + 1);
-            __builtin_prefetch(&state_[n + 1], 1);
+            prefetch(&node + 1);
+            prefetch_to_write(&state_[n + 1]);
         }
         if (!node.second_is_leaf()) {
-            __builtin_prefetch(&forest_.node(node.second_of(n)));
-            __builtin_prefetch(&state_[node.second_of(n)], 1);
+            prefetch(&forest_.node(node.second_of(n)));
+            prefetch_to_write(&state_[node.second_of(n)]);
         }
         if (node.parent != kNoForestNode) {
-            __builtin_prefetch(&forest_.node(node.parent));
-            __builtin_prefetch(&state_[node.parent], 1);
+            prefetch(&forest_.node(node.parent));
+            prefetch_to_write(&state_[node.parent]);
         }
     }
     if (i + kThird < queue.count)
         for (const std::uint32_t need : forest_.needs_of(queue.node[i + kThird])) {
-            __builtin_prefetch(&state_[need], 1);
-            __builtin_prefetch(&forest_.node(need));
+            prefetch_to_write(&state_[need]);
+            prefetch(&forest_.node(need));
         }
 }
 

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/prefetch.hpp"
+
 namespace tact {
 namespace {
 
 constexpr float kRefusedFactor = 2.0F;  // a refused pair waits until pairs of twice its cost are due
 constexpr float kCostMax = 1e6F;
+// Pairs on their way: from the queue, and of those the ones that are due; after how many of these the next hop is called.
+constexpr std::uint32_t kPoppedDepth = 10, kDueDepth = 12, kTrianglesBack = 3, kNeighboursBack = 7;
 
 }  // namespace
 
@@ -139,15 +143,17 @@ void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, 
 }
 
 void Contractor::fetch_lists(const QueuedPair& pair) const {
-    for (const std::uint32_t v : {pair.u & ~kNoEdge, pair.v})
-        __builtin_prefetch(touch_.data() + vertex_[v].first);
+    for (const std::uint32_t v : {pair.u & ~kNoEdge, pair.v}) {
+        prefetch(touch_.data() + vertex_[v].first);
+        prefetch(facing_.data() + v);
+    }
 }
 
 void Contractor::fetch_triangles(const QueuedPair& pair) const {
     for (const std::uint32_t v : {pair.u & ~kNoEdge, pair.v}) {
         const std::uint32_t* list = touch_.data() + vertex_[v].first;
         for (std::uint32_t i = 0; i < std::min(vertex_[v].count, 12U); ++i)
-            __builtin_prefetch(triangle_.data() + list[i]);
+            prefetch(triangle_.data() + list[i]);
     }
 }
 
@@ -155,35 +161,44 @@ void Contractor::fetch_neighbours(const QueuedPair& pair) const {
     for (const std::uint32_t v : {pair.u & ~kNoEdge, pair.v}) {
         const std::uint32_t* list = touch_.data() + vertex_[v].first;
         for (std::uint32_t i = 0; i < std::min(vertex_[v].count, 12U); ++i) {
-            for (const std::uint32_t w : triangle_[list[i]]) __builtin_prefetch(vertex_.data() + w);
+            for (const std::uint32_t w : triangle_[list[i]]) {
+                prefetch(vertex_.data() + w);
+                prefetch(mark_.data() + w);
+            }
         }
     }
 }
 
-// Takes pairs from the queue some turns before they are due and calls for the memory that they will need, one
-// hop a stage: vertices, lists, triangles, neighbours.
+// Takes pairs from the queue some turns before they are tried and calls for the memory that they will need, one
+// hop a stage: their vertices first; once these are there, most turn out to wait for a later turn; of the others
+// lists, triangles, neighbours.
 bool Contractor::ahead(QueuedPair& pair, float& due) {
     // Near the end two dozen pairs out of order would matter, and everything is in the cache.
-    const std::uint32_t depth = alive_ > 8192 ? 27 : 1;
-    while (waiting_end_ - waiting_first_ < depth) {
-        Waiting& next = waiting_[waiting_end_ % waiting_.size()];
-        if (!queue_.pop(next.pair, next.due)) break;
-        __builtin_prefetch(vertex_.data() + (next.pair.u & ~kNoEdge));
-        __builtin_prefetch(vertex_.data() + next.pair.v);
-        __builtin_prefetch(facing_.data() + (next.pair.u & ~kNoEdge));
-        __builtin_prefetch(facing_.data() + next.pair.v);
-        ++waiting_end_;
+    const bool far = alive_ > 8192;
+    const std::uint32_t popped_depth = far ? kPoppedDepth : 1, due_depth = far ? kDueDepth : 1;
+    while (due_.size() < due_depth) {
+        while (popped_.size() < popped_depth) {
+            Waiting next{};
+            if (!queue_.pop(next.pair, next.due)) break;
+            prefetch(vertex_.data() + (next.pair.u & ~kNoEdge));
+            prefetch(vertex_.data() + next.pair.v);
+            popped_.push(next);
+        }
+        if (popped_.size() == 0) break;
+        Waiting next = popped_.take();
+        if (!is_due(next.pair, next.due)) continue;
+        fetch_lists(next.pair);
+        due_.push(next);
         const auto stage = [&](std::uint32_t back, auto&& fetch) {
-            if (waiting_end_ - waiting_first_ < back + 1) return;
-            const QueuedPair& p = waiting_[(waiting_end_ - 1 - back) % waiting_.size()].pair;
+            if (due_.size() <= back) return;
+            const QueuedPair& p = due_.from_end(back).pair;
             if (alive(p.u & ~kNoEdge) && alive(p.v)) fetch(p);
         };
-        stage(8, [&](const QueuedPair& p) { fetch_lists(p); });
-        stage(14, [&](const QueuedPair& p) { fetch_triangles(p); });
-        stage(20, [&](const QueuedPair& p) { fetch_neighbours(p); });
+        stage(kTrianglesBack, [&](const QueuedPair& p) { fetch_triangles(p); });
+        stage(kNeighboursBack, [&](const QueuedPair& p) { fetch_neighbours(p); });
     }
-    if (waiting_first_ == waiting_end_) return false;
-    const Waiting& now = waiting_[waiting_first_++ % waiting_.size()];
+    if (due_.size() == 0) return false;
+    const Waiting now = due_.take();
     pair = now.pair;
     due = now.due;
     return true;

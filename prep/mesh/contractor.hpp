@@ -72,6 +72,7 @@ private:
     }
 
     bool ahead(QueuedPair& pair, float& due);
+
     void fetch_lists(const QueuedPair& pair) const;
     void fetch_triangles(const QueuedPair& pair) const;
     void fetch_neighbours(const QueuedPair& pair) const;
@@ -150,8 +151,20 @@ private:
         QueuedPair pair;
         float due;
     };
-    std::array<Waiting, 32> waiting_{};  // taken from the queue, their memory on its way
-    std::uint32_t waiting_first_ = 0, waiting_end_ = 0;
+    class Line {  // first in, first out
+    public:
+        [[nodiscard]] std::uint32_t size() const { return end_ - first_; }
+        void push(const Waiting& w) { at_[end_++ % at_.size()] = w; }
+        Waiting take() { return at_[first_++ % at_.size()]; }
+        [[nodiscard]] const Waiting& from_end(std::uint32_t back) const {
+            return at_[(end_ - 1 - back) % at_.size()];
+        }
+
+    private:
+        std::array<Waiting, 32> at_{};
+        std::uint32_t first_ = 0, end_ = 0;
+    };
+    Line popped_, due_;  // taken from the queue, their memory on its way
     Simplified result_;
     float error_ = 0.0F;
 };

@@ -11,7 +11,7 @@
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of
 //           its mean over the planes that a vertex stands for, never falling along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
-// Cost      about 1.8 us and 250 bytes a vertex, see tests/bench/simplify_bench.cpp.
+// Cost      about 1.6 us and 260 bytes a vertex, see tests/bench/simplify_bench.cpp.
 // Thread    any but the servo's.
 // Fails by  StartupError on indices out of range or positions that are not finite.
 #pragma once
