@@ -190,6 +190,15 @@ DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
     return s;
 }
 
+std::unique_ptr<ForceModel> load_tool_in_bone(const SceneFile& scene, SceneBone& bone,
+                                              DrillSettings settings) {
+    const SceneMeta meta = read_meta(scene);
+    if (fit_to_voxels(settings, meta, bone.bone().octree.bricks()))
+        spdlog::warn("{} of {:.2f} mm is felt, as thin as the voxels allow",
+                     settings.tool.cuts ? "a shaft" : "a sucker", 2e3 * settings.tool.shaft_radius_m);
+    return std::make_unique<DrillModel>(meta, bone.bone(), settings);
+}
+
 // The one place that knows which model a scene is for.
 std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, const Options& o,
                                        const RtConfig& config) {
@@ -205,8 +214,7 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, 
         if (tool) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
-    if (bone != nullptr)
-        return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), burr_settings(config, o.seed));
+    if (bone != nullptr) return load_tool_in_bone(scene, *bone, burr_settings(config, o.seed));
     return load_docking_model(scene, docking_settings(o, scene));
 }
 
@@ -214,7 +222,7 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, 
 std::unique_ptr<ForceModel> load_second(const SceneFile& scene, SceneBone* bone, const Options& o,
                                         const RtConfig& config) {
     if (bone == nullptr) return std::make_unique<PointerModel>();
-    return std::make_unique<DrillModel>(read_meta(scene), bone->bone(), sucker_settings(config, o.seed));
+    return load_tool_in_bone(scene, *bone, sucker_settings(config, o.seed));
 }
 
 struct LevelWish {

@@ -35,4 +35,13 @@ DrillSettings sucker_settings(const RtConfig& config, std::uint64_t seed) {
     return s;
 }
 
+bool fit_to_voxels(DrillSettings& s, const SceneMeta& meta, const BoneBricks& bricks) {
+    const double least_m = kRadiusLeast * (1.0 + 1e-9) * meta.world_per_model * bricks.voxel_m;
+    if (!(s.tool.shaft_radius_m > 0.0) || s.tool.shaft_radius_m >= least_m) return false;
+    if (!s.tool.cuts) s.tool.radius_m = least_m;
+    if (least_m > s.tool.radius_m) return false;
+    s.tool.shaft_radius_m = least_m;
+    return true;
+}
+
 }  // namespace tact

@@ -12,4 +12,8 @@ namespace tact {
 // A tube: a ball at its tip and a shaft as thick. It cuts nothing.
 [[nodiscard]] DrillSettings sucker_settings(const RtConfig& config, std::uint64_t seed);
 
+// What is thinner than a voxel cannot be felt: shaft and tube become as thick as one. True: one did. A head that is too
+// small stays as it is, and the model refuses it.
+[[nodiscard]] bool fit_to_voxels(DrillSettings& settings, const SceneMeta& meta, const BoneBricks& bricks);
+
 }  // namespace tact

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWaitS = 0.7;    // until the force has faded in
 constexpr double kForgetS = 0.5;  // switched off
-constexpr double kSeekM_S = 0.015, kMoveM_S = 0.06;
+constexpr double kSeekM_S = 0.04, kMoveM_S = 0.06;
 constexpr double kFeltN = 0.3, kFeltS = 0.02;
 constexpr double kSuckerFeltN = 0.1, kSuckerPressN = 0.25, kSuckerAboveM = 5e-4;
 constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series; then it lifts
@@ -19,7 +19,7 @@ constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes 
 constexpr double kLiftM = 6e-3;
 constexpr double kFeedM_S = 5e-4, kBowlFirstM = 3e-3, kWidenM_S = 3e-4;
 constexpr double kRimM = 3.5e-3;  // beyond the bowl's radius
-constexpr double kAsideM = 4e-3;  // after a miss, times the root of how many there were
+constexpr double kAsideM = 8e-3;  // after a miss, times the root of how many there were
 constexpr double kStiffnessN_M = 250.0, kDampingN_S_M = 8.0, kSidewaysMostN = 3.0, kUpMostN = 2.0;
 constexpr double kTurnStiffnessN_M = 0.3, kTurnDampingN_M_S = 0.01;
 // How instruments are held: the shaft, along +z of the tool, leans to its hand's side and down.

@@ -30,7 +30,7 @@ class SimSurgeon {
 public:
     static constexpr double kDepthM = 12e-3, kBowlM = 7e-3;  // of the bowl when it is done
     static constexpr double kPressMostN = 1.6;
-    static constexpr double kReachM = 60e-3;  // how far it looks for bone
+    static constexpr double kReachM = 80e-3;  // how far it looks for bone
     static constexpr double kSeriesS = 6.0;   // strokes and the lift after them
 
     explicit SimSurgeon(const SimSurgeonSettings& settings) noexcept;

@@ -24,6 +24,7 @@ tact_test(unit/loop_config_arm_test.cpp USES base arm hal loop)
 tact_test(unit/loop_house_test.cpp USES base topics loop)
 tact_test(unit/rt_scene_bone_test.cpp USES base shm topics assets force start)
 tact_test(unit/rt_start_bodies_test.cpp USES base assets force start)
+tact_test(unit/rt_start_drill_test.cpp USES base shm topics assets hal force loop start)
 
 tact_test(unit/deploy_bench_servo_test.cpp USES base bench_servo)
 

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# End to end: the drilling demo without a display, with the programs of one build. deploy_drill_e2e_test.sh BIN
+# The emulated surgeon takes bone, and window and controller agree on how much; exit code 77: cannot be tried here.
+set -u
+bin=$1
+command -v Xvfb >/dev/null || { echo "there is no Xvfb"; exit 77; }
+[ -x "$bin/tact-gui" ] || { echo "there is no tact-gui in this build"; exit 77; }
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf "$scratch"' EXIT
+export TACT_RUNTIME_DIR=$scratch XDG_CACHE_HOME=$scratch/cache
+unset DISPLAY WAYLAND_DISPLAY
+# The software renderer never frees some of its own, and is unloaded before the leak checker looks for names.
+export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
+
+# The hand is armed when the window has drawn; a busy machine, or one with sanitizers, may need longer for that.
+for seconds in 10 30 120; do
+    "$bin/tact" demo drill --voxels 80 --headless --seconds "$seconds" --session e2e --size 960x600 \
+        --out "$scratch/out" --quiet >"$scratch/said" 2>&1
+    code=$?
+    [ "$code" -eq 0 ] && ! grep -q '"cutting_s": [1-9]' "$scratch/out/run.json" || break
+done
+python3 - "$scratch/out" "$code" "$scratch/said" <<'PY' || { cat "$scratch/said"; exit 1; }
+import json, os, struct, sys
+folder, code, said = sys.argv[1], int(sys.argv[2]), open(sys.argv[3]).read()
+assert code == 0, f"exit code {code}"
+report = json.load(open(os.path.join(folder, "run.json")))
+assert report["ended"]["ok"], report["ended"]
+assert report["servo"]["allocations"] == 0 and report["servo"]["locks"] == 0, report["servo"]
+drilling = report["drilling"]
+assert abs(drilling["burr"]["diameter_mm"] - 6) < 1e-3 and abs(drilling["sucker"]["diameter_mm"] - 2) < 1e-3, drilling
+trainee = drilling["trainee"]
+assert trainee["drilling_s"] >= trainee["cutting_s"] >= 1, trainee
+assert trainee["strokes"]["count"] >= 1 and trainee["force"]["max_n"] > 0.1, trainee
+# What the bricks lost and what the controller counted; the window ends a little before it.
+assert drilling["removed_mm3"] > 5, drilling
+assert 0.8 * drilling["removed_mm3"] < trainee["removed_mm3"] <= drilling["removed_mm3"] + 1e-9, (drilling, trainee)
+by_structure = trainee["removed_bone_mm3"] + sum(s["removed_mm3"] for s in trainee["structures"])
+assert abs(by_structure - trainee["removed_mm3"]) < 1e-6, trainee
+names = [s["name"] for s in trainee["structures"]]
+assert "facial nerve" in names and "sigmoid sinus" in names, names
+assert all(s["nearest_mm"] is not None for s in trainee["structures"] if s["critical"]), trainee
+assert "bone taken:" in said and "strokes:" in said and "near critical structures:" in said, said
+png = open(os.path.join(folder, "run.png"), "rb").read()
+assert png[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", png[16:24]) == (960, 600), png[:24]
+print("%.1f mm3 in %.1f s of drilling, %d strokes" %
+      (drilling["removed_mm3"], trainee["drilling_s"], trainee["strokes"]["count"]))
+PY

@@ -1,0 +1,144 @@
+// What a run says of drilling, and which files a scan is made of.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/report_drilling.hpp"
+#include "deploy/tact/run_options.hpp"
+#include "deploy/tact/scene_cache.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+DrillTopic two_tools() {
+    DrillTopic t{};
+    t.removed_levels = 2'550'000;
+    t.level_m3 = 1e-9 / 2550.0;
+    t.burr_rad_s_most = 6283.1853F;
+    t.irrigation_m3_s_most = static_cast<float>(20e-6 / 60.0);
+    t.suction_m3_s_most = static_cast<float>(20e-3 / 60.0);
+    t.hand[0].kind = DrillKind::burr;
+    t.hand[0].shape = DrillShape::cone;
+    t.hand[0].radius_m = 3e-3F;
+    t.hand[0].length_m = 8e-3F;
+    t.hand[0].shaft_radius_m = 1.2e-3F;
+    t.hand[1].kind = DrillKind::sucker;
+    t.hand[1].radius_m = 1e-3F;
+    return t;
+}
+
+TEST(DrillingReport, TellsToolsInPeoplesUnitsAndWhatTheyTook) {
+    const auto region = std::make_unique<RtRegion>();
+    EXPECT_TRUE(drilling_report(*region, {}).is_null());
+    region->drill.publish(two_tools());
+    const auto j = drilling_report(*region, {});
+    EXPECT_NEAR(j["removed_mm3"].get<double>(), 1000.0, 1e-6);
+    EXPECT_EQ(j["burr"]["shape"], "cone");
+    EXPECT_NEAR(j["burr"]["diameter_mm"].get<double>(), 6.0, 1e-5);
+    EXPECT_NEAR(j["burr"]["shaft_diameter_mm"].get<double>(), 2.4, 1e-5);
+    EXPECT_NEAR(j["burr"]["rpm"].get<double>(), 60000.0, 0.1);
+    EXPECT_NEAR(j["burr"]["irrigation_ml_min"].get<double>(), 20.0, 1e-4);
+    EXPECT_NEAR(j["sucker"]["diameter_mm"].get<double>(), 2.0, 1e-5);
+    EXPECT_NEAR(j["sucker"]["suction_l_min"].get<double>(), 20.0, 1e-4);
+    EXPECT_TRUE(j["trainee"].is_null());
+    EXPECT_EQ(drilling_summary(j), "bone taken: 1000.0 mm3\n");
+    EXPECT_EQ(drilling_summary(nullptr), "");
+}
+
+TEST(DrillingReport, ATraineesFiguresAreTakenOverAndSaidInLines) {
+    const ScratchFolder scratch;
+    const auto file = scratch.path() / "trainee.json";
+    const nlohmann::json trainee = {
+        {"drilling_s", 40.0},
+        {"cutting_s", 35.0},
+        {"force", {{"mean_cutting_n", 0.5}, {"max_n", 2.5}, {"excess_above_n", 2.0}, {"excess_s", 1.5}}},
+        {"strokes", {{"count", 71}, {"mean_length_mm", 6.2}, {"mean_speed_mm_s", 12.0}}},
+        {"burr_visible_share", 0.7},
+        {"near_critical",
+         {{"drilling_within_1_mm_s", 1.0},
+          {"drilling_within_2_mm_s", 3.0},
+          {"removed_within_1_mm_mm3", 2.0},
+          {"removed_within_2_mm_mm3", 5.0}}},
+        {"injuries", 1},
+        {"structures",
+         {{{"name", "facial nerve"},
+           {"critical", true},
+           {"nearest_mm", 9.0},
+           {"removed_mm3", 0.0},
+           {"injuries", 0}},
+          {{"name", "sinus"},
+           {"critical", true},
+           {"nearest_mm", -0.4},
+           {"removed_mm3", 0.3},
+           {"injuries", 1}}}}};
+    std::ofstream(file) << trainee;
+    const auto region = std::make_unique<RtRegion>();
+    region->drill.publish(two_tools());
+    const auto j = drilling_report(*region, file);
+    EXPECT_EQ(j["trainee"], trainee);
+    const std::string said = drilling_summary(j);
+    for (const char* const words : {"drilling 40.0 s, of which cutting 35.0 s", "above 2.0 N for 1.5 s",
+                                    "strokes: 71 of 6.2 mm at 12.0 mm/s", "visible for 70 %",
+                                    "within 1 mm 1.0 s and 2.00 mm3; injuries 1",
+                                    "sinus: burr in it by 0.4 mm, 0.30 mm3 taken, injuries 1"})
+        EXPECT_NE(said.find(words), std::string::npos) << words << "\n" << said;
+    EXPECT_EQ(said.find("facial nerve"), std::string::npos);  // never near
+}
+
+TEST(DrillingReport, WhatMakesNoSenseIsLeftOut) {
+    const ScratchFolder scratch;
+    const auto file = scratch.path() / "trainee.json";
+    const auto region = std::make_unique<RtRegion>();
+    DrillTopic t = two_tools();
+    t.level_m3 = std::nan("");
+    t.hand[0].shape = static_cast<DrillShape>(77);
+    region->drill.publish(t);
+    for (const char* const text :
+         {"", "[1, 2", "7", R"({"force": 3, "structures": [4, {"nearest_mm": "near"}]})"}) {
+        std::ofstream(file) << text;
+        const auto j = drilling_report(*region, file);
+        EXPECT_TRUE(j["burr"]["shape"].is_null());
+        EXPECT_FALSE(drilling_summary(j).empty());
+    }
+}
+
+TEST(ScanFiles, AreAFileAFolderOrAHeaderWithWhatLiesBesideIt) {
+    const ScratchFolder scratch;
+    const auto touch = [&](const char* name) {
+        std::ofstream(scratch.path() / name) << name;
+        return scratch.path() / name;
+    };
+    const auto nrrd = touch("ear.nrrd"), header = touch("ear.mhd"), raw = touch("ear.raw");
+    touch("ears.raw");
+    std::filesystem::create_directory(scratch.path() / "series");
+    const auto first = touch("series/1.dcm"), second = touch("series/2.dcm");
+    std::filesystem::create_directory(scratch.path() / "series" / "more");
+    EXPECT_EQ(scan_files(nrrd), std::vector{nrrd});
+    EXPECT_EQ(scan_files(header), (std::vector{header, nrrd, raw}));
+    EXPECT_EQ(scan_files(scratch.path() / "series"), (std::vector{first, second}));
+}
+
+TEST(LetTheHandsDrill, WhereNobodyAskedForAnotherHandOrDevice) {
+    RunOptions o;
+    let_the_hands_drill(o);
+    EXPECT_EQ(o.controller, (std::vector<std::string>{"--hand", "surgeon", "--hand2", "sucker"}));
+    for (const char* const asked : {"--hand", "--config"}) {
+        RunOptions other;
+        other.controller = {asked, "x"};
+        let_the_hands_drill(other);
+        EXPECT_EQ(other.controller.size(), 2U);
+    }
+    RunOptions one;
+    one.controller = {"--hand2", "passive"};
+    let_the_hands_drill(one);
+    EXPECT_EQ(one.controller.size(), 4U);
+}
+
+}  // namespace
+}  // namespace tact::launch
