@@ -22,6 +22,7 @@
 #include "gui/app/describe.hpp"
 #include "gui/app/detail_desk.hpp"
 #include "gui/app/drill_desk.hpp"
+#include "gui/app/drill_hands.hpp"
 #include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
 #include "gui/app/grounds.hpp"
@@ -33,6 +34,7 @@
 #include "gui/app/show_controller.hpp"
 #include "gui/app/site.hpp"
 #include "gui/app/window.hpp"
+#include "gui/render/ray_pace.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
@@ -54,6 +56,8 @@ void catch_signals() {
 // Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
 // (tests/bench/draw_bench.cpp).
 constexpr std::size_t kShapesMaxInSoftware = 8000;
+// A volume's ball is much wider than the bone in it, and one works on a part of that.
+constexpr float kBoneZoom = 5.0F;
 
 class App {
 public:
@@ -126,6 +130,7 @@ private:
         if (picture_wanted_) save_picture(picture_name());
         window_.show();
         clock_.end_part(FramePart::swap);
+        if (view_ && view_->bone() != nullptr) ray_pace_.took(view_->bone()->rays(), clock_.work_s());
         publish_load();
     }
 
@@ -201,6 +206,7 @@ private:
         state_.toggles.colouring = static_cast<int>(options_.look.colouring);
         begin_contours(view_->contours(), content_->scale, state_.contours);
         camera_.frame(view_->radius_a());
+        if (content_->bone) camera_.zoom(kBoneZoom);
         std::vector<Pose> homes;
         for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
         list_.start(homes);
@@ -214,9 +220,20 @@ private:
             site_.emplace(*bone_.volume(), content_->bone->labels, content_->meta.world_per_model);
         detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
+        show_bone();
         window_.set_title(std::string("Tact: ") + state_.scene.title);
         spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
                      view_->vertices_max(), state_.scene.bodies, state_.scene.atoms);
+    }
+
+    void show_bone() {
+        if (bone_.volume() == nullptr) return;
+        try {
+            view_->show_bone(*bone_.volume());
+        } catch (const StartupError& e) {
+            spdlog::error("{}", e.what());
+            state_.scene.warning = e.what();
+        }
     }
 
     void handle_input() {
@@ -334,6 +351,25 @@ private:
             view_->show_detail(*made);
     }
 
+    void show_drilling(ViewFrame& view) {
+        view.bone_rays = rays_most(view);
+        if (BoneView* const bone = view_->bone())
+            for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
+        if (controller_.attached() && controller_.have_drill)
+            view.drill_tools = drill_hands_.follow(controller_.drill, content_->meta);
+    }
+
+    // As the governor says; on a processor no more than fit a picture by the clock.
+    std::uint32_t rays_most(const ViewFrame& view) {
+        const PathLevel* const path = controller_.attached() && controller_.have_levels
+                                          ? find_path(controller_.levels, kVolumePath)
+                                          : nullptr;
+        if (path != nullptr) rays_share_ = static_cast<double>(path->level);
+        const double pixels = static_cast<double>(view.width_px) * view.height_px;
+        const auto rays = static_cast<std::uint32_t>(std::lround(rays_share_ * pixels));
+        return window_.software() ? std::min(rays, ray_pace_.rays_most()) : rays;
+    }
+
     void follow_bodies(std::int64_t now_ns) {
         list_.predict(now_ns);
         const BodiesTopic* const topic =
@@ -382,7 +418,10 @@ private:
             const double* const f = controller_.tool.force_model_n;
             view.force_world_n = Vec3(f[0], f[1], f[2]);
         }
-        if (controller_.attached()) view.second_hand = second_hand_.at(now_ns, content_->meta);
+        if (content_->bone)
+            show_drilling(view);
+        else if (controller_.attached())
+            view.second_hand = second_hand_.at(now_ns, content_->meta);
         state_.second_hand = view.second_hand.has_value();
         if (const auto pen = touching_pen()) view.second_hand = pen;
         view.T_model_tool = touching_tool();
@@ -466,6 +505,10 @@ private:
             load.particle_moves = std::min(site_->figures().moves, site_->figures().most);
             load.particles_max = site_->figures().most;
         }
+        if (view_ && view_->bone() != nullptr) {
+            load.vertices_max = view_->bone()->rays_max();
+            load.vertices_drawn = std::clamp(view_->bone()->rays(), 1U, load.vertices_max);
+        }
         region_->load.publish(load);
         state_.load = load;
         const bool levels = controller_.have_levels && controller_.attached();
@@ -493,6 +536,9 @@ private:
     std::optional<Site> site_;      // of a scene of bone; goes before the bone that it reads
     float particles_level_ = 1.0F;  // stays as the controller last told
     DrillDesk drilling_;
+    DrillHands drill_hands_;
+    RayPace ray_pace_;
+    double rays_share_ = 1.0;  // of the pixels; stays as the controller last told
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;

@@ -90,7 +90,8 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
     }
     const std::string fps =
-        format("%.0f fps   %s vertices", state.load.fps, grouped(state.load.vertices_drawn).c_str());
+        format("%.0f fps   %s %s", state.load.fps, grouped(state.load.vertices_drawn).c_str(),
+               state.scene.bone ? "rays" : "vertices");
     pen.text(
         pen.theme.small,
         {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, fps), v.y + pen.theme.px(12.0F)},
@@ -131,9 +132,7 @@ void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& 
 void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
     const std::string text = !state.scene.loaded ? state.scene.status
                              : !state.attached   ? state.link_text
-                             : state.scene.bone
-                                 ? "The bone is felt and cut. This window does not draw it yet."
-                                 : "";
+                                                 : "";
     if (text.empty()) return;
     ImFont* const font = pen.theme.text;
     const float most = 0.8F * v.width;

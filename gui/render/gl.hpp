@@ -54,6 +54,40 @@ private:
     GLuint name_ = 0;
 };
 
+class GlTexture {
+public:
+    GlTexture() = default;
+    GlTexture(const GlTexture&) = delete;
+    GlTexture& operator=(const GlTexture&) = delete;
+    ~GlTexture() {
+        if (name_ != 0) glDeleteTextures(1, &name_);
+    }
+    GLuint get() {
+        if (name_ == 0) glGenTextures(1, &name_);
+        return name_;
+    }
+
+private:
+    GLuint name_ = 0;
+};
+
+class GlFramebuffer {
+public:
+    GlFramebuffer() = default;
+    GlFramebuffer(const GlFramebuffer&) = delete;
+    GlFramebuffer& operator=(const GlFramebuffer&) = delete;
+    ~GlFramebuffer() {
+        if (name_ != 0) glDeleteFramebuffers(1, &name_);
+    }
+    GLuint get() {
+        if (name_ == 0) glGenFramebuffers(1, &name_);
+        return name_;
+    }
+
+private:
+    GLuint name_ = 0;
+};
+
 class GlProgram {
 public:
     GlProgram(const std::string& what, const char* vertex_source, const char* fragment_source);

@@ -111,6 +111,8 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glDisable(GL_BLEND);
     if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
     if (frame.T_model_tool) draw_tool(pass);
+    draw_drill_tools(pass);
+    draw_bone(pass);
     const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
     const bool detail = options.detail && detail_.indices() > 0;
     if (detail) draw_detail(pass);
@@ -186,6 +188,30 @@ void SceneView::draw_tool(const Pass& pass) {
         pass.eye_from_scene * scene_from_body(*pass.frame.T_model_tool, content_->centre_model_m),
         pass.projection, pass.haze, {});
     tool_.draw();
+}
+
+void SceneView::draw_bone(const Pass& pass) {
+    if (!bone_) return;
+    const ViewFrame& f = pass.frame;
+    bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
+                 f.bone_rays});
+}
+
+void SceneView::draw_drill_tools(const Pass& pass) {
+    const std::size_t count = std::min(pass.frame.drill_tools.size(), drill_tool_.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const DrawnDrillTool& tool = pass.frame.drill_tools[i];
+        ToolInHand& hand = drill_tool_[i];
+        if (!tool.same_shape(hand.shape)) {
+            hand.mesh.fill(build_drill_tool(tool), GL_STATIC_DRAW);
+            hand.shape = tool;
+        }
+        Pose turned = tool.T_model_tool;
+        turned.q = turned.q * Quat(Eigen::AngleAxisd(tool.turned_rad, Vec3::UnitZ()));
+        programs_.use_lit(pass.eye_from_scene * scene_from_body(turned, content_->centre_model_m),
+                          pass.projection, pass.haze, {});
+        hand.mesh.draw();
+    }
 }
 
 void SceneView::show_detail(const DetailMesh& detail) { detail_.fill(detail.mesh, GL_STREAM_DRAW); }

@@ -5,14 +5,17 @@
 // Cost     follows the vertices of the surface; that of bodies: gui/render/molecules.hpp.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "gui/render/bone_view.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/contours.hpp"
 #include "gui/render/detail_mesh.hpp"
+#include "gui/render/drill_tools.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/programs.hpp"
@@ -43,6 +46,8 @@ struct ViewFrame {
     std::optional<DrawnTouch> touch;
     std::optional<Pose> T_model_tool;  // of the tool that touches a surface
     const Particles* particles = nullptr;
+    std::uint32_t bone_rays = 0;  // through the bone, at most
+    std::span<const DrawnDrillTool> drill_tools;
 };
 
 class SceneView {
@@ -58,6 +63,9 @@ public:
     }
     std::size_t upload() { return contours_.upload(); }
     void show_detail(const DetailMesh& detail);
+    // From now on, the bone of the scene as it is in `now`, which must outlive this. Throws StartupError: no room for it.
+    void show_bone(const BoneVolumeView& now) { bone_ = std::make_unique<BoneView>(*content_, now); }
+    [[nodiscard]] BoneView* bone() { return bone_.get(); }  // null: none is shown
     void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
     // What a person chose of bodies and surfaces.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
@@ -85,6 +93,8 @@ private:
     void draw_second_hand(const Pass& pass);
     void draw_touch(const Pass& pass);
     void draw_tool(const Pass& pass);
+    void draw_bone(const Pass& pass);
+    void draw_drill_tools(const Pass& pass);
     void draw_box(const Pass& pass);
     void draw_particles(const Pass& pass);
     void draw_detail(const Pass& pass);
@@ -98,6 +108,12 @@ private:
     std::unique_ptr<ParticleCloud> cloud_;        // from the first particles on
     TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
+    std::unique_ptr<BoneView> bone_;
+    struct ToolInHand {
+        DrawnDrillTool shape;
+        TriangleBuffers mesh;
+    };
+    std::array<ToolInHand, 2> drill_tool_;  // with the shapes that their meshes are of
 };
 
 // Which level of a codebook is drawn where this many points are felt: the largest not above it that is still

@@ -47,7 +47,8 @@ inline constexpr std::size_t kPicturePathIndex = 0, kForcePathIndex = 1;
 // And where the scene is of bone.
 inline constexpr std::size_t kParticlesPathIndex = 2;
 
-inline constexpr char kMeshPath[] = "gui.mesh";
+// The picture's path: of a surface its vertices, of bone the rays through it.
+inline constexpr char kMeshPath[] = "gui.mesh", kVolumePath[] = "gui.volume";
 inline constexpr char kParticlesPath[] = "gui.particles";
 inline constexpr char kDockingPath[] = "docking.force";
 

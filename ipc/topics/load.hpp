@@ -19,9 +19,9 @@ struct alignas(64) LoadTopic {
     double frame_s;                 // start to start
     double busy_s;                  // without waiting for the display
     double part_s[static_cast<std::size_t>(FramePart::count)];
-    double cpu_s;  // processor time of the process, since start
-    double fps;    // over the last second
-    std::uint32_t vertices_drawn;
+    double cpu_s;                  // processor time of the process, since start
+    double fps;                    // over the last second
+    std::uint32_t vertices_drawn;  // of bone: rays through it, as with vertices_max
     std::uint32_t triangles_drawn;
     std::uint32_t vertices_max;    // of the full mesh
     std::uint32_t particles;       // that there are

@@ -11,6 +11,8 @@ namespace {
 
 // The picture's path. Its floor is what a person still recognizes; its slew is the law's.
 constexpr KnobSpec kMeshKnob{.path = kMeshPath, .floor = 0.01F, .start = 1.0F};
+// Rays: with fewer, what is a wall and what is an opening is not told apart.
+constexpr KnobSpec kVolumeKnob{.path = kVolumePath, .floor = 0.03F, .start = 1.0F};
 // A twentieth of the dust still says where the burr cuts.
 constexpr KnobSpec kParticlesKnob{.path = kParticlesPath, .floor = 0.05F, .start = 1.0F};
 
@@ -51,7 +53,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
         h.chain = OutputChain(for_device(settings.chain, parts.hands[i].info));
     }
     c_->house.gui_heartbeat_ns = -1;
-    const bool ok = governor_.add(kMeshKnob) == kMeshIndex &&
+    const bool ok = governor_.add(settings_.bone ? kVolumeKnob : kMeshKnob) == kMeshIndex &&
                     governor_.add(c_->hand[0].model->knob()) == kForceIndex &&
                     (!settings_.bone || governor_.add(kParticlesKnob) == kParticlesIndex);
     if (!ok)

@@ -9,6 +9,8 @@ if(TACT_GUI)
     tact_test(unit/gui_cloud_test.cpp USES gui_app gui_particles gui_panels gui_render launch assets base
         TIMEOUT 300)
     tact_test(unit/gui_drilling_test.cpp USES gui_drilling topics shm assets base SYSTEM nlohmann_json::nlohmann_json)
+    tact_test(unit/gui_bone_test.cpp USES gui_app gui_render topics shm assets base)
+    tact_test(unit/gui_bone_draw_test.cpp USES gui_app gui_panels gui_render launch assets base TIMEOUT 300)
     tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
     tact_test(unit/gui_link_test.cpp USES gui_link gui_panels topics shm base)
     tact_test(unit/gui_bone_follower_test.cpp USES gui_link topics shm assets base)

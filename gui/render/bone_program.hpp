@@ -1,0 +1,54 @@
+// The rays through the bone, and putting what they saw on the screen.
+//
+// Ray       leaves empty cells at once (BoneField), steps by `step_voxels` elsewhere, and halves the step at which it
+//           entered the surface. Colour: of the structure, else by how dense the bone is behind its surface. Light: as
+//           everything else, times how much of the sky above the surface is open, times a soft shadow of the lamp.
+// Frames    voxels (centre of voxel 0 at the origin) inside the shader; eye space in ångström as all programs
+// Thread    frame thread, context current
+#pragma once
+
+#include "gui/render/bone_field.hpp"
+#include "gui/render/gl.hpp"
+#include "gui/render/shading.hpp"
+
+namespace tact {
+
+// The volume in graphics memory.
+class BoneTextures {
+public:
+    // Throws StartupError where the graphics driver has no room for it.
+    BoneTextures(const BoneField& field, std::span<const BoneStructure> structures);
+    void send(const BoneField& field, std::uint32_t brick);  // its voxels and cells
+    void send_cells(const BoneField& field);                 // all of them
+    void bind();
+
+private:
+    GlTexture solid_, cells_, label_, palette_;
+};
+
+class BoneProgram {
+public:
+    BoneProgram();
+    // Corners in clip space, two numbers each, are attribute 0 of what is drawn next.
+    void use(BoneTextures& textures, const BoneField& field, const Eigen::Matrix4f& eye_from_voxels,
+             const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels);
+
+private:
+    GlProgram program_;
+    ViewUniforms view_;
+    GLint size_, cells_, origin_, from_eye_, tan_, step_, lamp_;
+};
+
+// Draws a part of an image with its depths over what is there, where they are nearer.
+class BoneOnScreen {
+public:
+    BoneOnScreen();
+    // Clip space as above; what is shown there is image(clip -> [0, `share`]).
+    void use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth);
+
+private:
+    GlProgram program_;
+    GLint share_;
+};
+
+}  // namespace tact

@@ -1,0 +1,36 @@
+// How many rays a picture may have, where the processor draws: as many as fit a frame by the clock.
+//
+// The governor's level is a share of the pixels, and knows neither their number nor the machine. Here frames with rays
+// are compared with frames without: what is dearer than believed is believed at once, what is cheaper slowly.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tact {
+
+class RayPace {
+public:
+    static constexpr double kFrame_s = 0.05;  // of all that is drawn
+    static constexpr std::uint32_t kFewest = 6000;
+
+    [[nodiscard]] std::uint32_t rays_most() const noexcept {
+        const double left_s = std::max(kFrame_s - without_s_, 0.2 * kFrame_s);
+        return std::max(kFewest, static_cast<std::uint32_t>(std::min(left_s / ray_s_, 1e8)));
+    }
+    // Of a frame that is over: without waiting for the display.
+    void took(std::uint32_t rays, double work_s) noexcept {
+        if (!(work_s > 0.0 && work_s < 10.0)) return;
+        if (rays < kFewest / 2) {
+            without_s_ += 0.1 * (work_s - without_s_);
+            return;
+        }
+        const double each = std::clamp((work_s - without_s_) / rays, 1e-9, 1e-4);
+        ray_s_ = std::max(each > 4.0 * ray_s_ ? 4.0 * ray_s_ : each, ray_s_ + 0.1 * (each - ray_s_));
+    }
+
+private:
+    double ray_s_ = 1e-6, without_s_ = 0.005;
+};
+
+}  // namespace tact

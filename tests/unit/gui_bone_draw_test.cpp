@@ -1,0 +1,255 @@
+// Bone in the pixels: where its surface is, what drilling changes, structures, and how a moving view becomes sharp.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/x_server.hpp"
+#include "gui/app/window.hpp"
+#include "gui/render/bone_view.hpp"
+#include "gui/render/camera.hpp"
+#include "gui/render/elements.hpp"
+#include "gui/render/target.hpp"
+#include "ipc/base/units.hpp"
+#include "tests/support/bone_block.hpp"
+
+// Graphics drivers and X libraries keep memory to the end on purpose.
+extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+
+namespace tact {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 160;
+constexpr std::uint32_t kEdge = 48, kAllRays = 1U << 30U;
+constexpr double kBallRadius = 15.0;  // voxels, about the middle
+
+Vec3 middle() { return Vec3::Constant(0.5 * kEdge - 0.5); }
+
+class BoneDraw : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (launch::find_in_path("Xvfb").empty()) return;
+        char name[] = "/tmp/tact-bone-draw-XXXXXX";
+        folder_ = mkdtemp(name);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
+        for (const auto& [key, value] : server_->environment())
+            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
+        window_ = std::make_unique<Window>(kWidth, kHeight, true);
+        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
+    }
+    static void TearDownTestSuite() {
+        target_.reset();
+        window_.reset();
+        server_.reset();
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+    void SetUp() override {
+        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        target_->bind();
+        const auto ball = [](const Vec3& p) {
+            return std::clamp(kBallRadius + 0.5 - (p - middle()).norm(), 0.0, 1.0);
+        };
+        block_.emplace(kEdge, 3e-4, ball, 1);
+        drilled_ = block_->density;
+        now_.bricks = block_->bricks;
+        now_.density = drilled_;
+        content_ = std::make_unique<SceneContent>();
+        content_->centre_model_m = block_->bricks.to_model(middle());
+        BoneVolumeView baked = now_;
+        baked.density = block_->density;
+        content_->bone.reset(new SceneBoneContent{empty_scene(), baked, {}, {}});
+        camera_.frame(static_cast<float>(20.0 * 3e-4 / kAngstromM));
+    }
+    void TearDown() override { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}); }
+
+    static SceneFile empty_scene() {
+        SceneMeta meta{};
+        meta.kind = SceneKind::drilling;
+        meta.world_per_model = 1.0;
+        SceneWriter out;
+        write_meta(out, meta, "made by a test\n");
+        const std::filesystem::path path = std::filesystem::path(folder_) / "empty.tact";
+        out.write(path);
+        return SceneFile::open(path);
+    }
+    [[nodiscard]] BoneFrame frame(std::uint32_t rays) const {
+        Haze none;
+        none.end_a = 1e12F;
+        return {camera_.view(),
+                camera_.projection(static_cast<float>(kWidth) / kHeight),
+                none,
+                0,
+                0,
+                kWidth,
+                kHeight,
+                rays};
+    }
+    void draw(BoneView& view, std::uint32_t rays = kAllRays) const {
+        glViewport(0, 0, kWidth, kHeight);
+        glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        view.draw(frame(rays));
+    }
+    // Along the view, ångström; below zero: nothing is there.
+    [[nodiscard]] double depth_a(int x, int y) const {
+        float seen = 1.0F;
+        glReadPixels(x, y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &seen);
+        if (seen >= 1.0F) return -1.0;
+        const Eigen::Matrix4f p = camera_.projection(static_cast<float>(kWidth) / kHeight);
+        return static_cast<double>(p(2, 3)) /
+               (2.0 * static_cast<double>(seen) - 1.0 + static_cast<double>(p(2, 2)));
+    }
+    static Rgb8 pixel(int x, int y) {
+        Rgb8 c{};
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+        glReadPixels(x, y, 1, 1, GL_RGB, GL_UNSIGNED_BYTE, c.data());
+        return c;
+    }
+    static std::size_t covered(const Image& image) {
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+            n += (image.rgb[i] | image.rgb[i + 1] | image.rgb[i + 2]) != 0 ? 1U : 0U;
+        return n;
+    }
+
+    static std::string folder_;
+    static std::unique_ptr<launch::XServer> server_;
+    static std::unique_ptr<Window> window_;
+    static std::unique_ptr<OffscreenTarget> target_;
+    std::optional<BoneBlock> block_;
+    std::vector<std::uint8_t> drilled_;
+    BoneVolumeView now_;
+    std::unique_ptr<SceneContent> content_;
+    Camera camera_;
+};
+std::string BoneDraw::folder_;
+std::unique_ptr<launch::XServer> BoneDraw::server_;
+std::unique_ptr<Window> BoneDraw::window_;
+std::unique_ptr<OffscreenTarget> BoneDraw::target_;
+
+TEST_F(BoneDraw, ABallOfBoneIsWhereItsSurfaceIsInEveryPixel) {
+    BoneView view(*content_, now_);
+    draw(view);
+    EXPECT_TRUE(view.sharp());
+    const Eigen::Matrix4d p = camera_.projection(static_cast<float>(kWidth) / kHeight).cast<double>();
+    const double voxel_a = 3e-4 / kAngstromM;
+    int hits = 0, wrong = 0;
+    for (int y = 0; y < kHeight; y += 3)
+        for (int x = 0; x < kWidth; x += 3) {
+            const Eigen::Vector3d ray((2.0 * (x + 0.5) / kWidth - 1.0) / p(0, 0),
+                                      (2.0 * (y + 0.5) / kHeight - 1.0) / p(1, 1), -1.0);
+            const Eigen::Vector3d c(0.0, 0.0, -static_cast<double>(camera_.distance_a()));
+            const double nearest = (c - ray * (c.dot(ray) / ray.squaredNorm())).norm() / voxel_a;
+            const double z = depth_a(x, y);
+            if ((z > 0.0) != (nearest < kBallRadius)) wrong += std::fabs(nearest - kBallRadius) > 0.6 ? 1 : 0;
+            if (z <= 0.0) continue;
+            ++hits;
+            // The surface of a ball whose rim is one voxel wide lies where a third of it is reached.
+            if (nearest < 0.9 * kBallRadius) {
+                EXPECT_NEAR((ray * z - c).norm() / voxel_a, kBallRadius + 0.2, 0.25) << x << ", " << y;
+            }
+        }
+    EXPECT_GT(hits, 500);
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(BoneDraw, DrillingChangesThePictureWhereItIsAndNoMoreRaysAreSent) {
+    BoneView view(*content_, now_);
+    draw(view);
+    const double before = depth_a(kWidth / 2, kHeight / 2);
+    const std::uint32_t whole = view.rays();
+    draw(view);
+    EXPECT_EQ(view.rays(), 0U) << "nothing moved";
+    EXPECT_NEAR(depth_a(kWidth / 2, kHeight / 2), before, 1.0);
+    // A shaft from the eye to the middle of the ball.
+    const Vec3 towards = camera_.orientation().conjugate().cast<double>() * Vec3::UnitZ();
+    std::set<std::uint32_t> bricks;
+    for (std::uint32_t z = 0; z < kEdge; ++z)
+        for (std::uint32_t y = 0; y < kEdge; ++y)
+            for (std::uint32_t x = 0; x < kEdge; ++x) {
+                const Vec3 d = Vec3(x, y, z) - middle();
+                if (d.dot(towards) < 0.0 || (d - towards * d.dot(towards)).norm() > 3.0) continue;
+                drilled_[block_->bricks.voxel(x, y, z)] = 0;
+                bricks.insert(static_cast<std::uint32_t>(block_->bricks.brick(x, y, z)));
+            }
+    for (const std::uint32_t b : bricks) view.changed(b);
+    draw(view);
+    EXPECT_GT(view.rays(), 0U);
+    EXPECT_LE(view.rays(), whole);
+    EXPECT_NEAR((depth_a(kWidth / 2, kHeight / 2) - before) / (3e-4 / kAngstromM), kBallRadius, 1.5);
+    draw(view);
+    EXPECT_EQ(view.rays(), 0U);
+}
+
+TEST_F(BoneDraw, AMovingViewIsCoarseAndBecomesTheSameAsOneThatNeverMoved) {
+    BoneView still(*content_, now_), moving(*content_, now_);
+    draw(still);
+    const Image sharp = read_pixels(kWidth, kHeight);
+    constexpr std::uint32_t kRays = 3000;
+    camera_.rotate(7.0F, 3.0F, kHeight);
+    draw(moving, kRays);
+    camera_.frame(static_cast<float>(20.0 * 3e-4 / kAngstromM));
+    draw(moving, kRays);
+    EXPECT_LE(moving.rays(), kRays);
+    EXPECT_FALSE(moving.sharp());
+    const Image coarse = read_pixels(kWidth, kHeight);
+    EXPECT_NEAR(static_cast<double>(covered(coarse)), static_cast<double>(covered(sharp)),
+                0.1 * static_cast<double>(covered(sharp)));
+    EXPECT_NE(coarse.rgb, sharp.rgb);
+    int frames = 0;
+    for (; frames < 40 && !moving.sharp(); ++frames) {
+        draw(moving, kRays);
+        EXPECT_LE(moving.rays(), 64U * 64U);
+    }
+    EXPECT_TRUE(moving.sharp());
+    EXPECT_GT(frames, 2);
+    draw(moving, kRays);
+    EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, sharp.rgb);
+}
+
+TEST_F(BoneDraw, ASoftStructureIsSeenInItsColourOnceTheBoneOverItIsGone) {
+    // The inner half of the ball is a nerve, of a density that bone has where it is all but nothing.
+    std::vector<std::uint8_t> labels(block_->density.size());
+    for (std::uint32_t z = 0; z < kEdge; ++z)
+        for (std::uint32_t y = 0; y < kEdge; ++y)
+            for (std::uint32_t x = 0; x < kEdge; ++x) {
+                const std::size_t v = block_->bricks.voxel(x, y, z);
+                if ((Vec3(x, y, z) - middle()).norm() > 0.5 * kBallRadius) continue;
+                labels[v] = 1;
+                block_->density[v] = drilled_[v] = 40;
+            }
+    content_->bone->labels.structure.push_back({"facial nerve", {255, 221, 64, 255}, true});
+    content_->bone->labels.label = labels;
+    BoneView view(*content_, now_);
+    draw(view);
+    const Rgb8 bone = pixel(kWidth / 2, kHeight / 2);
+    EXPECT_GT(bone[2], 0.6 * bone[0]) << "ivory";
+    for (std::size_t v = 0; v < drilled_.size(); ++v)
+        if (labels[v] == 0) drilled_[v] = 0;
+    for (std::uint32_t b = 0; b < block_->bricks.brick_count(); ++b) view.changed(b);
+    draw(view);
+    const Rgb8 nerve = pixel(kWidth / 2, kHeight / 2);
+    EXPECT_GT(nerve[0], 100);
+    EXPECT_LT(nerve[2], 0.5 * nerve[0]) << "yellow";
+    std::fill(drilled_.begin(), drilled_.end(), std::uint8_t{0});
+    for (std::uint32_t b = 0; b < block_->bricks.brick_count(); ++b) view.changed(b);
+    draw(view);
+    EXPECT_EQ(pixel(kWidth / 2, kHeight / 2), (Rgb8{0, 0, 0}));
+    EXPECT_LT(depth_a(kWidth / 2, kHeight / 2), 0.0);
+}
+
+TEST_F(BoneDraw, TheFrameBufferThatWasBoundIsBoundAgain) {
+    BoneView view(*content_, now_);
+    GLint before = 0, after = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
+    draw(view);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &after);
+    EXPECT_EQ(before, after);
+    EXPECT_GT(covered(read_pixels(kWidth, kHeight)), 1000U);
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,278 @@
+// What of a bone is seen, which parts of its picture are drawn when, and the instruments: all without a display.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "gui/app/drill_hands.hpp"
+#include "gui/render/bone_field.hpp"
+#include "gui/render/bone_tiles.hpp"
+#include "gui/render/ray_pace.hpp"
+#include "tests/support/bone_block.hpp"
+
+namespace tact {
+namespace {
+
+TEST(BoneField, WhatIsSoftButLabelledIsAsSolidAsTheShareOfItThatIsLeft) {
+    EXPECT_EQ(solid_of(90, 200, 0), 90) << "bone without a label: its density";
+    EXPECT_EQ(solid_of(90, 200, 3), 90) << "a bony structure too";
+    EXPECT_EQ(solid_of(40, 40, 3), 255);
+    EXPECT_EQ(solid_of(20, 40, 3), 127);
+    EXPECT_EQ(solid_of(0, 40, 3), 0);
+    EXPECT_EQ(solid_of(0, 0, 3), 255) << "what a scan shows nothing of stays as labelled";
+    EXPECT_EQ(solid_of(0, 0, 0), 0);
+}
+
+// Two balls of bone in an odd-sized box.
+struct TwoBalls {
+    BoneBlock block{45, 3e-4,
+                    [](const Vec3& p) {
+                        const double a = 6.0 - (p - Vec3(12.0, 30.0, 9.0)).norm();
+                        const double b = 9.0 - (p - Vec3(33.0, 33.0, 33.0)).norm();
+                        return std::clamp(std::max(a, b) + 0.5, 0.0, 1.0);
+                    },
+                    1};
+    BoneVolumeView baked, now;
+    std::vector<std::uint8_t> drilled = block.density;
+    BoneLabelsView labels;
+    TwoBalls() {
+        baked.bricks = now.bricks = block.bricks;
+        baked.density = block.density;
+        now.density = drilled;
+    }
+    void drill(std::uint32_t brick) {
+        std::fill_n(drilled.begin() + brick * BoneBricks::kVoxels, BoneBricks::kVoxels, std::uint8_t{0});
+    }
+};
+
+// Whether a surface may be met inside of a cell: of points all over it, interpolated as the graphics card does.
+bool clear_of_surface(const BoneVolumeView& v, std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) {
+    const auto at = [&](int x, int y, int z) {
+        const auto inside = [&](int i, std::size_t axis) {
+            return i >= 0 && i < static_cast<int>(v.bricks.size[axis]);
+        };
+        if (!inside(x, 0) || !inside(y, 1) || !inside(z, 2)) return 0.0;
+        return static_cast<double>(v.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                        static_cast<std::uint32_t>(z)));
+    };
+    for (int k = 0; k < 9 * 9 * 9; ++k) {
+        const Vec3 p(4.0 * cx - 0.5 + 0.5 * (k % 9), 4.0 * cy - 0.5 + 0.5 * (k / 9 % 9),
+                     4.0 * cz - 0.5 + 0.5 * (k / 81));
+        const Vec3 f = p.array().floor();
+        double sum = 0.0;
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 corner = f + Vec3(c & 1, c >> 1 & 1, c >> 2);
+            double w = 1.0;
+            for (int axis = 0; axis < 3; ++axis) w *= 1.0 - std::fabs(p[axis] - corner[axis]);
+            sum += w * at(static_cast<int>(corner.x()), static_cast<int>(corner.y()),
+                          static_cast<int>(corner.z()));
+        }
+        if (sum >= BoneField::kSurface) return false;
+    }
+    return true;
+}
+
+void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
+    const auto [nx, ny, nz] = field.cells();
+    std::vector<std::uint8_t> clear;
+    for (std::uint32_t z = 0; z < nz; ++z)
+        for (std::uint32_t y = 0; y < ny; ++y)
+            for (std::uint32_t x = 0; x < nx; ++x) clear.push_back(clear_of_surface(now, x, y, z) ? 1 : 0);
+    std::size_t far = 0;
+    for (std::uint32_t z = 0; z < nz; ++z)
+        for (std::uint32_t y = 0; y < ny; ++y)
+            for (std::uint32_t x = 0; x < nx; ++x) {
+                const int k = field.free_cells()[(std::size_t{z} * ny + y) * nx + x];
+                far += k > 2 ? 1 : 0;
+                // All cells nearer than k are clear of surfaces.
+                for (int dz = 1 - k; dz < k; ++dz)
+                    for (int dy = 1 - k; dy < k; ++dy)
+                        for (int dx = 1 - k; dx < k; ++dx) {
+                            const int ax = static_cast<int>(x) + dx, ay = static_cast<int>(y) + dy,
+                                      az = static_cast<int>(z) + dz;
+                            if (ax < 0 || ay < 0 || az < 0 || ax >= static_cast<int>(nx) ||
+                                ay >= static_cast<int>(ny) || az >= static_cast<int>(nz))
+                                continue;
+                            const auto at = static_cast<std::uint32_t>(
+                                (az * static_cast<int>(ny) + ay) * static_cast<int>(nx) + ax);
+                            ASSERT_NE(clear[at], 0) << x << "," << y << "," << z << " says " << k;
+                        }
+            }
+    EXPECT_GT(far, 50U) << "large steps are possible";
+}
+
+TEST(BoneField, NoSurfaceLiesWhereARayLeaps) {
+    const TwoBalls two;
+    const BoneField field(two.baked, two.labels, two.now);
+    expect_true_distances(field, two.now);
+}
+
+TEST(BoneField, DrilledPlacesOpenAndBoneThatComesBackIsSeenAgain) {
+    TwoBalls two;
+    BoneField field(two.baked, two.labels, two.now);
+    const auto brick = static_cast<std::uint32_t>(two.block.bricks.brick(33, 33, 33));
+    const std::size_t middle = (std::size_t{8} * field.cells()[1] + 8) * field.cells()[0] + 8;
+    EXPECT_EQ(field.free_cells()[middle], 0);
+    const std::vector<std::uint8_t> whole = two.drilled;
+    for (std::uint32_t b = 0; b < two.block.bricks.brick_count(); ++b) {
+        two.drill(b);
+        EXPECT_TRUE(field.changed(b));
+    }
+    // In turn, bricks saw neighbours that were not drilled yet; at the next look all is open.
+    for (std::uint32_t b = 0; b < two.block.bricks.brick_count(); ++b) EXPECT_TRUE(field.changed(b));
+    EXPECT_GE(field.free_cells()[middle], 1);
+    std::copy(whole.begin(), whole.end(), two.drilled.begin());
+    EXPECT_FALSE(field.changed(brick)) << "bone has come back: all is measured anew";
+    expect_true_distances(field, two.now);
+}
+
+TEST(BoneTiles, AllOfTheViewIsDrawnOnceFromTheMiddleOutwards) {
+    BoneTiles tiles;
+    tiles.resize(300, 200);
+    tiles.all_wrong({0, 0, 300, 200});
+    EXPECT_EQ(tiles.rays_wrong(), 300U * 200U);
+    std::set<std::uint32_t> seen;
+    std::uint32_t rays = 0;
+    bool first = true;
+    for (int i = 0; i < 100 && !tiles.all_good(); ++i) {
+        const auto now = tiles.take(5000);
+        std::uint32_t here = 0;
+        for (const std::uint32_t t : now) {
+            EXPECT_TRUE(seen.insert(t).second);
+            here += tiles.rays(t);
+        }
+        if (first) {
+            ASSERT_EQ(now.size(), 1U);
+            const PixelBox b = tiles.box(now[0]);
+            EXPECT_TRUE(b.x0 <= 150 && 150 <= b.x1 && b.y0 <= 100 && 100 <= b.y1);
+        }
+        first = false;
+        EXPECT_LE(here, 5000U);
+        rays += here;
+    }
+    EXPECT_TRUE(tiles.all_good());
+    EXPECT_EQ(rays, 300U * 200U);
+    EXPECT_TRUE(tiles.take(5000).empty());
+}
+
+TEST(BoneTiles, ATileLargerThanTheRaysIsDrawnAllTheSame) {
+    BoneTiles tiles;
+    tiles.resize(256, 64);
+    tiles.all_wrong({0, 0, 256, 64});
+    EXPECT_EQ(tiles.take(1).size(), 1U);
+}
+
+TEST(BoneTiles, WhereBoneChangedIsDrawnFirstAndOnlyThere) {
+    BoneTiles tiles;
+    tiles.resize(640, 640);
+    tiles.all_wrong({0, 0, 640, 640});
+    tiles.take(640 * 640);
+    ASSERT_TRUE(tiles.all_good());
+    tiles.stale({0, 0, 70, 10});
+    EXPECT_FALSE(tiles.all_good());
+    EXPECT_EQ(tiles.rays_wrong(), 0U) << "shown until it is drawn again";
+    const auto now = tiles.take(640 * 640);
+    EXPECT_EQ(std::set<std::uint32_t>(now.begin(), now.end()), (std::set<std::uint32_t>{0, 1}));
+}
+
+TEST(BoneTiles, BeyondTheBoneNothingIsDrawn) {
+    BoneTiles tiles;
+    tiles.resize(640, 640);
+    tiles.all_wrong({64, 64, 128, 96});
+    EXPECT_EQ(tiles.rays_wrong(), 64U * 32U);
+    EXPECT_EQ(tiles.take(640 * 640).size(), 1U);
+    EXPECT_TRUE(tiles.all_good());
+}
+
+TEST(RayPace, RaysFitTheTimeOfAFrameAndComeBackSlowly) {
+    RayPace pace;
+    for (int i = 0; i < 60; ++i) pace.took(0, 0.010);
+    for (int i = 0; i < 60; ++i) pace.took(pace.rays_most(), 0.010 + 2e-6 * pace.rays_most());
+    EXPECT_NEAR(pace.rays_most(), 0.040 / 2e-6, 500.0);
+    pace.took(pace.rays_most(), 0.010 + 8e-6 * pace.rays_most());
+    const std::uint32_t dear = pace.rays_most();
+    EXPECT_NEAR(dear, std::max(0.040 / 8e-6, 1.0 * RayPace::kFewest), 500.0) << "believed at once";
+    pace.took(dear, 0.010 + 1e-6 * dear);
+    EXPECT_LT(pace.rays_most(), 1.3 * dear) << "believed slowly";
+    for (const double odd : {0.0, -1.0, 100.0, std::nan("")}) {
+        const std::uint32_t before = pace.rays_most();
+        pace.took(20000, odd);
+        EXPECT_EQ(pace.rays_most(), before);
+    }
+}
+
+double farthest(const TubeMesh& mesh, double z_most) {
+    double most = 0.0;
+    for (const TubeVertex& v : mesh.vertex)
+        if (static_cast<double>(v.position_a[2]) <= z_most)
+            most = std::max(most, std::sqrt(static_cast<double>(v.position_a[0] * v.position_a[0] +
+                                                                v.position_a[1] * v.position_a[1] +
+                                                                v.position_a[2] * v.position_a[2])));
+    return most;
+}
+
+TEST(DrillTools, AHeadReachesAsFarAsItCutsAndNormalsPointOutwards) {
+    DrawnDrillTool tool;
+    tool.radius_m = 3e-9;  // 30 angstroms
+    tool.length_m = 6e-9;
+    tool.tip_radius_m = 3e-9;
+    const TubeMesh ball = build_drill_tool(tool);
+    ASSERT_FALSE(ball.vertex.empty());
+    EXPECT_NEAR(farthest(ball, 1e9), 30.0, 0.05);
+    for (const TubeVertex& v : ball.vertex) {
+        const Eigen::Vector3f p(v.position_a[0], v.position_a[1], v.position_a[2]);
+        const Eigen::Vector3f n(v.normal[0], v.normal[1], v.normal[2]);
+        if (p.head<2>().norm() > 3.0F) {
+            EXPECT_GT(n.dot(p.normalized()), 0.3F);
+        }
+        EXPECT_GT(p.norm(), 30.0F * 0.88F);
+    }
+    for (const std::uint32_t i : ball.index) ASSERT_LT(i, ball.vertex.size());
+    tool.shaft_radius_m = 1e-9;
+    tool.shaft_length_m = 25e-9;
+    const TubeMesh with_shaft = build_drill_tool(tool);
+    EXPECT_NEAR(farthest(with_shaft, 0.0), 30.0, 0.05);
+    EXPECT_GT(farthest(with_shaft, 1e9), 250.0);
+    tool.head = DrillHead::cylinder;
+    tool.length_m = 12e-9;
+    const TubeMesh rod = build_drill_tool(tool);
+    EXPECT_NEAR(farthest(rod, 0.0), 60.0, 0.5) << "half of its length beyond the middle";
+    tool.head = DrillHead::tube;
+    EXPECT_FALSE(build_drill_tool(tool).index.empty());
+    tool.radius_m = 0.0;
+    EXPECT_TRUE(build_drill_tool(tool).index.empty());
+}
+
+TEST(DrillHands, ToolsAreDrawnInModelLengthsAndTurnOnlyWhileTheyTurn) {
+    DrillTopic topic{};
+    SceneMeta meta{};
+    meta.world_per_model = 2.0;
+    DrillHands hands;
+    EXPECT_TRUE(hands.follow(topic, meta).empty());
+    topic.hand[1].kind = DrillKind::sucker;
+    topic.hand[1].radius_m = 1e-3F;
+    topic.hand[1].quat_model_tool_xyzw[3] = 1.0;
+    topic.hand[1].pos_model_m[2] = 0.5;
+    auto drawn = hands.follow(topic, meta);
+    ASSERT_EQ(drawn.size(), 1U);
+    EXPECT_EQ(drawn[0].head, DrillHead::tube);
+    EXPECT_NEAR(drawn[0].radius_m, 5e-4, 1e-9);
+    EXPECT_EQ(drawn[0].T_model_tool.p_m.z(), 0.5);
+    topic.hand[0] = topic.hand[1];
+    topic.hand[0].kind = DrillKind::burr;
+    topic.hand[0].shape = DrillShape::cone;
+    drawn = hands.follow(topic, meta);
+    ASSERT_EQ(drawn.size(), 2U);
+    EXPECT_EQ(drawn[0].head, DrillHead::cone);
+    EXPECT_EQ(drawn[0].turned_rad, 0.0);
+    topic.hand[0].burr_rad_s = 6000.0F;
+    const double once = hands.follow(topic, meta)[0].turned_rad;
+    const double twice = hands.follow(topic, meta)[0].turned_rad;
+    EXPECT_GT(once, 0.0);
+    EXPECT_GT(twice, once);
+    EXPECT_EQ(hands.follow(topic, meta)[1].turned_rad, 0.0);
+}
+
+}  // namespace
+}  // namespace tact
