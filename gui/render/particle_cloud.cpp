@@ -1,6 +1,6 @@
 // Fluid as of screen space (van der Laan, Green, Sainz, "Screen space fluid rendering with curvature flow", I3D 2009),
-// in one pass over the particles instead of three: each adds a soft disc larger than its cell to sums of thickness of
-// water and of blood, and of its distance in proportion. Where the sums reach a threshold there is fluid: discs that
+// in one pass over the particles instead of three: each adds a soft disc larger than its cell to sums of thickness, of
+// it of water and of blood, and of its distance in proportion; what is neither water nor blood is paste. Where the sums reach a threshold there is fluid: discs that
 // overlap merge into one body, and single ones are drops. Its mean distance and its thickness give the normal, Beer's
 // law gives how much it hides. What lies behind the scene adds nothing, so no depth has to be kept.
 #include "gui/render/particle_cloud.hpp"
@@ -13,59 +13,51 @@ namespace {
 
 // In cells. Grains of neighbouring cells overlap, or bone would shine through their piles; discs of fluid reach over
 // the cells about theirs.
-constexpr float kGrainRadius = 0.62F, kPasteRadius = 0.95F, kDiscRadius = 1.7F;
+constexpr float kGrainRadius = 0.58F, kDiscRadius = 1.7F;
 // A disc of fluid is gathered with some three pixels of radius: more cost time and show no more.
 constexpr float kDiscPx = 3.0F;
 constexpr int kFinest = 2, kCoarsest = 8;
 
-constexpr char kSolidVertex[] = R"(
+constexpr char kGrainVertex[] = R"(
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec4 look;  // matter, shade, 0, 0
-uniform vec3 u_size;  // radius of a grain, of paste; pixels of a length at distance 1
-out vec3 v_colour;
-flat out float v_wet;
+uniform vec2 u_size;  // radius; pixels of a length at distance 1
+flat out vec3 v_colour;
 flat out vec4 v_ground;  // and how much of it
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
-    bool paste = look.x > 2.5;
-    float r = paste ? u_size.y : u_size.x;
-    float shade = look.y / 255.0;
-    v_colour = paste ? mix(vec3(0.80, 0.62, 0.54), vec3(0.88, 0.71, 0.62), shade)
-                     : mix(vec3(0.84, 0.79, 0.68), vec3(1.0, 0.97, 0.90), shade);
-    v_wet = paste ? 1.0 : 0.0;
+    v_colour = mix(vec3(0.84, 0.79, 0.68), vec3(1.0, 0.97, 0.90), look.y / 255.0);
     // Its face, and not its middle, is what bone may hide.
-    gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * r, 1.0);
-    gl_PointSize = clamp(2.0 * r * u_size.z / max(-p.z, 1e-3), 1.5, 64.0);
+    gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * u_size.x, 1.0);
+    gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 1.5, 64.0);
     v_ground = vec4(mix(u_ground_bottom, u_ground_top, 0.5 + 0.5 * gl_Position.y / gl_Position.w),
                     haze_at(-p.z));
 }
 )";
-constexpr char kSolidFragment[] = R"(
-in vec3 v_colour;
-flat in float v_wet;
+constexpr char kGrainFragment[] = R"(
+flat in vec3 v_colour;
 flat in vec4 v_ground;
 out vec4 colour;
 void main() {
     vec2 d = 2.0 * gl_PointCoord - 1.0;
     float r2 = dot(d, d);
     if (r2 > 1.0) discard;
-    // Flatter than a ball: many together are powder or mud, not pearls.
+    // Flatter than a ball: many together are powder, not pearls.
     vec4 c = lit(v_colour, normalize(vec3(0.6 * d.x, -0.6 * d.y, 0.45 + sqrt(1.0 - r2))), vec3(0.0, 0.0, 1.0));
-    colour = vec4(mix(c.rgb + vec3((0.35 * v_wet - 0.2) * c.a), v_ground.rgb, v_ground.a), 1.0);
+    colour = vec4(mix(c.rgb - vec3(0.2 * c.a), v_ground.rgb, v_ground.a), 1.0);
 }
 )";
 
 constexpr char kSumVertex[] = R"(
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec4 look;
-uniform vec3 u_size;  // radius of a disc, 0, pixels of a length at distance 1
+uniform vec2 u_size;  // radius of a disc; pixels of a length at distance 1
 out vec3 v_adds;
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
     gl_Position = u_projection * vec4(p.xy, p.z + 0.5 * u_size.x, 1.0);
-    gl_PointSize = clamp(2.0 * u_size.x * u_size.z / max(-p.z, 1e-3), 2.0, 64.0);
-    float blood = look.x > 1.5 ? 1.0 : 0.0;
-    v_adds = vec3(1.0 - blood, blood, -p.z);
+    gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 2.0, 64.0);
+    v_adds = vec3(look.x == 1.0 ? 1.0 : 0.0, look.x == 2.0 ? 1.0 : 0.0, -p.z);
 }
 )";
 constexpr char kSumFragment[] = R"(#version 330 core
@@ -125,17 +117,18 @@ void main() {
                       clamp(height(sy1) - h, -most, most) * step_of(sy1) -
                           clamp(height(sy0) - h, -most, most) * step_of(sy0));
     vec3 n = normalize(vec3(-0.3 * slope / across, 1.0));
-    float water = s.x, blood = s.y;
-    float share = blood / max(0.30 * water + blood, 1e-4);
+    float water = s.x, blood = s.y, paste = max(s.w - s.x - s.y, 0.0);
     vec3 red = mix(vec3(0.62, 0.040, 0.030), vec3(0.30, 0.008, 0.012), 1.0 - exp(-0.30 * blood));
-    vec3 base = mix(vec3(0.74, 0.86, 0.93), red, share);
-    float hides = 1.0 - exp(-1.3 * blood) + 0.45 * (1.0 - exp(-0.06 * water)) * exp(-1.3 * blood);
+    vec3 mud = mix(vec3(0.90, 0.80, 0.70), vec3(0.82, 0.66, 0.57), 1.0 - exp(-0.5 * paste));
+    vec3 base = (0.3 * water * vec3(0.74, 0.86, 0.93) + blood * red + paste * mud) /
+                max(0.3 * water + blood + paste, 1e-4);
+    float clear = exp(-1.3 * blood - 1.7 * paste);
+    float hides = 1.0 - clear + 0.45 * (1.0 - exp(-0.06 * water)) * clear;
     // At its rim a drop bends what lies behind it away.
-    float rim = 1.0 - n.z;
-    hides = max(hides, mix(0.08, 0.45, rim) * (1.0 - share));
+    hides = max(hides, mix(0.08, 0.45, 1.0 - n.z) * water / s.w);
     vec4 c = lit(base, n, vec3(0.0, 0.0, 1.0));
-    float shine = c.a * c.a;
-    vec3 seen = c.rgb + vec3(0.6 * shine);
+    float shine = c.a * c.a * (1.0 - 0.75 * paste / s.w);
+    vec3 seen = c.rgb + vec3(0.6 * shine - 0.15 * c.a * paste / s.w);
     // Wet: what shines is not let through.
     colour = hazed(vec4(seen, there * min(hides + 0.8 * shine, 1.0)), mean, 2.0 * at.y * u_view.w - 1.0);
 }
@@ -163,7 +156,7 @@ ParticleCloud::Program::Program(const char* what, const char* vertex, const char
     : program(what, shader(vertex).c_str(), fragment), view(program), size(program.uniform("u_size")) {}
 
 ParticleCloud::ParticleCloud()
-    : solids_("grain", kSolidVertex, shader(kSolidFragment).c_str()),
+    : grains_("grain", kGrainVertex, shader(kGrainFragment).c_str()),
       sums_("fluid", kSumVertex, kSumFragment),
       surface_("fluid surface", shader(kSurfaceVertex).c_str(), shader(kSurfaceFragment).c_str()),
       surface_view_(surface_) {
@@ -188,21 +181,21 @@ void ParticleCloud::fill(std::span<const Particle> particles) {
 
 void ParticleCloud::draw(const View& view) {
     glEnable(GL_PROGRAM_POINT_SIZE);
-    if (sent_.solids > 0) draw_solids(view);
+    if (sent_.grains > 0) draw_grains(view);
     if (sent_.fluids > 0) draw_fluids(view);
     glDisable(GL_PROGRAM_POINT_SIZE);
     glBindVertexArray(0);
     glUseProgram(0);
 }
 
-void ParticleCloud::draw_solids(const View& view) {
+void ParticleCloud::draw_grains(const View& view) {
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
-    solids_.program.use();
-    solids_.view.set(view.eye_from_cells, view.projection, view.haze);
-    glUniform3f(solids_.size, kGrainRadius * view.cell_a, kPasteRadius * view.cell_a, px_at_1(view));
+    grains_.program.use();
+    grains_.view.set(view.eye_from_cells, view.projection, view.haze);
+    glUniform2f(grains_.size, kGrainRadius * view.cell_a, px_at_1(view));
     glBindVertexArray(dots_array_.get());
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(sent_.solids));
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(sent_.grains));
 }
 
 std::optional<ParticleCloud::Box> ParticleCloud::fluid_box(const View& view) const {
@@ -257,9 +250,9 @@ void ParticleCloud::draw_fluids(const View& view) {
     sums_.program.use();
     glUniform1i(sums_.program.uniform("u_coarser"), coarser);
     sums_.view.set(view.eye_from_cells, view.projection, view.haze);
-    glUniform3f(sums_.size, kDiscRadius * view.cell_a, 0.0F, px_at_1(view) / static_cast<float>(coarser));
+    glUniform2f(sums_.size, kDiscRadius * view.cell_a, px_at_1(view) / static_cast<float>(coarser));
     glBindVertexArray(dots_array_.get());
-    glDrawArrays(GL_POINTS, static_cast<GLint>(sent_.solids), static_cast<GLsizei>(sent_.fluids));
+    glDrawArrays(GL_POINTS, static_cast<GLint>(sent_.grains), static_cast<GLsizei>(sent_.fluids));
 
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(frame));
     glViewport(view.x_px, view.y_px, view.width_px, view.height_px);

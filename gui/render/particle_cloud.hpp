@@ -1,6 +1,6 @@
-// Dust and paste as small lit balls, water and blood as bodies of fluid, laid over what is drawn already.
+// Dust as small lit balls; water, blood and paste as wet bodies, laid over what is drawn already.
 //
-// Hides    by the depth of what is drawn before: bone and instruments. Fluids leave no depth behind, solids do.
+// Hides    by the depth of what is drawn before: bone and instruments. Fluids leave no depth behind, grains do.
 // Fluid    particle_cloud.cpp
 // Cost     one point a particle, and the pixels of the box about the fluids
 // Thread   frame thread, context current; draws into the bound frame buffer.
@@ -38,7 +38,7 @@ private:
         ViewUniforms view;
         GLint size;  // radius of a cell, pixels of a length at distance 1
     };
-    void draw_solids(const View& view);
+    void draw_grains(const View& view);
     void draw_fluids(const View& view);
     // Pixels of the viewport that the fluids may reach; empty: none.
     struct Box {
@@ -46,7 +46,7 @@ private:
     };
     [[nodiscard]] std::optional<Box> fluid_box(const View& view) const;
 
-    Program solids_, sums_;
+    Program grains_, sums_;
     GlProgram surface_;
     ViewUniforms surface_view_;
     std::unique_ptr<FluidTarget> target_;

@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-bool flows(const Particle& p) { return p.matter == Matter::water || p.matter == Matter::blood; }
+bool wet(const Particle& p) { return p.matter != Matter::dust; }
 
 // A number of the cell that it lies in: what rests does not flicker when others are removed before it.
 std::uint8_t shade_of(const std::array<float, 3>& at) {
@@ -24,11 +24,11 @@ DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDo
     DotRanges ranges;
     ranges.fluids_low.fill(std::numeric_limits<float>::max());
     ranges.fluids_high.fill(std::numeric_limits<float>::lowest());
-    // Solids from the front, fluids from the back: one pass, no second list.
+    // Grains from the front, what is wet from the back: one pass, no second list.
     std::size_t back = dots.size();
     for (const Particle& p : particles) {
-        const bool fluid = flows(p);
-        ParticleDot& dot = dots[fluid ? --back : ranges.solids++];
+        const bool fluid = wet(p);
+        ParticleDot& dot = dots[fluid ? --back : ranges.grains++];
         dot = {p.at, p.matter, shade_of(p.at), {}};
         if (!fluid) continue;
         for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Particles as they are sent to be drawn: what is solid first, then what flows.
+// Particles as they are sent to be drawn: grains first, then what is wet: water, blood and paste.
 //
 // Unit     cells, as Particle::at; a colour's spread is the particle's own and stays with its place
 // Thread   any; pure
@@ -22,7 +22,7 @@ struct ParticleDot {
 static_assert(sizeof(ParticleDot) == 16);
 
 struct DotRanges {
-    std::size_t solids = 0, fluids = 0;                // in this order
+    std::size_t grains = 0, fluids = 0;                // in this order
     std::array<float, 3> fluids_low{}, fluids_high{};  // box about the fluids' centres; where there are some
 };
 

@@ -36,18 +36,17 @@ std::vector<Particle> slab(Matter matter, int layers) {
     return all;
 }
 
-TEST(ParticleDots, SolidsComeFirstAndFluidsHaveABox) {
+TEST(ParticleDots, GrainsComeFirstAndWhatIsWetHasABox) {
     const std::vector<Particle> particles{
         particle(Matter::water, 1, 2, 3), particle(Matter::dust, 90, 90, 90),
         particle(Matter::blood, -4, 5, 6), particle(Matter::paste, 7, 8, 9)};
     std::vector<ParticleDot> dots;
     const DotRanges r = build_dots(particles, dots);
-    ASSERT_EQ(r.solids, 2U);
-    ASSERT_EQ(r.fluids, 2U);
+    ASSERT_EQ(r.grains, 1U);
+    ASSERT_EQ(r.fluids, 3U);
     EXPECT_EQ(dots[0].matter, Matter::dust);
-    EXPECT_EQ(dots[1].matter, Matter::paste);
     EXPECT_EQ(r.fluids_low, (std::array{-4.0F, 2.0F, 3.0F}));
-    EXPECT_EQ(r.fluids_high, (std::array{1.0F, 5.0F, 6.0F}));
+    EXPECT_EQ(r.fluids_high, (std::array{7.0F, 8.0F, 9.0F}));
     EXPECT_EQ(build_dots({}, dots).fluids, 0U);
     EXPECT_TRUE(dots.empty());
 }
@@ -148,6 +147,9 @@ TEST_F(GuiCloud, BloodHidesWhatLiesBehindAndWaterDoesNot) {
     EXPECT_GT(touched(picture(slab(Matter::water, 3))), 2000U);  // but it is seen
     const auto dust = middle(picture(slab(Matter::dust, 1)));
     EXPECT_GT(dust[0], dust[2]);  // ivory
+    const auto paste = middle(picture(slab(Matter::paste, 3)));
+    EXPECT_GT(paste[0], paste[2] + 10);
+    EXPECT_GT(paste[1], 80);
 }
 
 TEST_F(GuiCloud, WhatLiesBehindTheSceneIsNotDrawn) {
