@@ -34,6 +34,7 @@
 #include "gui/app/show_controller.hpp"
 #include "gui/app/site.hpp"
 #include "gui/app/window.hpp"
+#include "gui/render/particle_pace.hpp"
 #include "gui/render/ray_pace.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/error.hpp"
@@ -301,8 +302,18 @@ private:
                                           ? find_path(controller_.levels, kParticlesPath)
                                           : nullptr;
         if (path != nullptr) particles_level_ = path->level;
-        site_->step({clock_.frame_s(), told ? &controller_.drill : nullptr, bone_.changes(), particles_level_,
+        site_->step({clock_.frame_s(), told ? &controller_.drill : nullptr, bone_.changes(),
+                     particles_share(),
                      content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>()});
+    }
+
+    // As the governor says; where the processor draws no more than fit a picture by the clock, unless a person fixed it.
+    float particles_share() const {
+        const bool by_hand = controller_.have_levels && std::string_view(controller_.levels.law) ==
+                                                            "fixed";  // ends with 0, as was checked
+        if (!window_.software() || by_hand) return particles_level_;
+        return std::min(particles_level_,
+                        static_cast<float>(particle_pace_.most()) / static_cast<float>(Site::kMost));
     }
 
     // On a surface the hand is shown as a pen whose tip is the proxy: where the tool would be, were the surface
@@ -444,7 +455,10 @@ private:
         view_->molecules().set_look(
             {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
         view.particles = site_ ? &site_->particles() : nullptr;
+        view.time_particles = site_ && window_.software();
         view_->draw(camera_, view_options_, view);
+        if (view.time_particles)
+            particle_pace_.took(site_->particles().all().size(), view_->particles_draw_s());
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
             if (left_out > 0)
@@ -533,7 +547,8 @@ private:
     FitDesk desk_;
     DetailDesk detail_;
     BoneDesk bone_;
-    std::optional<Site> site_;      // of a scene of bone; goes before the bone that it reads
+    std::optional<Site> site_;  // of a scene of bone; goes before the bone that it reads
+    ParticlePace particle_pace_;
     float particles_level_ = 1.0F;  // stays as the controller last told
     DrillDesk drilling_;
     DrillHands drill_hands_;

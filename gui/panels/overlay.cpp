@@ -89,9 +89,9 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
     }
-    const std::string fps =
-        format("%.0f fps   %s %s", state.load.fps, grouped(state.load.vertices_drawn).c_str(),
-               state.scene.bone ? "rays" : "vertices");
+    std::string fps = format("%.0f fps   %s %s", state.load.fps, grouped(state.load.vertices_drawn).c_str(),
+                             state.scene.bone ? "rays" : "vertices");
+    if (state.scene.bone) fps += format("   %s particles", grouped(state.load.particles).c_str());
     pen.text(
         pen.theme.small,
         {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, fps), v.y + pen.theme.px(12.0F)},

@@ -5,6 +5,7 @@
 
 #include "gui/render/arrow.hpp"
 #include "gui/render/drawn_tool.hpp"
+#include "ipc/base/clock.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -264,6 +265,8 @@ void SceneView::draw_touch(const Pass& pass) {
 void SceneView::draw_particles(const Pass& pass) {
     if (!cloud_) cloud_ = std::make_unique<ParticleCloud>();
     const ParticleCells& cells = pass.frame.particles->cells();
+    if (pass.frame.time_particles) glFinish();
+    const Instant begin = Monotonic::now();
     cloud_->fill(pass.frame.particles->all());
     Eigen::Matrix4f model_from_cells = Eigen::Matrix4f::Identity();
     model_from_cells.topLeftCorner<3, 3>() *= static_cast<float>(cells.cell_m());
@@ -271,6 +274,9 @@ void SceneView::draw_particles(const Pass& pass) {
     cloud_->draw({pass.eye_from_scene * scene_from_model(content_->centre_model_m) * model_from_cells,
                   pass.projection, static_cast<float>(cells.cell_m()) * kAPerM, pass.haze, pass.frame.x_px,
                   pass.frame.y_px, pass.frame.width_px, pass.frame.height_px});
+    if (!pass.frame.time_particles) return;
+    glFinish();
+    particles_draw_s_ = to_s(Monotonic::now() - begin);
 }
 
 void SceneView::draw_box(const Pass& pass) {

@@ -46,6 +46,7 @@ struct ViewFrame {
     std::optional<DrawnTouch> touch;
     std::optional<Pose> T_model_tool;  // of the tool that touches a surface
     const Particles* particles = nullptr;
+    bool time_particles = false;  // waits for the renderer, see particles_draw_s()
     std::uint32_t bone_rays = 0;  // through the bone, at most
     std::span<const DrawnDrillTool> drill_tools;
 };
@@ -76,6 +77,8 @@ public:
     [[nodiscard]] std::uint32_t vertices_min() const { return contours_.vertices_min(); }
     [[nodiscard]] std::uint32_t vertices_max() const { return contours_.vertices_max(); }
     [[nodiscard]] double error_m() const { return contours_.error_m(); }
+    // Of the last draw() that was to time it: where the processor draws, that is its time.
+    [[nodiscard]] double particles_draw_s() const { return particles_draw_s_; }
     [[nodiscard]] float radius_a() const;
     // What the arrow stands for: its length in ångström for one newton.
     [[nodiscard]] float arrow_a_per_n() const;
@@ -105,7 +108,8 @@ private:
     Molecules molecules_;
     Contours contours_;
     std::vector<std::vector<Points>> codebooks_;  // levels of each structure
-    std::unique_ptr<ParticleCloud> cloud_;        // from the first particles on
+    double particles_draw_s_ = 0.0;
+    std::unique_ptr<ParticleCloud> cloud_;  // from the first particles on
     TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
     std::unique_ptr<BoneView> bone_;

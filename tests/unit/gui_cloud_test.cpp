@@ -8,6 +8,7 @@
 #include "gui/app/window.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/particle_cloud.hpp"
+#include "gui/render/particle_pace.hpp"
 #include "gui/render/target.hpp"
 
 // Graphics drivers and X libraries keep memory to the end on purpose.
@@ -49,6 +50,22 @@ TEST(ParticleDots, GrainsComeFirstAndWhatIsWetHasABox) {
     EXPECT_EQ(r.fluids_high, (std::array{7.0F, 8.0F, 9.0F}));
     EXPECT_EQ(build_dots({}, dots).fluids, 0U);
     EXPECT_TRUE(dots.empty());
+}
+
+TEST(ParticlePace, GivesWayAtOnceAndComesBackSlowlyAndDoesNotFallForWhatPixelsCost) {
+    ParticlePace pace;
+    EXPECT_EQ(pace.most(), 12000U);
+    for (int i = 0; i < 10; ++i) pace.took(1000, 0.005);  // all but one of it for pixels
+    EXPECT_GT(pace.most(), 11000U);
+    for (int i = 0; i < 5; ++i) pace.took(12000, 0.1);
+    EXPECT_LT(pace.most(), 2500U);
+    for (int i = 0; i < 5; ++i) pace.took(2000, 0.004);
+    EXPECT_LT(pace.most(), 5000U);
+    for (int i = 0; i < 200; ++i) pace.took(2000, 0.004);
+    EXPECT_GT(pace.most(), 40000U);
+    pace.took(2000, 1e30);
+    pace.took(3, 1.0);
+    EXPECT_GE(pace.most(), ParticlePace::kLeast);
 }
 
 class GuiCloud : public testing::Test {
