@@ -11,7 +11,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr const char* kMastoidMm = "-6.5,-1";  // of the synthetic bone
+constexpr const char* kMastoidMm = "-6,-1.5";  // of the synthetic bone
 
 }  // namespace
 

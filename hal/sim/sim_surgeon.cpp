@@ -18,19 +18,20 @@ constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series
 constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes in radii of the bowl
 constexpr double kLiftM = 6e-3;
 constexpr double kFeedM_S = 5e-4, kBowlFirstM = 3e-3, kWidenM_S = 3e-4;
-constexpr double kRimM = 3.5e-3;  // beyond the bowl's radius
+// How far the sucker is from the middle: at the start, and in radii of the bowl while the burr comes nearer.
+constexpr double kBesideM = 5e-3, kBesideFrom = 0.95, kBesideTo = 1.4, kInTheMiddle = 0.3;
 constexpr double kAsideM = 8e-3;  // after a miss, times the root of how many there were
 constexpr double kStiffnessN_M = 250.0, kDampingN_S_M = 8.0, kSidewaysMostN = 3.0, kUpMostN = 2.0;
 constexpr double kTurnStiffnessN_M = 0.3, kTurnDampingN_M_S = 0.01;
-// How instruments are held: the shaft, along +z of the tool, leans to its hand's side and down.
-const Vec3 kBurrLeanRad(0.35, 0.5, 0.0), kSuckerLeanRad(0.3, -0.6, 0.0);
+// How instruments are held: the shaft, along +z of the tool, leans to the side of its hand.
+const Vec3 kBurrLeanRad(0.12, 0.42, 0.0), kSuckerLeanRad(0.15, -0.6, 0.0);
 
 double bowl_m(double worked_s) { return std::min(kBowlFirstM + kWidenM_S * worked_s, SimSurgeon::kBowlM); }
 
 }  // namespace
 
 SimSurgeon::SimSurgeon(const SimSurgeonSettings& settings) noexcept : settings_(settings) {
-    const Vec3 rim = (kBowlFirstM + kRimM) * Vec3(-0.94, -0.34, 0.0);
+    const Vec3 rim = kBesideM * Vec3(-0.94, -0.34, 0.0);
     begin_m_ = settings.sucker ? Vec3(settings.at_m + rim) : settings.at_m;
     spot_m_ = target_m_ = begin_m_;
     series_ = series(0);
@@ -84,11 +85,12 @@ void SimSurgeon::work(double h_s) noexcept {
     if (strokes) worked_s_ += h_s;
     const double bowl = bowl_m(worked_s_), deep_m = std::min(kFeedM_S * worked_s_, kDepthM);
     Vec3 goal_m = Vec3::Zero();  // from where bone was met
+    const double s = std::clamp((tau_s - kDownS) / kStrokesS, 0.0, 1.0);
     if (settings_.sucker) {
-        const double turn = std::numbers::pi * (1.1 + 0.15 * std::sin(0.9 * clock_s));
-        goal_m = (lifted ? 0.3 * bowl : bowl + kRimM) * Vec3(std::cos(turn), std::sin(turn), 0.0);
+        // The burr comes from the other side.
+        const double beside = lifted ? kInTheMiddle : std::lerp(kBesideFrom, kBesideTo, s);
+        goal_m = std::max(beside * bowl, lifted ? 0.0 : kBesideM) * series_.across;
     } else {
-        const double s = std::clamp((tau_s - kDownS) / kStrokesS, 0.0, 1.0);
         goal_m =
             bowl * (kStroke * std::sin(2.0 * std::numbers::pi * kStrokeHz * kStrokesS * s) * series_.along +
                     kAside * (2.0 * s - 1.0) * series_.across);

@@ -4,8 +4,8 @@
 // Burr     goes away from the user until something holds it, and there works out a bowl: series of strokes to and fro, each
 //          in another direction, slowly wider and deeper. Between two series it lifts the burr and the pedal. Where nothing
 //          is met it tries again a little beside.
-// Sucker   feels its way in the same manner, keeps to the rim of the bowl, and goes into its middle while a surgeon
-//          of the same seed has lifted the burr.
+// Sucker   feels its way in the same manner, keeps to the side of the bowl where the burr of a surgeon of the same
+//          seed is not, and goes into its middle while that has lifted it.
 // Pedal    the second button, held while it works
 // Switched off, or not on yet: the hand goes back to where it began.
 // Frame    device
@@ -28,7 +28,7 @@ struct SimSurgeonSettings {
 
 class SimSurgeon {
 public:
-    static constexpr double kDepthM = 12e-3, kBowlM = 7e-3;  // of the bowl when it is done
+    static constexpr double kDepthM = 10e-3, kBowlM = 6.5e-3;  // of the bowl when it is done
     static constexpr double kPressMostN = 1.6;
     static constexpr double kReachM = 80e-3;  // how far it looks for bone
     static constexpr double kSeriesS = 6.0;   // strokes and the lift after them
