@@ -9,12 +9,6 @@
 #include "deploy/tact/tool_options.hpp"
 
 namespace tact::launch {
-namespace {
-
-constexpr const char* kMastoidMm = "-6,-1.5";  // of the synthetic bone
-
-}  // namespace
-
 void add_demo(CLI::App& app, int& exit_code) {
     auto* const demo = app.add_subcommand("demo", "show what Tact does, without files or devices");
     demo->require_subcommand(1);

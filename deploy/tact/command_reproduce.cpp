@@ -43,10 +43,12 @@ void add_surface(CLI::App& reproduce, int& exit_code) {
 }
 
 void add_drilling(CLI::App& reproduce, int& exit_code) {
-    auto* const command = reproduce.add_subcommand("drilling", "the drilling seed's figures 2 to 4");
+    auto* const command = reproduce.add_subcommand("drilling", "the drilling seed's figures 1 to 4");
     const auto e = std::make_shared<DrillingExperiment>();
     command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
     command->add_flag("--quick", e->quick, "fewer places; shows that it works");
+    command->add_flag("!--no-pictures", e->pictures,
+                      "leave figure 1 out, a run of half a minute with a window");
     command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
 }
 

@@ -39,6 +39,9 @@ void let_the_hand_stroke(RunOptions& options);
 // And bone: a surgeon with a burr, and a hand with a sucker.
 void let_the_hands_drill(RunOptions& options);
 
+// Where they open the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
+inline constexpr const char* kMastoidMm = "-6,-1.5";
+
 void add_run_options(CLI::App& app, RunOptions& options);
 
 }  // namespace tact::launch

@@ -60,6 +60,8 @@ constexpr std::size_t kShapesMaxInSoftware = 8000;
 // A volume's ball is much wider than the bone in it, and one works on a part of that.
 constexpr float kBoneZoom = 5.0F;
 
+constexpr std::uint32_t kSeriesMost = 9999;
+
 class App {
 public:
     explicit App(const GuiOptions& options)
@@ -108,6 +110,8 @@ private:
     void frame(Instant now, bool take_picture) {
         clock_.begin();
         window_.begin_frame(theme_);
+        const bool of_series = series_due(now);
+        sharp_ = of_series || take_picture;
         const std::int64_t now_ns = to_ns(now);
         state_.now_ns = now_ns;
         state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
@@ -124,6 +128,7 @@ private:
         move_particles();
         clock_.end_part(FramePart::particles);
         draw_scene(now_ns);
+        if (of_series) save_of_series();
         clock_.end_part(FramePart::scene);
         draw_panels();
         clock_.end_part(FramePart::panels);
@@ -207,6 +212,7 @@ private:
         state_.toggles.colouring = static_cast<int>(options_.look.colouring);
         begin_contours(view_->contours(), content_->scale, state_.contours);
         camera_.frame(view_->radius_a());
+        camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
         if (content_->bone) camera_.zoom(kBoneZoom);
         std::vector<Pose> homes;
         for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
@@ -377,6 +383,7 @@ private:
                                           : nullptr;
         if (path != nullptr) rays_share_ = static_cast<double>(path->level);
         const double pixels = static_cast<double>(view.width_px) * view.height_px;
+        if (sharp_) return static_cast<std::uint32_t>(pixels);
         const auto rays = static_cast<std::uint32_t>(std::lround(rays_share_ * pixels));
         return window_.software() ? std::min(rays, ray_pace_.rays_most()) : rays;
     }
@@ -415,6 +422,7 @@ private:
         const Eigen::Matrix3f axes = camera_.orientation().toRotationMatrix();
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < 3; ++k) state_.eye_axes[i][k] = axes(k, i);
+        drawn_view_ = {view.x_px, view.y_px, view.width_px, view.height_px};
         if (!view_) return;
         follow_bodies(now_ns);
         shown_.clear();
@@ -482,11 +490,42 @@ private:
         state_.wishes.clear();
     }
 
+    // The first as soon as there is something to see.
+    bool series_due(Instant now) {
+        if (!(options_.every_s > 0.0) || options_.screenshot.empty() || !view_ || series_ >= kSeriesMost)
+            return false;
+        if (series_ == 0) series_from_ = now;
+        return to_s(now - series_from_) >= options_.every_s * series_;
+    }
+
+    // The view alone, without what is written over it.
+    void save_of_series() {
+        const Image all = window_.picture();
+        Image part{static_cast<std::uint32_t>(drawn_view_.width_px),
+                   static_cast<std::uint32_t>(drawn_view_.height_px),
+                   {}};
+        const auto top = all.height_px - static_cast<std::uint32_t>(drawn_view_.y_px) - part.height_px;
+        for (std::uint32_t y = 0; y < part.height_px; ++y) {
+            const auto* const row =
+                all.rgb.data() + std::size_t{3} * ((std::size_t{top} + y) * all.width_px +
+                                                   static_cast<std::uint32_t>(drawn_view_.x_px));
+            part.rgb.insert(part.rgb.end(), row, row + std::size_t{3} * part.width_px);
+        }
+        std::filesystem::path path = options_.screenshot;
+        const std::string number = std::to_string(++series_);
+        path.replace_filename(path.stem().string() + (number.size() < 2 ? "-0" : "-") + number + ".png");
+        write_picture(path, part);
+    }
+
     void save_picture(const std::string& path) {
         picture_wanted_ = false;
+        write_picture(path, window_.picture());
+    }
+
+    void write_picture(const std::filesystem::path& path, const Image& image) {
         try {
-            write_png(path, window_.picture());
-            spdlog::info("wrote {}", path);
+            write_png(path, image);
+            spdlog::info("wrote {}", path.string());
         } catch (const StartupError& e) {
             spdlog::error("{}", e.what());
             picture_failed_ = true;
@@ -563,6 +602,12 @@ private:
     std::string next_scene_;  // asked for while another was being read
     std::size_t left_out_ = 0;
     bool picture_wanted_ = false, picture_failed_ = false;
+    bool sharp_ = false;        // this frame is kept: all its rays
+    std::uint32_t series_ = 0;  // pictures of it so far
+    Instant series_from_{};
+    struct {
+        int x_px = 0, y_px = 0, width_px = 1, height_px = 1;
+    } drawn_view_;  // y from below
 };
 
 }  // namespace

@@ -18,6 +18,11 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end");
     app.add_option("--report", options.report,
                    "write a report of what was drilled as JSON at the end, where the scene is of bone");
+    app.add_option(
+           "--picture-every", options.every_s,
+           "with --screenshot NAME.png: also NAME-01.png and so on, of the view alone, so many seconds apart")
+        ->check(CLI::Range(0.1, 1e5));
+    app.add_option("--zoom", options.zoom, "so many times nearer at the start")->check(CLI::Range(0.1, 20.0));
     app.add_option("--size", size, "size of the window in pixels, as 1280x720")
         ->check(CLI::Validator(
             [&options](std::string& text) -> std::string {

@@ -14,7 +14,9 @@ struct GuiOptions {
     std::string session = "default";
     std::string screenshot;  // empty: none
     std::string report;      // of drilling, JSON, at the end; empty: none
+    double every_s = 0.0;    // between pictures of a series beside the screenshot; 0: none
     double seconds = 0.0;    // 0: until closed
+    double zoom = 1.0;       // of the home view
     int width_px = 1280, height_px = 720;
     bool hidden = false;
     bool plain = false;

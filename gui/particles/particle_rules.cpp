@@ -6,7 +6,7 @@
 //          liquids always, dust every other time (so its piles are about as steep as they are wide), paste
 //          seldom; a liquid on top of particles spreads sideways.
 // Paste    dust that runs into a liquid, or the other way round: the one that moves becomes paste, and the cell of the
-//          other says so to it. Blood stays blood.
+//          other says so to it. Blood stays blood. Water runs off paste: else all of it became paste in the end.
 #include <algorithm>
 #include <cmath>
 
@@ -125,7 +125,7 @@ void Particles::land(Particle& p, const Cell& at, const Cell& hit) noexcept {
         p.matter = Matter::paste;
         cells_.set(at, CellState::paste);
         cells_.set(hit, CellState::paste);
-    } else if (p.matter == Matter::water && (other == CellState::grain || other == CellState::paste)) {
+    } else if (p.matter == Matter::water && other == CellState::grain) {
         p.matter = Matter::paste;
         cells_.set(at, CellState::paste);
     }

@@ -116,7 +116,8 @@ void main() {
                           clamp(height(sx0) - h, -most, most) * step_of(sx0),
                       clamp(height(sy1) - h, -most, most) * step_of(sy1) -
                           clamp(height(sy0) - h, -most, most) * step_of(sy0));
-    vec3 n = normalize(vec3(-0.3 * slope / across, 1.0));
+    vec2 tilt = -0.3 * slope / across;
+    vec3 n = normalize(vec3(tilt * min(1.0, 1.3 / max(length(tilt), 1e-3)), 1.0));
     float water = s.x, blood = s.y, paste = max(s.w - s.x - s.y, 0.0);
     vec3 red = mix(vec3(0.62, 0.040, 0.030), vec3(0.30, 0.008, 0.012), 1.0 - exp(-0.30 * blood));
     vec3 mud = mix(vec3(0.90, 0.80, 0.70), vec3(0.82, 0.66, 0.57), 1.0 - exp(-0.5 * paste));
@@ -128,7 +129,8 @@ void main() {
     hides = max(hides, mix(0.08, 0.45, 1.0 - n.z) * water / s.w);
     vec4 c = lit(base, n, vec3(0.0, 0.0, 1.0));
     float shine = c.a * c.a * (1.0 - 0.75 * paste / s.w);
-    vec3 seen = c.rgb + vec3(0.6 * shine - 0.15 * c.a * paste / s.w);
+    // Light goes through water: no side of it is dark.
+    vec3 seen = mix(c.rgb, max(c.rgb, 0.8 * base), water / s.w) + vec3(0.6 * shine - 0.15 * c.a * paste / s.w);
     // Wet: what shines is not let through.
     colour = hazed(vec4(seen, there * min(hides + 0.8 * shine, 1.0)), mean, 2.0 * at.y * u_view.w - 1.0);
 }

@@ -315,6 +315,19 @@ TEST_F(GuiWindow, WithoutADisplayItSaysSoAndWhatMendsIt) {
     EXPECT_NE(log().find("mend:"), std::string::npos) << log();
 }
 
+TEST_F(GuiWindow, ASeriesIsOfTheViewAloneAndItsFirstOfTheScene) {
+    const std::string picture = folder_ + "/series.png";
+    EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1.2", "--screenshot", picture, "--picture-every", "0.4",
+                   "--zoom", "2"})
+                  ->wait(),
+              0)
+        << log();
+    EXPECT_TRUE(std::filesystem::exists(picture));
+    for (const char* const each : {"/series-01.png", "/series-02.png"})
+        EXPECT_TRUE(std::filesystem::exists(folder_ + each)) << each << log();
+    EXPECT_FALSE(std::filesystem::exists(folder_ + "/series-09.png"));
+}
+
 TEST_F(GuiWindow, PictureThatCannotBeWrittenIsAnErrorAndArgumentsAreChecked) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--screenshot", folder_ + "/none/such.png"})->wait(), 1);
     EXPECT_NE(log().find("such.png"), std::string::npos) << log();

@@ -6,6 +6,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/plot.hpp"
+#include "deploy/tact/reproduce/drilling_pictures.hpp"
 #include "deploy/tact/reproduce/summary.hpp"
 #include "deploy/tact/reproduce/text.hpp"
 #include "ipc/base/clock.hpp"
@@ -216,9 +217,10 @@ int reproduce_drilling(const DrillingExperiment& e) {
     draw_figures(rows, growth, e.out);
     const std::vector<SummaryRow> table = summary_of(rows, growth);
     write_whole(e.out / "drilling.json", nlohmann::json{{"summary", json_of(table)}}.dump(2) + "\n");
+    const int exit_code = e.pictures ? drilling_pictures(e.out, e.quick) : 0;
     std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
                 (e.out / "drilling.json").c_str());
-    return 0;
+    return exit_code;
 }
 
 }  // namespace tact::launch

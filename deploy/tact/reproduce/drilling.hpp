@@ -1,6 +1,7 @@
-// tact reproduce drilling: the drilling seed's figures 2, 3 and 4 on this machine, its values beside ours.
+// tact reproduce drilling: the drilling seed's figures 1 to 4 on this machine, its values beside ours.
 //
 // Bone      solid, flat, of 0.3 mm voxels; without erosion, as there
+// Figure 1  six pictures of one run of the scripted surgeon and the sucker in the synthetic temporal bone
 // Figure 2  elastic force against the penetration, R = 1 and 5 mm, smallest blocks of 0.1, 0.3 and 0.5 R and voxel by voxel;
 //           and how far each is from the last
 // Figure 3  time for one force, R = 1, 3 and 5 mm, against the penetration
@@ -22,6 +23,7 @@ namespace tact::launch {
 struct DrillingExperiment {
     std::filesystem::path out;  // folder
     bool quick = false;         // fewer places
+    bool pictures = true;  // figure 1, which needs the visual process and an X server to run without a screen
 };
 
 inline constexpr std::array kDrillBlocks{0.1, 0.3, 0.5};            // smallest block over R
