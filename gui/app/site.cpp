@@ -14,7 +14,7 @@ constexpr int kStepsMost = 4;
 // Dust leaves the burr along its turn, and out of the hole.
 constexpr double kAlong_m_s = 0.3, kOut_m_s = 0.2;
 // No more water in a second than this share of the particles there may be: dust and blood need room too.
-constexpr double kWaterShare_per_s = 0.08;
+constexpr double kWaterShare_per_s = 0.15;
 constexpr double kBloodShare_per_s = 0.04;
 constexpr double kJet_m_s = 0.5;
 constexpr double kNozzle = 3.0;        // radii of the head up the shaft

@@ -13,7 +13,7 @@ class ParticlePace {
 public:
     static constexpr double kDraw_s = 0.016;  // of a picture, about: half of 30 pictures a second
     static constexpr double kPixels_s = 0.004;
-    static constexpr std::uint32_t kLeast = 2000;  // fewer do not say any more where water and blood are
+    static constexpr std::uint32_t kLeast = 5000;  // fewer do not say any more where water and blood are
 
     void took(std::size_t particles, double draw_s) noexcept {
         if (particles < kWorth || !(draw_s >= 0.0)) return;

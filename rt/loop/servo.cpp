@@ -13,8 +13,8 @@ namespace {
 constexpr KnobSpec kMeshKnob{.path = kMeshPath, .floor = 0.01F, .start = 1.0F};
 // Rays: with fewer, what is a wall and what is an opening is not told apart.
 constexpr KnobSpec kVolumeKnob{.path = kVolumePath, .floor = 0.03F, .start = 1.0F};
-// A twentieth of the dust still says where the burr cuts.
-constexpr KnobSpec kParticlesKnob{.path = kParticlesPath, .floor = 0.05F, .start = 1.0F};
+// A tenth of the dust and the water still says where the burr cuts and what is hidden.
+constexpr KnobSpec kParticlesKnob{.path = kParticlesPath, .floor = 0.1F, .start = 1.0F};
 
 // A stop ramps out in rt/safety's ramp_out_s; the amplifier goes off after this at the latest.
 constexpr Duration kStopMax = std::chrono::milliseconds(100);

@@ -23,7 +23,9 @@ int drilling_pictures(const std::filesystem::path& out, bool quick) {
     run.screenshot = out / "fig1_drilling.png";
     run.json = out / "fig1_run.json";
     let_the_hands_drill(run);
-    run.controller.insert(run.controller.end(), {"--hand-at-mm", kMastoidMm});
+    // How fast pictures come does not matter here, what is on them does.
+    run.controller.insert(run.controller.end(),
+                          {"--hand-at-mm", kMastoidMm, "--law", "fixed", "--level", "gui.particles=0.5"});
     run.visual = {"--picture-every", std::to_string(every_s), "--zoom", "1.5"};
     return run_scene(scene, run);
 }
