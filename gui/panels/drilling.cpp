@@ -71,7 +71,7 @@ void draw_drilling(const Theme& theme, const DashboardState& state, const PixelR
         figures(theme, d);
         if (d.structures.empty()) {
             text_small(theme, colour::kDim,
-                       d.labelled ? "No structure to keep away from is labelled."
+                       d.labelled ? "No labelled structure is one to keep away from (tact drill --critical)."
                                   : "No structure is labelled, so nothing warns (tact drill --labels).");
         } else {
             text_small(theme, colour::kDim, "From the burr's surface to");

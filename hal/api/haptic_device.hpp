@@ -33,7 +33,7 @@ struct DeviceSample {
     std::uint64_t sequence = 0;  // rises with every new sample
     Pose T_dev_tool;
     Twist twist_dev;            // as the driver estimates it
-    std::uint32_t buttons = 0;  // bit 0: clutch
+    std::uint32_t buttons = 0;  // bit 0: clutch; bit 1: drives the tool
     bool hand_present = false;
     DeviceState state = DeviceState::closed;
     DeviceNotice notice = DeviceNotice::none;  // what the person at it has to know

@@ -12,7 +12,7 @@ namespace {
 constexpr double kWaitS = 0.7;    // until the force has faded in
 constexpr double kForgetS = 0.5;  // switched off
 constexpr double kSeekM_S = 0.04, kMoveM_S = 0.06;
-constexpr double kFeltN = 0.3, kFeltS = 0.02;
+constexpr double kSeekPressN = 0.8, kFeltN = 0.3, kFeltS = 0.02;
 constexpr double kSuckerFeltN = 0.1, kSuckerPressN = 0.25, kSuckerAboveM = 5e-4;
 constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series; then it lifts
 constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes in radii of the bowl
@@ -57,7 +57,7 @@ void SimSurgeon::towards(const Vec3& goal_m, double h_s) noexcept {
 
 void SimSurgeon::seek(double h_s, const Vec3& at_m) noexcept {
     works_ = false;
-    press_n_ = settings_.sucker ? kSuckerPressN : 0.8;
+    press_n_ = settings_.sucker ? kSuckerPressN : kSeekPressN;
     if (back_) {
         towards(spot_m_, h_s);
         back_ = (target_m_ - spot_m_).norm() > 1e-4;

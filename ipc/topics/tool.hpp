@@ -19,7 +19,7 @@ struct alignas(64) ToolTopic {
     double torque_world_n_m[3];
     double force_model_n[3];  // as the force model wants it, before the safety chain
     double velocity_world_m_s[3];
-    std::uint32_t buttons;      // bit 0: clutch
+    std::uint32_t buttons;      // bit 0: clutch; bit 1: drives the tool
     std::uint8_t device_state;  // DeviceState
     std::uint8_t at_wall;       // 1: a wall of the workspace pushes back
     std::uint8_t reserved[10];  // zero

@@ -16,7 +16,7 @@
 
 namespace tact {
 
-inline constexpr std::uint32_t kDrillPedal = 1U << 1;  // button: the burr turns while it is held
+inline constexpr std::uint32_t kDrillPedal = 1U << 1;  // button: drives the tool while it is held
 
 struct ToolState {
     Pose T_world_tool;
