@@ -57,8 +57,8 @@ void catch_signals() {
 // Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
 // (tests/bench/draw_bench.cpp).
 constexpr std::size_t kShapesMaxInSoftware = 8000;
-// A volume's ball is much wider than the bone in it, and one works on a part of that.
-constexpr float kBoneZoom = 5.0F;
+// A volume's ball is wider than the bone in it, and one works on a part of that.
+constexpr float kBoneShown = 0.8F;
 
 constexpr std::uint32_t kSeriesMost = 9999;
 
@@ -213,7 +213,6 @@ private:
         begin_contours(view_->contours(), content_->scale, state_.contours);
         camera_.frame(view_->radius_a());
         camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
-        if (content_->bone) camera_.zoom(kBoneZoom);
         std::vector<Pose> homes;
         for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
         list_.start(homes);
@@ -237,6 +236,8 @@ private:
         if (bone_.volume() == nullptr) return;
         try {
             view_->show_bone(*bone_.volume());
+            camera_.zoom(std::log(kBoneShown * view_->bone()->reach_a() / view_->radius_a()) /
+                         std::log(0.9F));
         } catch (const StartupError& e) {
             spdlog::error("{}", e.what());
             state_.scene.warning = e.what();

@@ -82,15 +82,19 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
             pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText, text);
             y += pen.theme.px(18.0F);
         };
-        if (state.toggles.force && state.attached)
+        if (state.toggles.force && state.attached && !state.scene.bone)
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
     }
-    std::string fps = format("%.0f fps   %s %s", state.load.fps, grouped(state.load.vertices_drawn).c_str(),
-                             state.scene.bone ? "rays" : "vertices");
+    // Of bone, only what changed is seen through again.
+    const bool still = state.scene.bone && state.load.vertices_drawn <= 1;
+    std::string fps = format("%.0f fps   ", state.load.fps);
+    fps += still ? std::string("sharp")
+                 : format("%s %s", grouped(state.load.vertices_drawn).c_str(),
+                          state.scene.bone ? "rays" : "vertices");
     if (state.scene.bone) fps += format("   %s particles", grouped(state.load.particles).c_str());
     pen.text(
         pen.theme.small,

@@ -24,6 +24,17 @@ void BoneField::solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::
         out[i] = solid_of(now_.density[first + i], baked_.density[first + i], label(first + i));
 }
 
+double BoneField::reach_voxels(const Vec3& centre) const {
+    double most = 0.0;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+        if (free_[i] != 0) continue;
+        const Vec3 at(static_cast<double>(i % cells_[0]), static_cast<double>(i / cells_[0] % cells_[1]),
+                      static_cast<double>(i / cells_[0] / cells_[1]));
+        most = std::max(most, ((at.array() + 0.5) * double{kCell} - centre.array()).matrix().norm());
+    }
+    return most;
+}
+
 // Between two voxels the surface may come as near as their midpoint, or a whole edge where one is solid: with the
 // voxels about a cell counted, nothing of it lies in an empty one.
 bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) const {

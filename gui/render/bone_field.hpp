@@ -44,6 +44,8 @@ public:
     bool changed(std::uint32_t brick);
 
     [[nodiscard]] const std::array<std::uint32_t, 3>& cells() const { return cells_; }
+    // Of a ball about a place, voxels, that holds all that may be seen; 0: nothing.
+    [[nodiscard]] double reach_voxels(const Vec3& centre) const;
     [[nodiscard]] std::span<const std::uint8_t> free_cells() const { return free_; }  // x fastest
 
 private:

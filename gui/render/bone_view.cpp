@@ -63,6 +63,12 @@ void BoneView::Picture::bind(int width, int height) {
     glViewport(0, 0, width, height);
 }
 
+float BoneView::reach_a() const {
+    const double voxel_a = static_cast<double>(scene_from_voxels_(0, 0));
+    const Vec3 centre = -scene_from_voxels_.topRightCorner<3, 1>().cast<double>() / voxel_a;
+    return static_cast<float>(voxel_a * field_.reach_voxels(centre));
+}
+
 void BoneView::changed(std::uint32_t brick) {
     if (!field_.changed(brick)) cells_anew_ = true;
     changed_.push_back(brick);

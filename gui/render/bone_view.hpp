@@ -35,7 +35,9 @@ public:
 
     [[nodiscard]] std::uint32_t rays() const { return rays_; }        // of the last draw()
     [[nodiscard]] std::uint32_t rays_max() const { return pixels_; }  // one a pixel of the view
-    [[nodiscard]] bool sharp() const { return tiles_.all_good(); }    // nothing is left to draw
+    // Of a ball about the scene's centre that holds the bone as it is, ångström.
+    [[nodiscard]] float reach_a() const;
+    [[nodiscard]] bool sharp() const { return tiles_.all_good(); }  // nothing is left to draw
 
 private:
     struct Picture {
