@@ -19,7 +19,9 @@ std::optional<Sample> take_sample(const RtRegion& region, const Places* places, 
     s.t_s = t_s;
     s.health = *health;
     if (const auto levels = newest(region.levels)) {
-        if (const auto mesh = level_of(*levels, kMeshPath)) {
+        auto mesh = level_of(*levels, kMeshPath);
+        if (!mesh) mesh = level_of(*levels, kVolumePath);  // of bone: rays, as vertices
+        if (mesh) {
             s.level_mesh = mesh->level;
             s.vertices_asked = mesh->items;
         }

@@ -59,6 +59,7 @@ void catch_signals() {
 constexpr std::size_t kShapesMaxInSoftware = 8000;
 // A volume's ball is wider than the bone in it, and one works on a part of that.
 constexpr float kBoneShown = 0.8F;
+constexpr float kBurrsShown = 4.0F;  // radii about a burr that is looked at
 
 constexpr std::uint32_t kSeriesMost = 9999;
 
@@ -212,7 +213,8 @@ private:
         state_.toggles.colouring = static_cast<int>(options_.look.colouring);
         begin_contours(view_->contours(), content_->scale, state_.contours);
         camera_.frame(view_->radius_a());
-        camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
+        bone_reach_a_ = 0.0F;
+        home_view();
         std::vector<Pose> homes;
         for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
         list_.start(homes);
@@ -232,12 +234,29 @@ private:
                      view_->vertices_max(), state_.scene.bodies, state_.scene.atoms);
     }
 
+    void home_view() {
+        camera_.home();
+        if (content_ && content_->bone && bone_reach_a_ > 0.0F)
+            camera_.approach(Eigen::Vector3f::Zero(), kBoneShown * bone_reach_a_);
+        camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
+    }
+
+    void look_at_burr() {
+        if (!content_ || !controller_.attached() || !controller_.have_drill) return;
+        const DrillHand& hand = controller_.drill.hand[0];
+        if (hand.kind == DrillKind::none) return;
+        const Vec3 at(hand.pos_model_m[0], hand.pos_model_m[1], hand.pos_model_m[2]);
+        const double radius_m = static_cast<double>(hand.radius_m) / content_->meta.world_per_model;
+        camera_.approach(((at - content_->centre_model_m) / kAngstromM).cast<float>(),
+                         kBurrsShown * static_cast<float>(radius_m / kAngstromM));
+    }
+
     void show_bone() {
         if (bone_.volume() == nullptr) return;
         try {
             view_->show_bone(*bone_.volume());
-            camera_.zoom(std::log(kBoneShown * view_->bone()->reach_a() / view_->radius_a()) /
-                         std::log(0.9F));
+            bone_reach_a_ = view_->bone()->reach_a();
+            home_view();
         } catch (const StartupError& e) {
             spdlog::error("{}", e.what());
             state_.scene.warning = e.what();
@@ -258,7 +277,8 @@ private:
         }
         for (const Key key : window_.take_keys()) {
             if (io.WantTextInput) continue;
-            if (key == Key::home) camera_.home();
+            if (key == Key::home) home_view();
+            if (key == Key::burr) look_at_burr();
             if (key == Key::style) state_.toggles.style = (state_.toggles.style + 1) % 3;
             if (key == Key::picture) picture_wanted_ = true;
             if (key == Key::raise && content_) nudge_contour(state_.contours, content_->scale, 1.0);
@@ -373,6 +393,10 @@ private:
         view.bone_rays = rays_most(view);
         if (BoneView* const bone = view_->bone())
             for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
+        if (near_burr_wanted_ && controller_.have_drill && controller_.drill.hand[0].depth > 0.0F) {
+            near_burr_wanted_ = false;
+            look_at_burr();
+        }
         if (controller_.attached() && controller_.have_drill)
             view.drill_tools = drill_hands_.follow(controller_.drill, content_->meta);
     }
@@ -593,6 +617,8 @@ private:
     DrillDesk drilling_;
     DrillHands drill_hands_;
     RayPace ray_pace_;
+    float bone_reach_a_ = 0.0F;
+    bool near_burr_wanted_ = options_.near_burr;
     double rays_share_ = 1.0;  // of the pixels; stays as the controller last told
     BodyList list_;
     SecondHand second_hand_;

@@ -23,6 +23,7 @@ struct GuiOptions {
     MoleculeLook look;                    // of all bodies at the start
     std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;
+    bool near_burr = false;        // once it is in bone
     bool bench_particles = false;  // instead of a window
     double fps_max = -1.0;         // 0: no limit; below: 60 where the display does not pace
 };

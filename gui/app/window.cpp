@@ -38,6 +38,7 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
         return;
     }
     for (const auto& [which, what] : {std::pair{GLFW_KEY_HOME, Key::home},
+                                      {GLFW_KEY_F, Key::burr},
                                       {GLFW_KEY_S, Key::style},
                                       {GLFW_KEY_P, Key::picture},
                                       {GLFW_KEY_R, Key::refine},

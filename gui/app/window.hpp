@@ -17,6 +17,7 @@ namespace tact {
 
 enum class Key {
     home,
+    burr,
     style,
     picture,
     help,

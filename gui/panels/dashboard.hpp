@@ -250,6 +250,7 @@ inline constexpr KeyHelp kKeyHelp[] = {
     {"right drag", "pan"},
     {"wheel", "zoom"},
     {"Home", "home view"},
+    {"F", "look at the burr from near"},
     {"S", "surface: glass, solid, wire"},
     {"Alt+wheel, + -", "contour level"},
     {"1 ... 9", "take that body into the hand"},

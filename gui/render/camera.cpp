@@ -18,6 +18,13 @@ void Camera::home() {
                                       Eigen::AngleAxisf(-0.45F, Eigen::Vector3f::UnitY()));
 }
 
+void Camera::approach(const Eigen::Vector3f& target_a, float shown_a) {
+    if (!target_a.allFinite() || !std::isfinite(shown_a) || target_a.norm() > 4.0F * radius_a_) return;
+    target_a_ = target_a;
+    distance_a_ =
+        std::clamp(1.06F * shown_a / std::sin(0.5F * kFieldOfViewRad), 0.05F * radius_a_, 30.0F * radius_a_);
+}
+
 void Camera::rotate(float dx_px, float dy_px, float view_height_px) {
     if (!(view_height_px > 0.0F)) return;
     const float turn = 3.1415927F / view_height_px;  // half a turn over the height of the view

@@ -17,6 +17,8 @@ public:
     // What the home view shows: a ball of this radius about the origin. Goes there at once.
     void frame(float radius_a);
     void home();
+    // Turns to a place without turning round: a ball of `shown_a` about it fills the view. Not finite: stays.
+    void approach(const Eigen::Vector3f& target_a, float shown_a);
 
     // Pixels of the mouse in a view of this height; y down, as windows count.
     void rotate(float dx_px, float dy_px, float view_height_px);

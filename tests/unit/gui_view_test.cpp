@@ -46,6 +46,26 @@ TEST(Camera, HomeShowsTheWholeBallAndPutsItsCentreInTheMiddle) {
     }
 }
 
+TEST(Camera, ApproachingAPlacePutsItInTheMiddleWithoutTurningRound) {
+    Camera camera;
+    camera.frame(50.0F);
+    const Eigen::Quaternionf before = camera.orientation();
+    const Eigen::Vector3f place(10.0F, -20.0F, 5.0F);
+    camera.approach(place, 5.0F);
+    EXPECT_TRUE(camera.orientation().isApprox(before));
+    EXPECT_LT(on_screen(camera, place, 1.5F).head<2>().norm(), 1e-4F);
+    // A ball of 5 about it all but fills the height.
+    const Eigen::Vector3f up = camera.orientation().conjugate() * Eigen::Vector3f(0.0F, 5.0F, 0.0F);
+    const float edge = on_screen(camera, place + up, 1.5F).y();
+    EXPECT_GT(edge, 0.8F);
+    EXPECT_LT(edge, 1.0F);
+    const float distance = camera.distance_a();
+    camera.approach(Eigen::Vector3f::Constant(std::nanf("")), 5.0F);
+    camera.approach(Eigen::Vector3f::Constant(1e9F), 5.0F);
+    EXPECT_EQ(camera.distance_a(), distance);
+    EXPECT_EQ(camera.target_a(), place);
+}
+
 TEST(Camera, DraggingMovesWhatIsUnderTheMouse) {
     Camera camera;
     camera.frame(50.0F);
