@@ -28,6 +28,7 @@ std::string number(double value) {
 std::string path_text(double index) {
     if (index == static_cast<double>(kPicturePathIndex)) return "picture";
     if (index == static_cast<double>(kForcePathIndex)) return "force";
+    if (index == static_cast<double>(kParticlesPathIndex)) return "particles";
     return "path " + number(index);
 }
 

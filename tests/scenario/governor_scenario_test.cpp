@@ -97,6 +97,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
     loop.model_.cost = microseconds(100);
     ASSERT_EQ(loop.levels().count, 3U);
     EXPECT_STREQ(particles_of(loop).path, kParticlesPath);
+    EXPECT_STREQ(loop.levels().path[Servo::kMeshIndex].path, kVolumePath);
     EXPECT_EQ(particles_of(loop).haptic, 0);
     loop.active();
     Picture picture{loop, 0.2};

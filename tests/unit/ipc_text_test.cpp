@@ -60,6 +60,7 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
     EXPECT_EQ(text(EventCode::level_changed, kPicturePathIndex, 0.5), "level changed: picture to 0.5");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25), "level changed: force to 0.25");
+    EXPECT_EQ(text(EventCode::level_changed, kParticlesPathIndex, 0.25), "level changed: particles to 0.25");
     EXPECT_EQ(text(EventCode::level_changed, 7, 1), "level changed: path 7 to 1");
     EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
     EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
