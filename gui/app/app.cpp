@@ -101,7 +101,16 @@ public:
         }
         desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
         std::optional<BurrVisibility> visibility;
-        if (site_) visibility = {site_->figures().drilling_s, site_->figures().seen_s};
+        if (site_) {
+            visibility = {site_->figures().drilling_s, site_->figures().seen_s};
+            const Ledger& l = site_->particles().ledger();
+            spdlog::info(
+                "levels of bone: {} taken by the controller, {} seen to go while shown: {} sucked, {} "
+                "carried, "
+                "{} left, {} given up, {} too few for a grain",
+                controller_.have_drill ? controller_.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
+                l.left, l.given_up, l.pooled);
+        }
         drilling_.save(options_.report, visibility);
         if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
         return picture_failed_ ? 1 : 0;
@@ -226,6 +235,7 @@ private:
         bone_.meet(controller_);
         if (content_->bone)
             site_.emplace(*bone_.volume(), content_->bone->labels, content_->meta.world_per_model);
+        if (site_) site_->scatter(options_.particles);
         detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
         show_bone();

@@ -1,6 +1,7 @@
 // The command line of tact-gui.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct GuiOptions {
     std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;
     bool near_burr = false;        // once it is in bone
+    std::uint32_t particles = 0;   // scattered over bone at the start
     bool bench_particles = false;  // instead of a window
     double fps_max = -1.0;         // 0: no limit; below: 60 where the display does not pace
 };

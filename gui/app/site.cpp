@@ -90,6 +90,16 @@ void Site::step(const Frame& frame) noexcept {
     look(dt_s, burr, frame.eye_model_m);
 }
 
+void Site::scatter(std::uint32_t count) noexcept {
+    const Vec3 size(bricks_.size[0], bricks_.size[1], bricks_.size[2]);
+    for (std::uint32_t i = 0, tries = 0; i < count && tries < 4 * count; ++tries) {
+        const Vec3 at =
+            size.cwiseProduct(Vec3(random_.uniform(), random_.uniform(), 0.3 + 0.7 * random_.uniform()));
+        i += particles_.emit(static_cast<Matter>(random_.below(4)), bricks_.to_model(at), Vec3::Zero()) ? 1
+                                                                                                        : 0;
+    }
+}
+
 void Site::take_changes(const Frame& frame, const DrillHand* burr) noexcept {
     constexpr std::uint32_t kEdge = BoneBricks::kEdge;
     const auto n = bricks_.bricks();

@@ -42,6 +42,8 @@ public:
         Vec3 eye_model_m = Vec3::Zero();
     };
     void step(const Frame& frame) noexcept;
+    // So many particles more, of all kinds, over the bone: to measure what many cost.
+    void scatter(std::uint32_t count) noexcept;
 
     [[nodiscard]] const Particles& particles() const noexcept { return particles_; }
     [[nodiscard]] const SiteFigures& figures() const noexcept { return figures_; }

@@ -192,6 +192,16 @@ TEST(Site, TheLevelBoundsHowManyThereAre) {
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
+TEST(Site, ScattersAsManyAsThereIsRoomFor) {
+    const Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    site.scatter(5000);
+    EXPECT_EQ(site.particles().all().size(), 5000U);
+    EXPECT_GT(count(site, Matter::paste), 800U);
+    site.scatter(1000000);
+    EXPECT_LE(site.particles().all().size(), Site::kMost);
+}
+
 TEST(Site, SurvivesWhatAControllerMaySend) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
