@@ -60,7 +60,7 @@ void show(const Observer& observer, bool as_json) {
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);
     std::fputs(report_summary(report).c_str(), stdout);
-    std::fputs((table_header() + table_row(*sample)).c_str(), stdout);
+    std::fputs((table_header(*sample) + table_row(*sample)).c_str(), stdout);
 }
 
 int watch(Observer& observer, bool as_json) {
@@ -96,7 +96,7 @@ int watch(Observer& observer, bool as_json) {
         const auto sample =
             take_sample(observer.region(), places ? &*places : nullptr, to_s(Monotonic::now() - began));
         if (!sample) continue;
-        if (lines++ % 20 == 0) std::fputs(table_header().c_str(), stdout);
+        if (lines++ % 20 == 0) std::fputs(table_header(*sample).c_str(), stdout);
         std::fputs(table_row(*sample).c_str(), stdout);
         std::fflush(stdout);
     }

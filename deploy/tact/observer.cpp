@@ -35,9 +35,9 @@ std::optional<PathLevel> level_of(const LevelsTopic& levels, const char* path) {
     return std::nullopt;
 }
 
-std::optional<PathLevel> force_level(const LevelsTopic& levels) {
-    if (std::min<std::size_t>(levels.count, kPathsMax) <= kForcePathIndex) return std::nullopt;
-    return levels.path[kForcePathIndex];
+std::optional<PathLevel> level_at(const LevelsTopic& levels, std::size_t index) {
+    if (std::min<std::size_t>(levels.count, kPathsMax) <= index) return std::nullopt;
+    return levels.path[index];
 }
 
 }  // namespace tact::launch

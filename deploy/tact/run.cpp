@@ -143,7 +143,7 @@ private:
         if (!sample) return;
         if (!options_.quiet && now >= line_due_) {
             line_due_ = now + kLineEvery;
-            if (lines_++ % kHeaderEvery == 0) std::fputs(table_header().c_str(), stdout);
+            if (lines_++ % kHeaderEvery == 0) std::fputs(table_header(*sample).c_str(), stdout);
             std::fputs(table_row(*sample).c_str(), stdout);
             std::fflush(stdout);
         }

@@ -19,6 +19,10 @@ SceneFacts describe(const SceneContent& content) {
     facts.voxels = content.grid.size;
     facts.surface = content.meta.kind == SceneKind::surface;
     facts.bone = content.meta.kind == SceneKind::drilling;
+    if (content.bone) {
+        facts.voxels = content.bone->volume.bricks.size;
+        facts.voxel_m = content.bone->volume.bricks.voxel_m;
+    }
     return facts;
 }
 

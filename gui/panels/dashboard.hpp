@@ -76,7 +76,8 @@ struct SceneFacts {
     std::uint32_t vertices_max = 0;
     double mesh_error_m = 0.0;
     std::size_t bodies = 0, atoms = 0;
-    std::array<std::uint32_t, 3> voxels{};
+    std::array<std::uint32_t, 3> voxels{};                           // of a map, or of bone
+    double voxel_m = 0.0;                                            // edge, of bone
     std::string warning;                                             // the controller runs another scene, ...
     bool surface = false;                                            // to touch: no map, no bodies
     bool bone = false;                                               // to drill: likewise

@@ -40,6 +40,12 @@ void surface_card(const Theme& theme, DashboardState& state) {
     draw_detail(theme, state);
 }
 
+void bone_card(const Theme& theme, const SceneFacts& s) {
+    row(theme, "Bone", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
+        format("voxels of %.3g mm", 1e3 * s.voxel_m));
+    row(theme, "File", s.file, "");
+}
+
 void toggles(const Theme& theme, SceneToggles& t) {
     const float second = theme.px(104.0F), third = theme.px(196.0F);
     ImGui::Checkbox("Surface", &t.surface);
@@ -80,7 +86,9 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
     }
     if (s.loaded && s.surface) {  // nothing to place or to contour
         surface_card(theme, state);
-    } else if (s.loaded && !s.bone) {
+    } else if (s.loaded && s.bone) {
+        bone_card(theme, s);
+    } else if (s.loaded) {
         static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));
         ImGui::SameLine(0.0F, theme.px(14.0F));
