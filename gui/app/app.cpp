@@ -14,28 +14,24 @@
 #include <vector>
 
 #include "gui/app/body_list.hpp"
-#include "gui/app/bone_desk.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/contour_child.hpp"
 #include "gui/app/contour_rows.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/describe.hpp"
 #include "gui/app/detail_desk.hpp"
-#include "gui/app/drill_desk.hpp"
-#include "gui/app/drill_hands.hpp"
+#include "gui/app/drill_show.hpp"
 #include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
 #include "gui/app/grounds.hpp"
 #include "gui/app/mesh_level.hpp"
-#include "gui/app/png.hpp"
+#include "gui/app/picture_files.hpp"
 #include "gui/app/region_checks.hpp"
 #include "gui/app/scene_loader.hpp"
 #include "gui/app/second_hand.hpp"
 #include "gui/app/show_controller.hpp"
-#include "gui/app/site.hpp"
+#include "gui/app/touch_show.hpp"
 #include "gui/app/window.hpp"
-#include "gui/render/particle_pace.hpp"
-#include "gui/render/ray_pace.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
@@ -60,8 +56,6 @@ constexpr std::size_t kShapesMaxInSoftware = 8000;
 // A volume's ball is wider than the bone in it, and one works on a part of that.
 constexpr float kBoneShown = 0.8F;
 constexpr float kBurrsShown = 4.0F;  // radii about a burr that is looked at
-
-constexpr std::uint32_t kSeriesMost = 9999;
 
 class App {
 public:
@@ -93,60 +87,50 @@ public:
         for (bool last = false; !last;) {
             const Instant now = Monotonic::now();
             // A picture is asked for to see the scene, so the time is not over before it is there.
-            const bool picture_waits = !options_.screenshot.empty() && loader_.running();
+            const bool picture_waits = pictures_.wanted_at_end() && loader_.running();
             last = stop_signal != 0 || window_.close_wanted() ||
                    (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
-            frame(now, last && !options_.screenshot.empty());
+            frame(now, last && pictures_.wanted_at_end());
             if (!last) clock_.pace(fps_max_);
         }
         desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
-        std::optional<BurrVisibility> visibility;
-        if (site_) {
-            visibility = {site_->figures().drilling_s, site_->figures().seen_s};
-            const Ledger& l = site_->particles().ledger();
-            spdlog::info(
-                "levels of bone: {} taken by the controller, {} seen to go while shown: {} sucked, {} "
-                "carried, "
-                "{} left, {} given up, {} too few for a grain",
-                controller_.have_drill ? controller_.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
-                l.left, l.given_up, l.pooled);
-        }
-        drilling_.save(options_.report, visibility);
+        drilling_.save(controller_, options_.report);
         if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
-        return picture_failed_ ? 1 : 0;
+        return pictures_.failed() ? 1 : 0;
     }
 
 private:
     void frame(Instant now, bool take_picture) {
         clock_.begin();
         window_.begin_frame(theme_);
-        const bool of_series = series_due(now);
+        const bool of_series = pictures_.series_due(now, view_ != nullptr);
         sharp_ = of_series || take_picture;
         const std::int64_t now_ns = to_ns(now);
         state_.now_ns = now_ns;
         state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
         follow_controller(now_ns);
         follow_scene();
-        bone_.follow();
-        drilling_.follow(controller_, bone_.changes(), state_);
+        drilling_.follow(controller_, state_);
         handle_input();
         if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
         obey_level();
         clock_.end_part(FramePart::adapt);
         if (view_) view_->upload();
         clock_.end_part(FramePart::upload);
-        move_particles();
+        if (content_)
+            drilling_.move(controller_, clock_.frame_s(),
+                           content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>());
         clock_.end_part(FramePart::particles);
         draw_scene(now_ns);
-        if (of_series) save_of_series();
+        if (of_series) pictures_.save_of_series(window_.picture(), drawn_view_);
         clock_.end_part(FramePart::scene);
         draw_panels();
         clock_.end_part(FramePart::panels);
-        if (take_picture) save_picture(options_.screenshot);
-        if (picture_wanted_) save_picture(picture_name());
+        if (take_picture) pictures_.save_at_end(window_.picture());
+        if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
         window_.show();
         clock_.end_part(FramePart::swap);
-        if (view_ && view_->bone() != nullptr) ray_pace_.took(view_->bone()->rays(), clock_.work_s());
+        if (view_) drilling_.ended(*view_, clock_.work_s());
         publish_load();
     }
 
@@ -155,11 +139,10 @@ private:
         if (news.left) {
             spdlog::warn("the controller of session {} is gone; waiting for the next", options_.session);
             commands_.forget();
-            bone_.leave();
+            drilling_.leave();
         }
         if (news.arrived) {
-            bone_.meet(controller_);
-            drilling_.meet();
+            drilling_.meet(controller_);
             spdlog::info("attached to the controller of session {}", options_.session);
             list_.forget_motion();
             second_hand_.forget();
@@ -229,13 +212,6 @@ private:
         list_.start(homes);
         if (controller_.have_bodies) list_.follow(controller_.bodies);
         desk_.use(content_);
-        site_.reset();
-        bone_.use(*content_);
-        drilling_.use(content_);
-        bone_.meet(controller_);
-        if (content_->bone)
-            site_.emplace(*bone_.volume(), content_->bone->labels, content_->meta.world_per_model);
-        if (site_) site_->scatter(options_.particles);
         detail_.use(content_, state_.detail);
         state_.scene = describe(*content_);
         show_bone();
@@ -262,15 +238,15 @@ private:
     }
 
     void show_bone() {
-        if (bone_.volume() == nullptr) return;
         try {
-            view_->show_bone(*bone_.volume());
-            bone_reach_a_ = view_->bone()->reach_a();
-            home_view();
+            drilling_.use(content_, controller_, *view_, options_.particles);
         } catch (const StartupError& e) {
             spdlog::error("{}", e.what());
             state_.scene.warning = e.what();
         }
+        if (view_->bone() == nullptr) return;
+        bone_reach_a_ = view_->bone()->reach_a();
+        home_view();
     }
 
     void handle_input() {
@@ -319,9 +295,7 @@ private:
 
     void obey_level() {
         if (!view_) return;
-        const PathLevel* const path = controller_.attached() && controller_.have_levels
-                                          ? find_path(controller_.levels, kMeshPath)
-                                          : nullptr;
+        const PathLevel* const path = controller_.level(kMeshPath);
         // Without a controller the surface stays as it was last told; at first that is all of it.
         const std::uint32_t most = view_->vertices_max();
         if (path != nullptr && most > 0)
@@ -332,95 +306,11 @@ private:
         state_.scene.mesh_error_m = view_->error_m();
     }
 
-    void move_particles() {
-        if (!site_) return;
-        const bool told = controller_.attached() && controller_.have_drill;
-        const PathLevel* const path = controller_.attached() && controller_.have_levels
-                                          ? find_path(controller_.levels, kParticlesPath)
-                                          : nullptr;
-        if (path != nullptr) particles_level_ = path->level;
-        site_->step({clock_.frame_s(), told ? &controller_.drill : nullptr, bone_.changes(),
-                     particles_share(),
-                     content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>()});
-    }
-
-    // As the governor says; where the processor draws no more than fit a picture by the clock, unless a person fixed it.
-    float particles_share() const {
-        const bool by_hand = controller_.have_levels && std::string_view(controller_.levels.law) ==
-                                                            "fixed";  // ends with 0, as was checked
-        if (!window_.software() || by_hand) return particles_level_;
-        return std::min(particles_level_,
-                        static_cast<float>(particle_pace_.most()) / static_cast<float>(Site::kMost));
-    }
-
-    // On a surface the hand is shown as a pen whose tip is the proxy: where the tool would be, were the surface
-    // hard.
-    std::optional<DrawnHand> touching_pen() const {
-        if (content_->meta.kind != SceneKind::surface || !controller_.attached() || !controller_.have_tool ||
-            !controller_.have_bodies || controller_.bodies.count == 0)
-            return std::nullopt;
-        const double *const p = controller_.bodies.body[0].pos_model_m, *const f =
-                                                                            controller_.tool.force_model_n;
-        const Vec3 tip(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
-        if (!tip.allFinite() || !force.allFinite()) return std::nullopt;
-        return DrawnHand{{tip, Quat::Identity()}, force, false, content_->tool == nullptr};
-    }
-
-    // A tool that is a mesh is drawn as it is, where the proxy is.
-    std::optional<Pose> touching_tool() const {
-        if (content_->tool == nullptr || !controller_.attached() || !controller_.have_bodies ||
-            controller_.bodies.count == 0)
-            return std::nullopt;
-        const auto& body = controller_.bodies.body[0];
-        const double *const p = body.pos_model_m, *const q = body.quat_model_body_xyzw;
-        const Pose pose{{p[0], p[1], p[2]}, Quat(q[3], q[0], q[1], q[2]).normalized()};
-        return pose.finite() ? std::optional(pose) : std::nullopt;
-    }
-
-    // Where the tool would be without the surface, and what holds it off.
-    std::optional<DrawnTouch> touch_marks() const {
-        if (!controller_.attached() || !controller_.have_touch) return std::nullopt;
-        const TouchTopic& t = controller_.touch;
-        const auto vec = [](const auto& v) {
-            return Vec3(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
-        };
-        DrawnTouch drawn{vec(t.probe_model_m), vec(t.proxy_model_m), t.radius_model_m, t.planes, {}, {}};
-        for (std::uint32_t i = 0; i < t.planes; ++i) {
-            drawn.normal[i] = vec(t.normal_model[i]);
-            drawn.push_n[i] = static_cast<double>(t.push_n[i]);
-        }
-        return drawn;
-    }
-
     void follow_detail() {
         const bool touched = controller_.attached() && controller_.have_touch;
         if (const auto made = detail_.follow(touched ? &controller_.touch : nullptr, state_.toggles.detail,
                                              state_.detail, state_.wishes))
             view_->show_detail(*made);
-    }
-
-    void show_drilling(ViewFrame& view) {
-        view.bone_rays = rays_most(view);
-        if (BoneView* const bone = view_->bone())
-            for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
-        if (near_burr_wanted_ && controller_.have_drill && controller_.drill.hand[0].depth > 0.0F) {
-            near_burr_wanted_ = false;
-            look_at_burr();
-        }
-        if (controller_.attached() && controller_.have_drill)
-            view.drill_tools = drill_hands_.follow(controller_.drill, content_->meta);
-    }
-
-    // As the governor says; on a processor no more than fit a picture by the clock.
-    std::uint32_t rays_most(const ViewFrame& view) {
-        const PathLevel* const path = controller_.attached() && controller_.have_levels
-                                          ? find_path(controller_.levels, kVolumePath)
-                                          : nullptr;
-        if (path != nullptr) rays_share_ = static_cast<double>(path->level);
-        const double pixels = static_cast<double>(view.width_px) * view.height_px;
-        if (sharp_) return static_cast<std::uint32_t>(pixels);
-        const auto rays = static_cast<std::uint32_t>(std::lround(rays_share_ * pixels));
-        return window_.software() ? std::min(rays, ray_pace_.rays_most()) : rays;
     }
 
     void follow_bodies(std::int64_t now_ns) {
@@ -472,14 +362,20 @@ private:
             const double* const f = controller_.tool.force_model_n;
             view.force_world_n = Vec3(f[0], f[1], f[2]);
         }
-        if (content_->bone)
-            show_drilling(view);
-        else if (controller_.attached())
+        if (content_->bone) {
+            drilling_.prepare(controller_, *view_, sharp_, view);
+            if (near_burr_wanted_ && controller_.have_drill && controller_.drill.hand[0].depth > 0.0F) {
+                near_burr_wanted_ = false;
+                look_at_burr();
+            }
+        } else if (controller_.attached()) {
             view.second_hand = second_hand_.at(now_ns, content_->meta);
+        }
         state_.second_hand = view.second_hand.has_value();
-        if (const auto pen = touching_pen()) view.second_hand = pen;
-        view.T_model_tool = touching_tool();
-        if (view_options_.force && content_->meta.kind == SceneKind::surface) view.touch = touch_marks();
+        if (const auto pen = touching_pen(controller_, *content_)) view.second_hand = pen;
+        view.T_model_tool = touching_tool(controller_, *content_);
+        if (view_options_.force && content_->meta.kind == SceneKind::surface)
+            view.touch = touch_marks(controller_);
         follow_detail();
         state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
         state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
@@ -497,11 +393,8 @@ private:
         view_options_.depth_cue = t.depth_cue;
         view_->molecules().set_look(
             {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
-        view.particles = site_ ? &site_->particles() : nullptr;
-        view.time_particles = site_ && window_.software();
         view_->draw(camera_, view_options_, view);
-        if (view.time_particles)
-            particle_pace_.took(site_->particles().all().size(), view_->particles_draw_s());
+        drilling_.drawn(*view_);
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
             if (left_out > 0)
@@ -525,54 +418,6 @@ private:
         state_.wishes.clear();
     }
 
-    // The first as soon as there is something to see.
-    bool series_due(Instant now) {
-        if (!(options_.every_s > 0.0) || options_.screenshot.empty() || !view_ || series_ >= kSeriesMost)
-            return false;
-        if (series_ == 0) series_from_ = now;
-        return to_s(now - series_from_) >= options_.every_s * series_;
-    }
-
-    // The view alone, without what is written over it.
-    void save_of_series() {
-        const Image all = window_.picture();
-        Image part{static_cast<std::uint32_t>(drawn_view_.width_px),
-                   static_cast<std::uint32_t>(drawn_view_.height_px),
-                   {}};
-        const auto top = all.height_px - static_cast<std::uint32_t>(drawn_view_.y_px) - part.height_px;
-        for (std::uint32_t y = 0; y < part.height_px; ++y) {
-            const auto* const row =
-                all.rgb.data() + std::size_t{3} * ((std::size_t{top} + y) * all.width_px +
-                                                   static_cast<std::uint32_t>(drawn_view_.x_px));
-            part.rgb.insert(part.rgb.end(), row, row + std::size_t{3} * part.width_px);
-        }
-        std::filesystem::path path = options_.screenshot;
-        const std::string number = std::to_string(++series_);
-        path.replace_filename(path.stem().string() + (number.size() < 2 ? "-0" : "-") + number + ".png");
-        write_picture(path, part);
-    }
-
-    void save_picture(const std::string& path) {
-        picture_wanted_ = false;
-        write_picture(path, window_.picture());
-    }
-
-    void write_picture(const std::filesystem::path& path, const Image& image) {
-        try {
-            write_png(path, image);
-            spdlog::info("wrote {}", path.string());
-        } catch (const StartupError& e) {
-            spdlog::error("{}", e.what());
-            picture_failed_ = true;
-        }
-    }
-
-    std::string picture_name() const {
-        const auto seconds = std::chrono::duration_cast<std::chrono::milliseconds>(
-            std::chrono::system_clock::now().time_since_epoch());
-        return "tact-" + std::to_string(seconds.count()) + ".png";
-    }
-
     void publish_load() {
         LoadTopic load{};
         load.taken_at_ns = to_ns(Monotonic::now());
@@ -588,15 +433,7 @@ private:
         load.vertices_drawn = drawn ? view_->vertices() : 0;
         load.triangles_drawn = drawn ? view_->triangles() : 0;
         load.vertices_max = view_ ? view_->vertices_max() : 0;
-        if (site_) {
-            load.particles = site_->figures().alive;
-            load.particle_moves = std::min(site_->figures().moves, site_->figures().most);
-            load.particles_max = site_->figures().most;
-        }
-        if (view_ && view_->bone() != nullptr) {
-            load.vertices_max = view_->bone()->rays_max();
-            load.vertices_drawn = std::clamp(view_->bone()->rays(), 1U, load.vertices_max);
-        }
+        if (view_) drilling_.add_to(load, *view_);
         region_->load.publish(load);
         state_.load = load;
         const bool levels = controller_.have_levels && controller_.attached();
@@ -620,16 +457,9 @@ private:
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     FitDesk desk_;
     DetailDesk detail_;
-    BoneDesk bone_;
-    std::optional<Site> site_;  // of a scene of bone; goes before the bone that it reads
-    ParticlePace particle_pace_;
-    float particles_level_ = 1.0F;  // stays as the controller last told
-    DrillDesk drilling_;
-    DrillHands drill_hands_;
-    RayPace ray_pace_;
+    DrillShow drilling_{window_.software()};
     float bone_reach_a_ = 0.0F;
     bool near_burr_wanted_ = options_.near_burr;
-    double rays_share_ = 1.0;  // of the pixels; stays as the controller last told
     BodyList list_;
     SecondHand second_hand_;
     std::vector<DrawnBody> shown_;
@@ -638,13 +468,10 @@ private:
     SceneLoader loader_;
     std::string next_scene_;  // asked for while another was being read
     std::size_t left_out_ = 0;
-    bool picture_wanted_ = false, picture_failed_ = false;
-    bool sharp_ = false;        // this frame is kept: all its rays
-    std::uint32_t series_ = 0;  // pictures of it so far
-    Instant series_from_{};
-    struct {
-        int x_px = 0, y_px = 0, width_px = 1, height_px = 1;
-    } drawn_view_;  // y from below
+    PictureFiles pictures_{options_.screenshot, options_.every_s};
+    PictureFiles::View drawn_view_;
+    bool picture_wanted_ = false;
+    bool sharp_ = false;  // this frame is kept: all its rays
 };
 
 }  // namespace

@@ -70,6 +70,10 @@ bool Controller::next_cycle(TraceTopic& cycle) {
     return !region_.empty() && region_->trace.next(trace_cursor_, cycle);
 }
 
+const PathLevel* Controller::level(const char* path) const {
+    return attached() && have_levels ? find_path(levels, path) : nullptr;
+}
+
 std::string Controller::scene_path() const {
     if (region_.empty()) return {};
     char path[sizeof region_->scene_path];

@@ -43,6 +43,9 @@ public:
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     [[nodiscard]] std::uint64_t events_missed() const { return cursor_.missed; }
 
+    // Of one path, as the controller has it now; null while there is none, or no such path.
+    [[nodiscard]] const PathLevel* level(const char* path) const;
+
     // The scene that the controller runs; empty while it is not known.
     [[nodiscard]] std::string scene_path() const;
     [[nodiscard]] std::uint64_t scene_checksum() const {

@@ -41,8 +41,8 @@ void surface_card(const Theme& theme, DashboardState& state) {
 }
 
 void bone_card(const Theme& theme, const SceneFacts& s) {
-    row(theme, "Bone", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
-        format("voxels of %.3g mm", 1e3 * s.voxel_m));
+    row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
+        format("of %.3g mm", 1e3 * s.voxel_m));
     row(theme, "File", s.file, "");
 }
 

@@ -19,9 +19,9 @@ E code_of(double value) {
     return static_cast<E>(value >= 0.0 && value <= 254.0 ? static_cast<unsigned char>(value) : 255U);
 }
 
-std::string number(double value) {
+std::string number(double value, int digits = 6) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
     return text;
 }
 
@@ -299,7 +299,7 @@ std::string event_text(const EventTopic& event) {
             return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
                    command_result_text(code_of<CommandResult>(event.b));
         case EventCode::level_changed:
-            return what + ": " + path_text(event.a) + " to " + b;
+            return what + ": " + path_text(event.a) + " to " + number(event.b, 2);
         case EventCode::input_refused:
             return what + ": " + a + " so far";
         case EventCode::stopping:

@@ -1,0 +1,42 @@
+// Pictures of the window in files: one at the end, one when a person asks, and a numbered series of the view alone.
+//
+// Thread   frame thread.  Fails by  a line in the log, and failed().
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "gui/render/target.hpp"
+#include "ipc/base/clock.hpp"
+
+namespace tact {
+
+class PictureFiles {
+public:
+    // path: of the one at the end; empty: neither that nor a series. every_s: between two of the series; 0: none.
+    PictureFiles(std::string path, double every_s) : path_(std::move(path)), every_s_(every_s) {}
+
+    [[nodiscard]] bool wanted_at_end() const { return !path_.empty(); }
+    // The first as soon as there is something to see.
+    [[nodiscard]] bool series_due(Instant now, bool something_to_see);
+    struct View {
+        int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // y from below
+    };
+    // Without what is written over the view.
+    void save_of_series(const Image& window, const View& view);
+    void save_at_end(const Image& window) { write(path_, window); }
+    void save_now(const Image& window);  // in the working folder, named by the moment
+    [[nodiscard]] bool failed() const { return failed_; }
+
+private:
+    void write(const std::filesystem::path& path, const Image& image);
+
+    const std::string path_;
+    const double every_s_;
+    std::uint32_t series_ = 0;  // so far
+    Instant series_from_{};
+    bool failed_ = false;
+};
+
+}  // namespace tact
