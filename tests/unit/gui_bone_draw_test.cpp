@@ -5,18 +5,12 @@
 #include <optional>
 #include <set>
 
-#include "deploy/tact/child.hpp"
-#include "deploy/tact/x_server.hpp"
-#include "gui/app/window.hpp"
 #include "gui/render/bone_view.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/elements.hpp"
-#include "gui/render/target.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/support/bone_block.hpp"
-
-// Graphics drivers and X libraries keep memory to the end on purpose.
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+#include "tests/unit/gui_canvas.hpp"
 
 namespace tact {
 namespace {
@@ -27,28 +21,11 @@ constexpr double kBallRadius = 15.0;  // voxels, about the middle
 
 Vec3 middle() { return Vec3::Constant(0.5 * kEdge - 0.5); }
 
-class BoneDraw : public testing::Test {
+class BoneDraw : public Canvas<kWidth, kHeight> {
 protected:
-    static void SetUpTestSuite() {
-        if (launch::find_in_path("Xvfb").empty()) return;
-        char name[] = "/tmp/tact-bone-draw-XXXXXX";
-        folder_ = mkdtemp(name);
-        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
-        for (const auto& [key, value] : server_->environment())
-            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
-        window_ = std::make_unique<Window>(kWidth, kHeight, true);
-        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
-    }
-    static void TearDownTestSuite() {
-        target_.reset();
-        window_.reset();
-        server_.reset();
-        if (!folder_.empty()) std::filesystem::remove_all(folder_);
-    }
     void SetUp() override {
-        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
-        target_->bind();
+        Canvas::SetUp();
+        if (IsSkipped()) return;
         const auto ball = [](const Vec3& p) {
             return std::clamp(kBallRadius + 0.5 - (p - middle()).norm(), 0.0, 1.0);
         };
@@ -115,20 +92,12 @@ protected:
         return n;
     }
 
-    static std::string folder_;
-    static std::unique_ptr<launch::XServer> server_;
-    static std::unique_ptr<Window> window_;
-    static std::unique_ptr<OffscreenTarget> target_;
     std::optional<BoneBlock> block_;
     std::vector<std::uint8_t> drilled_;
     BoneVolumeView now_;
     std::unique_ptr<SceneContent> content_;
     Camera camera_;
 };
-std::string BoneDraw::folder_;
-std::unique_ptr<launch::XServer> BoneDraw::server_;
-std::unique_ptr<Window> BoneDraw::window_;
-std::unique_ptr<OffscreenTarget> BoneDraw::target_;
 
 TEST_F(BoneDraw, ABallOfBoneIsWhereItsSurfaceIsInEveryPixel) {
     BoneView view(*content_, now_);

@@ -3,16 +3,10 @@
 
 #include <filesystem>
 
-#include "deploy/tact/child.hpp"
-#include "deploy/tact/x_server.hpp"
-#include "gui/app/window.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/particle_pace.hpp"
-#include "gui/render/target.hpp"
-
-// Graphics drivers and X libraries keep memory to the end on purpose.
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+#include "tests/unit/gui_canvas.hpp"
 
 namespace tact {
 namespace {
@@ -68,28 +62,11 @@ TEST(ParticlePace, GivesWayAtOnceAndComesBackSlowlyAndDoesNotFallForWhatPixelsCo
     EXPECT_GE(pace.most(), ParticlePace::kLeast);
 }
 
-class GuiCloud : public testing::Test {
+class GuiCloud : public Canvas<kWidth, kHeight> {
 protected:
-    static void SetUpTestSuite() {
-        if (launch::find_in_path("Xvfb").empty()) return;
-        char name[] = "/tmp/tact-gui-cloud-XXXXXX";
-        folder_ = mkdtemp(name);
-        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
-        for (const auto& [key, value] : server_->environment())
-            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
-        window_ = std::make_unique<Window>(kWidth, kHeight, true);
-        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
-    }
-    static void TearDownTestSuite() {
-        target_.reset();
-        window_.reset();
-        server_.reset();
-        if (!folder_.empty()) std::filesystem::remove_all(folder_);
-    }
     void SetUp() override {
-        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
-        target_->bind();
+        Canvas::SetUp();
+        if (IsSkipped()) return;
         camera_.frame(12.0F);
         // Along -z: a particle's x and y are those of the picture.
         view_.eye_from_cells = Eigen::Matrix4f::Identity();
@@ -139,18 +116,10 @@ protected:
         return count;
     }
 
-    static std::string folder_;
-    static std::unique_ptr<launch::XServer> server_;
-    static std::unique_ptr<Window> window_;
-    static std::unique_ptr<OffscreenTarget> target_;
     std::unique_ptr<ParticleCloud> cloud_;
     Camera camera_;
     ParticleCloud::View view_;
 };
-std::string GuiCloud::folder_;
-std::unique_ptr<launch::XServer> GuiCloud::server_;
-std::unique_ptr<Window> GuiCloud::window_;
-std::unique_ptr<OffscreenTarget> GuiCloud::target_;
 
 TEST_F(GuiCloud, NothingIsDrawnOfNothing) { EXPECT_EQ(touched(picture({})), 0U); }
 

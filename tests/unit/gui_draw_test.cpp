@@ -5,16 +5,11 @@
 #include <optional>
 #include <set>
 
-#include "deploy/tact/child.hpp"
-#include "deploy/tact/x_server.hpp"
-#include "gui/app/window.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/units.hpp"
+#include "tests/unit/gui_canvas.hpp"
 #include "tests/unit/gui_fake.hpp"
 #include "tests/unit/gui_wait.hpp"
-
-// Graphics drivers and X libraries keep memory to the end on purpose.
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
 namespace tact {
 namespace {
@@ -23,28 +18,11 @@ constexpr int kWidth = 160, kHeight = 120;
 using Distance = std::function<double(const Eigen::Vector3d& eye_a)>;
 
 // One X server and one context for all cases.
-class GuiDraw : public testing::Test {
+class GuiDraw : public Canvas<kWidth, kHeight> {
 protected:
-    static void SetUpTestSuite() {
-        if (launch::find_in_path("Xvfb").empty()) return;
-        char name[] = "/tmp/tact-gui-draw-XXXXXX";
-        folder_ = mkdtemp(name);
-        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
-        for (const auto& [key, value] : server_->environment())
-            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
-        window_ = std::make_unique<Window>(kWidth, kHeight, true);
-        target_ = std::make_unique<OffscreenTarget>(kWidth, kHeight);
-    }
-    static void TearDownTestSuite() {
-        target_.reset();
-        window_.reset();
-        server_.reset();
-        if (!folder_.empty()) std::filesystem::remove_all(folder_);
-    }
     void SetUp() override {
-        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
-        target_->bind();
+        Canvas::SetUp();
+        if (IsSkipped()) return;
         glViewport(0, 0, kWidth, kHeight);
         glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -97,17 +75,9 @@ protected:
     }
     ImpostorView impostor_view(const Eigen::Matrix4f& eye) const { return {eye, projection(), haze_}; }
 
-    static std::string folder_;
-    static std::unique_ptr<launch::XServer> server_;
-    static std::unique_ptr<Window> window_;
-    static std::unique_ptr<OffscreenTarget> target_;
     Camera camera_;
     Haze haze_;
 };
-std::string GuiDraw::folder_;
-std::unique_ptr<launch::XServer> GuiDraw::server_;
-std::unique_ptr<Window> GuiDraw::window_;
-std::unique_ptr<OffscreenTarget> GuiDraw::target_;
 
 Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
     return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
