@@ -11,8 +11,8 @@ namespace tact {
 
 class RayPace {
 public:
-    static constexpr double kFrame_s =
-        0.03;  // of all that is drawn: within the governor's goal for a picture
+    // Of all that is drawn: within the governor's goal for a picture.
+    static constexpr double kFrame_s = 0.03;
     static constexpr std::uint32_t kFewest = 6000;
 
     [[nodiscard]] std::uint32_t rays_most() const noexcept {

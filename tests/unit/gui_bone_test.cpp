@@ -189,10 +189,11 @@ TEST(RayPace, RaysFitTheTimeOfAFrameAndComeBackSlowly) {
     RayPace pace;
     for (int i = 0; i < 60; ++i) pace.took(0, 0.010);
     for (int i = 0; i < 60; ++i) pace.took(pace.rays_most(), 0.010 + 2e-6 * pace.rays_most());
-    EXPECT_NEAR(pace.rays_most(), 0.040 / 2e-6, 500.0);
+    EXPECT_NEAR(pace.rays_most(), (RayPace::kFrame_s - 0.010) / 2e-6, 500.0);
     pace.took(pace.rays_most(), 0.010 + 8e-6 * pace.rays_most());
     const std::uint32_t dear = pace.rays_most();
-    EXPECT_NEAR(dear, std::max(0.040 / 8e-6, 1.0 * RayPace::kFewest), 500.0) << "believed at once";
+    EXPECT_NEAR(dear, std::max((RayPace::kFrame_s - 0.010) / 8e-6, 1.0 * RayPace::kFewest), 500.0)
+        << "believed at once";
     pace.took(dear, 0.010 + 1e-6 * dear);
     EXPECT_LT(pace.rays_most(), 1.3 * dear) << "believed slowly";
     for (const double odd : {0.0, -1.0, 100.0, std::nan("")}) {
