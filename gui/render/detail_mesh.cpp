@@ -15,7 +15,6 @@ constexpr std::uint32_t kVerticesMost = 400'000;
 RefinementSettings settings_of(const SceneContent& content) {
     RefinementSettings s;
     s.look_ahead_s = 0.0;
-    s.near_max = 1;  // nobody feels this one
     s.splits_max = s.merges_max = 20'000;
     // The coarsest mesh has to fit, whatever it is.
     s.nodes_max = std::max(kVerticesMost, content.detail->forest.roots());
@@ -39,7 +38,7 @@ DetailMesh DetailCut::step(const DetailWish& wish) {
         form_ = wish.form;
         refinement_.set_filter(form_.filter(static_cast<float>(radius_m_)));
     }
-    const RefineStep done = refinement_.step(wish.probe_m, Vec3::Zero(), false);
+    const RefineStep done = refinement_.step(wish.probe_m, Vec3::Zero());
     DetailMesh out;
     out.settled = done.settled || done.no_room;
     out.vertices = done.vertices;

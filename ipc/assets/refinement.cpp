@@ -10,7 +10,6 @@ namespace tact {
 namespace {
 
 constexpr std::uint32_t kCascadeMax = 1U << 16;  // of nodes in a row; longer ones end in the middle
-constexpr std::size_t kPathMax = 1U << 12;       // deeper trees are not followed to their end in near()
 
 }  // namespace
 
@@ -18,8 +17,7 @@ Refinement::Refinement(const VertexForest& forest, const RefinementSettings& set
     : forest_(forest),
       settings_(settings),
       frontier_(std::min(settings.nodes_max, forest.leaves())),
-      mergeable_(std::min(settings.nodes_max, forest.leaves())),
-      near_(settings.near_max) {
+      mergeable_(std::min(settings.nodes_max, forest.leaves())) {
     settings_.nodes_max = std::min(settings_.nodes_max, forest.leaves());
     if (settings_.nodes_max < forest.roots())
         throw StartupError("refine a surface",
@@ -33,7 +31,6 @@ Refinement::Refinement(const VertexForest& forest, const RefinementSettings& set
     ask_rest_.node.resize(settings_.splits_max);
     ask_merge_.node.resize(settings_.merges_max);
     stack_.resize(kCascadeMax);
-    path_.resize(std::min<std::size_t>(kPathMax, forest.nodes()));
     begin();
 }
 
@@ -70,10 +67,10 @@ void Refinement::set_filter(const RefineFilter& filter) noexcept {
         for (std::uint32_t i = 0; i < in->size(); ++i) in->set_limit(i, limit_m(forest_.node(in->node(i))));
 }
 
-RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s, bool with_near) noexcept {
+RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept {
     RefineStep out;
     if (probe_m.allFinite() && velocity_m_s.allFinite()) {
-        RefineBox box{};
+        RefineBox& box = out.path;
         for (std::size_t i = 0; i < 3; ++i) {
             const auto axis = static_cast<Eigen::Index>(i);
             const double way = velocity_m_s[axis] * settings_.look_ahead_s;
@@ -94,50 +91,10 @@ RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s, bool 
         out.full_detail = near == Done::yes;
         out.no_room = near == Done::no_room || far == Done::no_room;
         out.settled = near == Done::yes && far == Done::yes && out.splits == 0 && out.merges == 0;
-        if (with_near) collect(box, out);
     }
     out.vertices = vertices_;
     out.triangles = triangles_;
     return out;
-}
-
-void Refinement::collect(const RefineBox& box, RefineStep& step) noexcept {
-    NearTriangles& to = near_.back();
-    ++steps_;
-    to.step = steps_;
-    to.full_detail = step.full_detail;
-    to.complete = true;
-    to.count = 0;
-    to.deviation_m = 0.0F;
-    const auto near_m = static_cast<float>(settings_.near_m);
-    for (std::size_t i = 0; i < 3; ++i) {
-        to.low_m[i] = box.centre_m[i] - box.half_m[i] - near_m;
-        to.high_m[i] = box.centre_m[i] + box.half_m[i] + near_m;
-    }
-    const bool whole = walk(
-        path_,
-        [&](const ForestNode& node) { return box.distance_m(node.position_m) <= near_m + node.span_m; },
-        [&](const ForestNode& node) { return box.distance_m(node.position_m) <= near_m + node.own_span_m; },
-        [&](const ForestTriangle& t, const std::array<std::uint32_t, 3>& at) {
-            NearTriangle made{{position_m(at[0]), position_m(at[1]), position_m(at[2])}, t.number};
-            for (std::size_t i = 0; i < 3; ++i) {
-                const auto [low, high] =
-                    std::minmax({made.corner_m[0][i], made.corner_m[1][i], made.corner_m[2][i]});
-                if (low > to.high_m[i] || high < to.low_m[i]) return;
-            }
-            if (to.count == to.triangle.size()) {
-                to.complete = false;
-                return;
-            }
-            for (const std::uint32_t place : at)
-                if (leaf(place) == kNoForestNode)
-                    to.deviation_m =
-                        std::max(to.deviation_m, forest_.node(place - forest_.leaves()).deviation_m);
-            to.triangle[to.count++] = made;
-        });
-    to.complete = to.complete && whole;
-    step.deviation_near_m = to.deviation_m;
-    near_.publish();
 }
 
 std::uint32_t Refinement::descend(VertexForest::Branch b, std::uint32_t leaf) const noexcept {
@@ -161,7 +118,7 @@ std::size_t Refinement::memory_bytes() const {
            mergeable_.bytes() +
            4 * (ask_full_.node.capacity() + ask_rest_.node.capacity() + ask_merge_.node.capacity() +
                 stack_.capacity()) +
-           path_.capacity() * sizeof(Level) + 3 * settings_.near_max * sizeof(NearTriangle) + sizeof(*this);
+           sizeof(*this);
 }
 
 }  // namespace tact

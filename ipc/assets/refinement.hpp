@@ -8,12 +8,10 @@
 //           step.
 // Same      where the filter and the box are the same and the budget is not out, the cut is the same, wherever
 //           the probe came from: what is asked for, and what that needs.
-// Cost      follows the number of changes, and a look at the nodes at the cut; triangles are looked at in near()
-//           alone.
+// Cost      follows the number of changes, and a look at the nodes at the cut; no triangle is looked at.
 // Memory    8 bytes for each node of the forest, 64 for each vertex that may be active. All is taken by the
 //           constructor.
-// Frame     model, metres.  Thread  one thread calls step() and set_filter(), never the servo's; near() is for
-//           the servo.
+// Frame     model, metres.  Thread  one thread, never the servo's.
 // Fails by  StartupError where nodes_max cannot hold the coarsest mesh. Full lists leave the surface as fine as
 //           they can, and say so.
 #pragma once
@@ -24,7 +22,6 @@
 #include <vector>
 
 #include "ipc/assets/cut_list.hpp"
-#include "ipc/assets/near_triangles.hpp"
 #include "ipc/assets/refine_filter.hpp"
 #include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/huge_pages.hpp"
@@ -35,8 +32,6 @@ namespace tact {
 struct RefinementSettings {
     RefineFilter filter;
     double look_ahead_s = 0.015;         // how far ahead of the probe its path is refined
-    double near_m = 0.0;                 // around that path: what near() holds
-    std::uint32_t near_max = 8192;       // triangles
     std::uint32_t splits_max = 4000;     // a step, forced ones too
     std::uint32_t merges_max = 4000;     // a step
     std::uint32_t nodes_max = 1U << 18;  // vertices active at the same time
@@ -48,32 +43,23 @@ struct RefineStep {
     bool full_detail = false;  // all within the filter's radius of the box is as in the full mesh
     bool no_room = false;      // as many vertices as may be are active
     std::uint32_t vertices = 0, triangles = 0;  // active
-    float deviation_near_m = 0.0F;  // of the triangles of near() from the full surface, at the most
+    RefineBox path{};                           // what the probe is about to pass through
 };
 
 class Refinement {
 public:
     Refinement(const VertexForest& forest, const RefinementSettings& settings);
 
-    // A probe that is not finite changes nothing. with_near: near() is made anew, for the same box.
-    RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s, bool with_near = true) noexcept;
+    // A probe that is not finite changes nothing.
+    RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept;
     void set_filter(const RefineFilter& filter) noexcept;
-    void set_near(double near_m) noexcept { settings_.near_m = near_m; }
     [[nodiscard]] const RefineFilter& filter() const noexcept { return settings_.filter; }
 
-    // Servo thread.
-    [[nodiscard]] const NearTriangles& near() noexcept TACT_RT { return near_.newest(); }
-
-    // The rest looks at the whole cut; on the thread of step(), and it may allocate.
+    // The rest looks at the whole cut, and may allocate.
     // visit(number of the triangle, {three places}) for every active triangle; a place names an active vertex
     // as long as the cut stays.
     template <class Visit>
-    void each_triangle(Visit&& visit) const {
-        std::vector<Level> path(forest_.nodes());
-        static_cast<void>(walk(
-            path, [](const ForestNode&) { return true; }, [](const ForestNode&) { return true; },
-            [&](const ForestTriangle& t, const std::array<std::uint32_t, 3>& at) { visit(t.number, at); }));
-    }
+    void each_triangle(Visit&& visit) const;
     [[nodiscard]] std::array<float, 3> position_m(std::uint32_t place) const {
         return place < forest_.leaves() ? forest_.leaf_position_m(place)
                                         : forest_.node(place - forest_.leaves()).position_m;
@@ -135,47 +121,8 @@ private:
     Done split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept;
     void merge(std::uint32_t n, const RefineBox& box) noexcept;
     std::uint32_t merge_all(const RefineBox& box) noexcept;
-    void collect(const RefineBox& box, RefineStep& step) noexcept;
 
     [[nodiscard]] std::uint32_t descend(VertexForest::Branch b, std::uint32_t leaf) const noexcept;
-    // enter(node) for split nodes, from the roots on: false leaves it out with what lies below. take(node): its own
-    // triangles are wanted: emit(triangle, places). False: the path was too short for some.
-    template <class Enter, class Take, class Emit>
-    bool walk(std::span<Level> path, Enter&& enter, Take&& take, Emit&& emit) const {
-        bool whole = true;
-        std::size_t depth = 0;
-        const auto place = [&](std::uint32_t leaf) {
-            if (is_active(leaf)) return leaf;
-            for (std::size_t i = depth; i-- > 0;)  // the third corner is likely to be a near relation
-                if (leaf >= path[i].branch.first && leaf < path[i].branch.end)
-                    return descend(path[i].branch, leaf);
-            return place_of(leaf);
-        };
-        const auto go_into = [&](const VertexForest::Branch& b) {
-            if (b.is_leaf() || !is_split(b.node) || !enter(forest_.node(b.node))) return;
-            if (depth == path.size()) {
-                whole = false;
-                return;
-            }
-            path[depth++] = {b, 0};
-            if (!take(forest_.node(b.node))) return;
-            for (const ForestTriangle& t : forest_.triangles_of(b.node))
-                emit(t, {place(t.leaf[0]), place(t.leaf[1]), place(t.leaf[2])});
-        };
-        for (std::uint32_t r = 0; r < forest_.roots(); ++r) {
-            go_into(forest_.root(r));
-            while (depth > 0) {
-                Level& level = path[depth - 1];
-                if (level.next == 2)
-                    --depth;
-                else
-                    go_into(forest_.child(level.branch, level.next++));
-            }
-        }
-        for (const ForestTriangle& t : forest_.triangles_always())
-            emit(t, {place_of(t.leaf[0]), place_of(t.leaf[1]), place_of(t.leaf[2])});
-        return whole;
-    }
 
     const VertexForest& forest_;
     RefinementSettings settings_;
@@ -186,9 +133,37 @@ private:
     std::uint32_t vertices_ = 0, triangles_ = 0;
     Queue ask_full_, ask_rest_, ask_merge_;  // within the radius; elsewhere
     HugeVector<std::uint32_t> stack_;
-    std::vector<Level> path_;
-    std::uint64_t steps_ = 0;
-    NearExchange near_;
 };
+
+template <class Visit>
+void Refinement::each_triangle(Visit&& visit) const {
+    std::vector<Level> path;
+    const auto place = [&](std::uint32_t leaf) {
+        if (is_active(leaf)) return leaf;
+        for (std::size_t i = path.size(); i-- > 0;)  // the third corner is likely to be a near relation
+            if (leaf >= path[i].branch.first && leaf < path[i].branch.end)
+                return descend(path[i].branch, leaf);
+        return place_of(leaf);
+    };
+    const auto show = [&](const ForestTriangle& t) {
+        visit(t.number, std::array{place(t.leaf[0]), place(t.leaf[1]), place(t.leaf[2])});
+    };
+    const auto go_into = [&](const VertexForest::Branch& b) {
+        if (b.is_leaf() || !is_split(b.node)) return;
+        path.push_back({b, 0});
+        for (const ForestTriangle& t : forest_.triangles_of(b.node)) show(t);
+    };
+    for (std::uint32_t r = 0; r < forest_.roots(); ++r) {
+        go_into(forest_.root(r));
+        while (!path.empty()) {
+            Level& level = path.back();
+            if (level.next == 2)
+                path.pop_back();
+            else
+                go_into(forest_.child(level.branch, level.next++));
+        }
+    }
+    for (const ForestTriangle& t : forest_.triangles_always()) show(t);
+}
 
 }  // namespace tact

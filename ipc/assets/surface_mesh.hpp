@@ -92,14 +92,13 @@ public:
         return unit_normal(normal_[vertex]);
     }
 
-    [[nodiscard]] OctNormal stored_normal(std::uint32_t vertex) const noexcept TACT_RT {
-        return normal_[vertex];
+    // The same triangles, found in another tree, of some of them.
+    [[nodiscard]] SurfaceMesh with_tree(std::span<const SurfaceNode> node) const noexcept TACT_RT {
+        SurfaceMesh mesh = *this;
+        mesh.node_ = node;
+        return mesh;
     }
-    // Of arrays in memory that are right, as read_surface() would find them; not closed.
-    [[nodiscard]] static SurfaceMesh view(std::span<const float> position_m,
-                                          std::span<const OctNormal> normal,
-                                          std::span<const std::uint32_t> corner,
-                                          std::span<const SurfaceNode> node) noexcept TACT_RT;
+    [[nodiscard]] std::span<const SurfaceNode> tree() const noexcept { return node_; }
     // All of them, 3 a vertex and 3 a triangle: for the forest over the same surface.
     [[nodiscard]] std::span<const float> all_positions_m() const noexcept { return position_m_; }
     [[nodiscard]] std::span<const std::uint32_t> all_corners() const noexcept { return corner_; }

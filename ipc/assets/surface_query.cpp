@@ -30,25 +30,6 @@ constexpr std::size_t kStack = std::size_t{3} * (SurfaceMesh::kDepthMax + 1) + 4
 
 }  // namespace
 
-SurfaceMesh SurfaceMesh::view(std::span<const float> position_m, std::span<const OctNormal> normal,
-                              std::span<const std::uint32_t> corner,
-                              std::span<const SurfaceNode> node) noexcept {
-    SurfaceMesh mesh;
-    mesh.position_m_ = position_m;
-    mesh.normal_ = normal;
-    mesh.corner_ = corner;
-    mesh.node_ = node;
-    for (std::size_t axis = 0; axis < 3 && !corner.empty(); ++axis) {
-        const auto i = static_cast<Eigen::Index>(axis);
-        mesh.low_m_[i] =
-            static_cast<double>(*std::min_element(node[0].low_m[axis].begin(), node[0].low_m[axis].end()));
-        mesh.high_m_[i] =
-            static_cast<double>(*std::max_element(node[0].high_m[axis].begin(), node[0].high_m[axis].end()));
-    }
-    mesh.largest_m_ = std::max(mesh.low_m_.cwiseAbs().maxCoeff(), mesh.high_m_.cwiseAbs().maxCoeff());
-    return mesh;
-}
-
 bool SurfaceMesh::leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,
                               std::size_t& count) const noexcept {
     count = 0;

@@ -1,7 +1,7 @@
 // Refinement around a moving probe: processor time of one step, on a rough torus.
 //
-// Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond; triangles
-//           for the servo within 1 %. 40,000 vertices; a million where the environment variable
+// Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond.
+//           40,000 vertices; a million where the environment variable
 //           TACT_BENCH_LARGE is set.
 // Figures   step_us: processor time of the thread, percentiles over the steps; ops: splits and merges a step;
 //           active: vertices; late: steps that ended without full detail. Still: the probe stands.
@@ -41,7 +41,6 @@ void run(benchmark::State& state, double way, double width = 0.05, double far = 
     const auto part = [&](double fraction) { return static_cast<float>(fraction * torus.diagonal_m); };
     settings.filter = RefineFilter::bell(part(0.05), part(width), part(far));
     settings.look_ahead_s = 0.0;
-    settings.near_m = 0.01 * torus.diagonal_m;
     Refinement refinement(torus.forest, settings);
     for (int i = 0; i < 60; ++i) refinement.step(Vec3(1.0, 0.0, 0.3), Vec3::Zero());
     std::vector<double> step_us;

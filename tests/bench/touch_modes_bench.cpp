@@ -1,7 +1,7 @@
 // A ball that slides over a rough sphere: time of the servo's step in the modes off-tree and chr, on one path.
 //
 // Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
-//           where the environment variable TACT_BENCH_LARGE is set. chr is tended every fourth step by the same
+//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. chr is tended every fourth step by the same
 //           thread, or (Live) steps are 1 ms apart and a thread beside it tends every 4 ms, as in tact-rt.
 // Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
 //           surface; tend_us: of one tend(); near: triangles in it, predicted for this fidelity.
@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct Baked {
     static std::vector<std::byte> bake(double& ball_m) {
         SceneWriter out;
         SurfaceInput input;
-        input.mesh = rough_sphere(std::getenv("TACT_BENCH_LARGE") != nullptr ? 316 : 68);
+        const char* const large = std::getenv("TACT_BENCH_LARGE");
+        input.mesh = rough_sphere(large == nullptr ? 68 : std::string_view(large) == "10m" ? 707 : 316);
         input.picture = false;
         ball_m *= bake_surface(std::move(input), out).meta.world_per_model;
         return out.to_bytes();

@@ -160,8 +160,6 @@ void use_forest(const SceneFile& file) {
     const VertexForest forest = read_forest(file, mesh.position_m, mesh.triangle);
     RefinementSettings settings;
     settings.filter = RefineFilter::bell(0.5F, 2.0F, 0.3F);
-    settings.near_m = 1.0;
-    settings.near_max = 40;
     settings.splits_max = 9;
     settings.nodes_max = std::max(forest.roots(), 30U);
     Refinement refinement(forest, settings);

@@ -2,9 +2,7 @@
 // came from.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <set>
-#include <thread>
 
 #include "ipc/assets/refinement.hpp"
 #include "ipc/base/error.hpp"
@@ -37,7 +35,6 @@ const Surface& torus() {
 RefinementSettings some_settings(float radius_m) {
     RefinementSettings s;
     s.filter = RefineFilter::bell(radius_m, 0.3F, 0.05F);
-    s.near_m = static_cast<double>(radius_m);
     s.look_ahead_s = 0.01;
     return s;
 }
@@ -256,7 +253,6 @@ TEST(Refinement, TheDeviationOfTheActiveSurfaceIsWithinWhatIsSaid) {
     r.set_filter(RefineFilter());
     settle(r, Vec3::Zero());
     EXPECT_EQ(r.deviation_m(), 0.0F);
-    EXPECT_EQ(r.step(Vec3::Zero(), Vec3::Zero()).deviation_near_m, 0.0F);
 }
 
 TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {
@@ -322,44 +318,6 @@ TEST(Refinement, AnotherFilterIsFollowedByTheNextStep) {
     r.set_filter(RefineFilter());
     EXPECT_EQ(r.step(here, Vec3::Zero()).vertices, torus().forest.leaves());
     EXPECT_EQ(active_mesh(r).triangles(), torus().mesh.triangles());
-}
-
-TEST(Refinement, TheNeighbourhoodHoldsAllTrianglesOfTheBoxAndNeverTears) {
-    Refinement r(torus().forest, some_settings(0.2F));
-    EXPECT_EQ(r.near().step, 0U);
-    const Vec3 here(1.0, 0.0, 0.3);
-    settle(r, here);
-    const NearTriangles& near = r.near();
-    EXPECT_TRUE(near.complete);
-    EXPECT_TRUE(near.full_detail);
-    std::set<std::uint32_t> held;
-    for (std::uint32_t i = 0; i < near.count; ++i) EXPECT_TRUE(held.insert(near.triangle[i].number).second);
-    EXPECT_LT(held.size(), torus().mesh.triangles() / 4);
-    for (std::uint32_t t = 0; t < torus().forest.triangles(); ++t) {
-        for (const std::uint32_t v : torus().corners(t)) {
-            const auto p = torus().forest.leaf_position_m(v);
-            if ((Vec3(p[0], p[1], p[2]) - here).cwiseAbs().maxCoeff() < 0.199) {
-                EXPECT_TRUE(held.contains(t));
-            }
-        }
-    }
-    std::atomic<bool> stop{false};
-    std::thread reader([&] {
-        std::uint64_t last = 0;
-        while (!stop) {
-            const NearTriangles& now = r.near();
-            EXPECT_GE(now.step, last);
-            last = now.step;
-            const auto low = now.low_m;
-            std::set<std::uint32_t> numbers;
-            for (std::uint32_t i = 0; i < now.count; ++i)
-                EXPECT_TRUE(numbers.insert(now.triangle[i].number).second);
-            EXPECT_EQ(now.low_m, low);
-        }
-    });
-    for (int i = 0; i < 100; ++i) r.step(Vec3(std::cos(0.05 * i), std::sin(0.05 * i), 0.3), Vec3::Zero());
-    stop = true;
-    reader.join();
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // Three ways to look a surface up: the same force, and the adaptive one is there where the tool is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/random.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/near_surface.hpp"
 #include "rt/force/surface/surface_model.hpp"
 
 namespace tact {
@@ -115,6 +118,69 @@ TEST(SurfaceModes, AdaptiveWithoutAForestIsRefusedAndTheOthersAreNot) {
     const Baked plain(false);
     EXPECT_THROW((void)load_surface_model(*plain.file, {.mode = SurfaceMode::chr}), StartupError);
     EXPECT_NE(load_surface_model(*plain.file, {.mode = SurfaceMode::off_brute}), nullptr);
+}
+
+std::vector<std::uint32_t> leaves_in(const SurfaceMesh& mesh, const Vec3& centre_m, double radius_m) {
+    std::vector<std::uint32_t> leaf(mesh.triangles());
+    std::size_t count = 0;
+    EXPECT_TRUE(mesh.leaves_near(centre_m, radius_m, leaf, count));
+    leaf.resize(count);
+    std::sort(leaf.begin(), leaf.end());
+    return leaf;
+}
+
+TEST(NearSurface, FindsWhatTheWholeTreeFindsInItsBox) {
+    const SurfaceMesh full = read_surface(*sphere().file);
+    NearSurface near(4096);
+    SeededRandom random(5);
+    const auto between = [&](double low, double high) { return low + (high - low) * random.uniform(); };
+    const double size_m = (full.high_m() - full.low_m()).maxCoeff();
+    std::size_t found = 0, nothing = 0;
+    for (std::uint64_t build = 1; build <= 200; ++build) {
+        std::array<float, 3> low_m{}, high_m{};
+        double least_m = size_m;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto axis = static_cast<Eigen::Index>(i);
+            const double half_m = size_m * (build % 4 == 0 ? 1e-4 : between(0.002, 0.15));
+            const double middle_m = between(full.low_m()[axis], full.high_m()[axis]);
+            low_m[i] = static_cast<float>(middle_m - half_m);
+            high_m[i] = static_cast<float>(middle_m + half_m);
+            least_m = std::min(least_m, half_m);
+        }
+        ASSERT_TRUE(near.build(full, low_m, high_m, build));
+        EXPECT_EQ(near.version(), build);
+        for (int ball = 0; ball < 10; ++ball) {
+            Vec3 centre_m;
+            const double radius_m = 0.3 * least_m;
+            for (std::size_t i = 0; i < 3; ++i)
+                centre_m[static_cast<Eigen::Index>(i)] =
+                    between(static_cast<double>(low_m[i]) + 1.01 * radius_m,
+                            static_cast<double>(high_m[i]) - 1.01 * radius_m);
+            ASSERT_TRUE(near.holds(centre_m, radius_m));
+            const auto leaves = leaves_in(full, centre_m, 0.999 * radius_m);
+            EXPECT_EQ(leaves_in(near.mesh(), centre_m, 0.999 * radius_m), leaves);
+            found += leaves.size();
+            nothing += leaves.empty() ? 1 : 0;
+        }
+        EXPECT_FALSE(near.holds(Vec3::Constant(2.0 * size_m), 0.0));
+    }
+    EXPECT_GT(found, 1000U);
+    EXPECT_GT(nothing, 100U);
+}
+
+TEST(NearSurface, WhatDoesNotFitIsNotHeld) {
+    const SurfaceMesh full = read_surface(*sphere().file);
+    NearSurface near(16);
+    std::array<float, 3> low_m{}, high_m{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        low_m[i] = static_cast<float>(full.low_m()[static_cast<Eigen::Index>(i)]);
+        high_m[i] = static_cast<float>(full.high_m()[static_cast<Eigen::Index>(i)]);
+    }
+    EXPECT_FALSE(near.build(full, low_m, high_m, 1));
+    EXPECT_FALSE(near.holds(Vec3::Zero(), 0.0));
+    EXPECT_FALSE(NearSurface().build(full, low_m, high_m, 1));
+    EXPECT_TRUE(near.build(full, low_m, low_m, 2));
+    EXPECT_TRUE(near.holds(full.low_m().cast<float>().cast<double>(), 0.0));
 }
 
 TEST(SurfaceModes, MoreFidelityIsAWiderRadiusOfMoreTriangles) {

@@ -17,8 +17,6 @@ RefinementSettings refine_settings(const AdaptiveSettings& s) {
     RefinementSettings r;
     r.filter = FilterForm{}.filter(static_cast<float>(s.most_m));
     r.look_ahead_s = s.look_ahead_s;
-    r.near_m = s.most_m;
-    r.near_max = s.near_max;
     r.splits_max = r.merges_max = 8000;
     return r;
 }
@@ -42,7 +40,7 @@ AdaptiveSurface::AdaptiveSurface(const SurfaceMesh& full, const VertexForest& fo
       settings_(settings),
       density_(static_cast<double>(full.triangles()) / std::max(area_m2(full), 1e-30)),
       refinement_(forest_, refine_settings(settings)),
-      surface_(NearSurface(settings.near_max)) {}
+      surface_(NearSurface(settings.near_nodes_max)) {}
 
 double AdaptiveSurface::radius_m(float fidelity) const noexcept {
     const double level = fidelity >= 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;
@@ -59,7 +57,6 @@ void AdaptiveSurface::set_filter(float fidelity, const FilterForm& form) noexcep
     fidelity_ = fidelity;
     form_ = form;
     refinement_.set_filter(form.filter(static_cast<float>(radius_m(fidelity))));
-    refinement_.set_near(radius_m(fidelity));
 }
 
 // Whether what was built last will do until the next turn and some more: it holds what a step may look at, from
@@ -74,22 +71,26 @@ bool AdaptiveSurface::still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) 
             std::max(here, there) + need_m > static_cast<double>(built_high_m_[i]))
             return false;
     }
-    return built_usable_;
+    return built_ > 0;
 }
 
 RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
                                  const FilterForm& form) noexcept {
     const Instant begin = Monotonic::now();
     set_filter(fidelity, form);
-    const RefineStep done = refinement_.step(tool_m, velocity_m_s, !still_holds(tool_m, velocity_m_s));
-    const NearTriangles& near = refinement_.near();
-    if (near.step == built_) return done;
-    built_ = near.step;
-    built_low_m_ = near.low_m;
-    built_high_m_ = near.high_m;
-    built_usable_ = near.complete && near.full_detail;
-    surface_.back().build(near, full_);
+    const RefineStep done = refinement_.step(tool_m, velocity_m_s);
+    if (!done.full_detail || still_holds(tool_m, velocity_m_s)) return done;
+    std::array<float, 3> low_m{}, high_m{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float reach_m = done.path.half_m[i] + static_cast<float>(radius_m(fidelity_));
+        low_m[i] = done.path.centre_m[i] - reach_m;
+        high_m[i] = done.path.centre_m[i] + reach_m;
+    }
+    if (!surface_.back().build(full_, low_m, high_m, built_ + 1)) return done;
     surface_.publish();
+    ++built_;
+    built_low_m_ = low_m;
+    built_high_m_ = high_m;
     const auto took =
         static_cast<float>(to_s(Monotonic::now() - begin) / std::max(predicted_triangles(fidelity), 1.0));
     const float before = s_per_triangle_.load(std::memory_order_relaxed);

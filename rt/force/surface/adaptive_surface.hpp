@@ -1,7 +1,7 @@
 // A surface that is as fine as its full mesh around the tool and coarse elsewhere, for the servo's contact.
 //
-// Halves    tend() moves the cut on and builds the surface around the path that the tool is about to take;
-//           around() gives the servo what was built last, where it holds what is asked for.
+// Halves    tend() moves the cut on and, where it is in full detail around the path that the tool is about to take, builds
+//           the surface there; around() gives the servo what was built last, where it holds what is asked for.
 // Radius    within it, of a box along that path, all is as in the full mesh: the tool's own, what a step may look
 //           at, and a width that the fidelity chooses.
 // Cost      of a turn of tend(): a rate a triangle around the tool, learnt from the turns that built, times how many
@@ -17,14 +17,15 @@
 
 #include "ipc/assets/refinement.hpp"
 #include "ipc/assets/surface_mesh.hpp"
+#include "ipc/assets/triple_buffer.hpp"
 #include "ipc/assets/vertex_forest.hpp"
 #include "rt/force/surface/near_surface.hpp"
 
 namespace tact {
 
 struct AdaptiveSettings {
-    double least_m = 0.0, most_m = 0.0;  // radius of full detail, at fidelity 0 and 1
-    std::uint32_t near_max = 1U << 16;   // triangles around the tool
+    double least_m = 0.0, most_m = 0.0;       // radius of full detail, at fidelity 0 and 1
+    std::uint32_t near_nodes_max = 1U << 15;  // of the tree around the tool: some 300,000 triangles
     static constexpr double kLookAheadS = 0.012;
     double look_ahead_s = kLookAheadS;
 };
@@ -39,9 +40,9 @@ public:
                     const FilterForm& form = {}) noexcept;
     // Servo. Whether a ball lies in what was built, the one of before or a newer one; then mesh() is it.
     [[nodiscard]] bool around(const Vec3& centre_m, double radius_m) noexcept TACT_RT;
-    [[nodiscard]] SurfaceMesh mesh() const noexcept TACT_RT { return surface_.same().mesh(); }
+    [[nodiscard]] const SurfaceMesh& mesh() const noexcept TACT_RT { return surface_.same().mesh(); }
     // Rises with every other mesh().
-    [[nodiscard]] std::uint64_t version() const noexcept TACT_RT { return surface_.same().step(); }
+    [[nodiscard]] std::uint64_t version() const noexcept TACT_RT { return surface_.same().version(); }
 
     [[nodiscard]] double radius_m(float fidelity) const noexcept TACT_RT;
     // Triangles around the tool at a fidelity, at the mesh's mean density.
@@ -68,9 +69,8 @@ private:
     FilterForm form_;
     std::atomic<float> s_per_triangle_{0.0F};
     Refinement refinement_;
-    std::uint64_t built_ = 0;  // step of the refinement; its box, and whether the servo can use it
+    std::uint64_t built_ = 0;  // how many; the box of the last
     std::array<float, 3> built_low_m_{}, built_high_m_{};
-    bool built_usable_ = false;
     TripleBuffer<NearSurface> surface_;
 };
 

@@ -36,10 +36,7 @@ double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
     return settings_.radius_m + (1.0 + kCollectedMoves) * std::max(allowed, settings_.margin_m);
 }
 
-void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
-    mesh_ = mesh;
-    collected_m_ = -1.0;
-}
+void SurfaceContact::use(const SurfaceMesh& mesh) noexcept { mesh_ = mesh; }
 
 // False: there are more than fit.
 bool SurfaceContact::find(double radius_m) noexcept {

@@ -80,8 +80,8 @@ public:
     [[nodiscard]] const Vec3& goal_m() const noexcept TACT_RT { return goal_m_; }  // of the last step
     // How far from the proxy as it is a step towards a goal may look.
     [[nodiscard]] double looks_m(const Vec3& goal_m) const noexcept TACT_RT;
-    // From now on the same surface is this one, at least as far as the next step looks. Its bytes stay until another
-    // one is used.
+    // From now on the same triangles are found in this one's tree, at least those that the next step may look at. Its bytes
+    // stay until another one is used.
     void use(const SurfaceMesh& mesh) noexcept TACT_RT;
     // The proxy is at the goal, or where that is inside a closed surface, outside at the nearest place.
     void seat(const Vec3& goal_m) noexcept TACT_RT;

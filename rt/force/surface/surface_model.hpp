@@ -30,6 +30,7 @@
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/assets/surface_mesh.hpp"
+#include "ipc/assets/triple_buffer.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_surface.hpp"
