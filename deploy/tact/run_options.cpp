@@ -138,6 +138,15 @@ void add_run_options(CLI::App& app, RunOptions& options) {
             },
             "draw no more often")
         ->type_name("FPS");
+    visual
+        ->add_option_function<std::string>(
+            "--particles",
+            [&options](const std::string& v) {
+                options.visual.emplace_back("--particles");
+                options.visual.push_back(v);
+            },
+            "keep so many over bone, to measure what they cost")
+        ->type_name("N");
 }
 
 }  // namespace tact::launch

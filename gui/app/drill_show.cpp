@@ -17,7 +17,7 @@ void DrillShow::use(const std::shared_ptr<const SceneContent>& content, const Co
     bone_.meet(controller);
     if (!content->bone) return;
     site_.emplace(*bone_.volume(), content->bone->labels, content->meta.world_per_model);
-    site_->scatter(particles);
+    site_->keep(particles);
     view.show_bone(*bone_.volume());
 }
 

@@ -28,7 +28,7 @@ class DrillShow {
 public:
     explicit DrillShow(bool software) : software_(software) {}
 
-    // particles: scattered over bone at the start. Throws StartupError where the bone cannot be drawn.
+    // particles: there are always so many over the bone (Site::keep()). Throws StartupError where the bone cannot be drawn.
     void use(const std::shared_ptr<const SceneContent>& content, const Controller& controller,
              SceneView& view, std::uint32_t particles);
     void meet(const Controller& controller);

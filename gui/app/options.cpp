@@ -63,8 +63,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_flag("!--no-depth-cue", options.depth_cue, "do not fade what lies far behind");
     app.add_flag("--near-burr", options.near_burr,
                  "look at the burr from near once it is in bone, as key F does");
-    app.add_option("--particles", options.particles,
-                   "scatter so many over bone at the start, to measure what they cost")
+    app.add_option("--particles", options.particles, "keep so many over bone, to measure what they cost")
         ->check(CLI::Range(0, 100000));
     app.add_flag("--bench-particles", options.bench_particles,
                  "measure what moving particles costs, print it as JSON and end; opens no window");

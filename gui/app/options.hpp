@@ -25,7 +25,7 @@ struct GuiOptions {
     std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;
     bool near_burr = false;        // once it is in bone
-    std::uint32_t particles = 0;   // scattered over bone at the start
+    std::uint32_t particles = 0;   // that there always are over bone
     bool bench_particles = false;  // instead of a window
     double fps_max = -1.0;         // 0: no limit; below: 60 where the display does not pace
 };

@@ -62,6 +62,7 @@ void Site::step(const Frame& frame) noexcept {
     take_changes(frame, burr);
     if (burr != nullptr) spray(dt_s, *frame.drill, *burr);
     bleeding_.step(dt_s, static_cast<std::size_t>(std::ceil(kBloodShare_per_s * kept_ * dt_s)), particles_);
+    scatter();  // after what drilling makes, for which there is to be room
 
     Vec3 looked_at_m = bricks_.to_model(0.5 * Vec3(bricks_.size[0], bricks_.size[1], bricks_.size[2]));
     Stir stir;
@@ -90,9 +91,13 @@ void Site::step(const Frame& frame) noexcept {
     look(dt_s, burr, frame.eye_model_m);
 }
 
-void Site::scatter(std::uint32_t count) noexcept {
+void Site::scatter() noexcept {
+    const auto there = static_cast<std::uint32_t>(particles_.all().size());
+    const std::uint32_t wanted = std::min(scattered_, kept_);
+    if (there >= wanted) return;
+    const std::uint32_t missing = wanted - there;
     const Vec3 size(bricks_.size[0], bricks_.size[1], bricks_.size[2]);
-    for (std::uint32_t i = 0, tries = 0; i < count && tries < 4 * count; ++tries) {
+    for (std::uint32_t i = 0, tries = 0; i < missing && tries < 4 * missing; ++tries) {
         const Vec3 at =
             size.cwiseProduct(Vec3(random_.uniform(), random_.uniform(), 0.3 + 0.7 * random_.uniform()));
         i += particles_.emit(static_cast<Matter>(random_.below(4)), bricks_.to_model(at), Vec3::Zero()) ? 1

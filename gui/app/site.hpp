@@ -42,8 +42,9 @@ public:
         Vec3 eye_model_m = Vec3::Zero();
     };
     void step(const Frame& frame) noexcept;
-    // So many particles more, of all kinds, over the bone: to measure what many cost.
-    void scatter(std::uint32_t count) noexcept;
+    // From now on there are always so many particles: what is missing of all kinds is scattered over the bone at each
+    // step, so that what many cost can be measured. What the level does not allow is not there; 0 ends it.
+    void keep(std::uint32_t count) noexcept { scattered_ = count; }
 
     [[nodiscard]] const Particles& particles() const noexcept { return particles_; }
     [[nodiscard]] const SiteFigures& figures() const noexcept { return figures_; }
@@ -51,6 +52,7 @@ public:
 private:
     void take_changes(const Frame& frame, const DrillHand* burr) noexcept;
     void spray(double dt_s, const DrillTopic& drill, const DrillHand& burr) noexcept;
+    void scatter() noexcept;
     void look(double dt_s, const DrillHand* burr, const Vec3& eye_model_m) noexcept;
 
     BoneBricks bricks_;
@@ -60,7 +62,7 @@ private:
     SeededRandom random_{2};
     double water_owed_ = 0.0, looked_s_ = 0.0;
     bool seen_ = true;
-    std::uint32_t kept_ = kMost;
+    std::uint32_t kept_ = kMost, scattered_ = 0;
     SiteFigures figures_;
 };
 

@@ -8,7 +8,9 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kBetweenLooks = 64;  // moves between two looks at the clock
+// Moves between two looks at the clock: as many as this share of a step, so that a short one is kept as well.
+constexpr std::size_t kBetweenLooks = 64, kBetweenLooksLeast = 8;
+constexpr double kBetweenLooksShare = 1.0 / 32.0;
 constexpr std::size_t kFetchAhead = 8;
 constexpr double kFewest = 0.1;    // of the particles that a step should be able to move
 constexpr double kBelieved = 0.2;  // of a new measurement
@@ -125,10 +127,10 @@ void Particles::regroup(std::uint32_t i) noexcept {
     groups_.move_to(i, speed_group(std::sqrt(squared(particle_[i].velocity)) / fastest_));
 }
 
-void Particles::move_group(std::size_t group, std::size_t moves, Instant deadline,
+void Particles::move_group(std::size_t group, std::size_t moves, std::size_t between_looks, Instant deadline,
                            ParticleStep& step) noexcept {
     for (std::size_t k = 0; k < moves && groups_.held(group) > 0; ++k) {
-        if (k % kBetweenLooks == kBetweenLooks - 1 && settings_.now() >= deadline) return;
+        if ((k + 1) % between_looks == 0 && settings_.now() >= deadline) return;
         const std::uint32_t i = groups_.next(group);
         prefetch(&particle_[groups_.next(group, kFetchAhead)]);
         const Particle& soon = particle_[groups_.next(group, kFetchAhead / 2)];
@@ -260,13 +262,15 @@ ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at
     step.held = groups_.counts();
     step.moves = moves_by_group(step.held, moves_left(prepared));
     GroupCounts moves = step.moves;
+    const auto between_looks = static_cast<std::size_t>(std::clamp(
+        kBetweenLooksShare * moves_left(prepared), double{kBetweenLooksLeast}, double{kBetweenLooks}));
     // Again with what is left, as some slowed down into groups whose turn they took.
     for (int round = 0; round < kRounds; ++round) {
         const std::uint32_t before = step.moved;
-        for (std::size_t j = 0; j < kSpeedGroups; ++j) move_group(j, moves[j], deadline, step);
+        for (std::size_t j = 0; j < kSpeedGroups; ++j) move_group(j, moves[j], between_looks, deadline, step);
         const double left = moves_left(settings_.now());
         if (step.moved == before || step.moved >= particle_.size() ||
-            left < static_cast<double>(kBetweenLooks))
+            left < static_cast<double>(between_looks))
             break;
         moves = moves_by_group(groups_.counts(), left);
     }

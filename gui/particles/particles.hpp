@@ -100,7 +100,8 @@ private:
 
     bool spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint16_t mass) noexcept;
     void remove(std::uint32_t i, std::uint64_t& account) noexcept;
-    void move_group(std::size_t group, std::size_t moves, Instant deadline, ParticleStep& step) noexcept;
+    void move_group(std::size_t group, std::size_t moves, std::size_t between_looks, Instant deadline,
+                    ParticleStep& step) noexcept;
     void pass_by(const Suction& suction, const Stir& stir, Instant deadline, ParticleStep& step) noexcept;
     void fling(Particle& p, const std::array<float, 3>& off, const std::array<float, 3>& spin) const noexcept;
     void give_up(std::size_t count, const Vec3& looked_at, Instant deadline, ParticleStep& step) noexcept;

@@ -193,13 +193,25 @@ TEST(Site, TheLevelBoundsHowManyThereAre) {
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(Site, ScattersAsManyAsThereIsRoomFor) {
-    const Block bone;
+TEST(Site, KeepsAsManyAsAMeasurementWantsWhileTheyRunOff) {
+    Block bone;
     Site site(bone.view, bone.labels, 1.0);
-    site.scatter(5000);
-    EXPECT_EQ(site.particles().all().size(), 5000U);
-    EXPECT_GT(count(site, Matter::paste), 800U);
-    site.scatter(1000000);
+    bone.drill.hand[1].suction = 1.0F;
+    std::uint64_t gone = 0;
+    for (int i = 0; i < 100; ++i) {
+        site.keep(2000);
+        site.step(bone.frame());
+        gone += 2000 - std::min<std::uint64_t>(site.particles().all().size(), 2000);
+        EXPECT_GE(site.particles().all().size(), 1800U) << i;
+    }
+    EXPECT_GT(gone, 0U);  // and were made up for
+    EXPECT_GT(count(site, Matter::paste), 300U);
+    Site::Frame half = bone.frame();
+    half.level = 0.01F;
+    for (int i = 0; i < 20; ++i) site.step(half);
+    EXPECT_LE(site.particles().all().size(), Site::kMost / 100);  // no more than the level allows
+    site.keep(1000000);
+    site.step(bone.frame());
     EXPECT_LE(site.particles().all().size(), Site::kMost);
 }
 
@@ -252,7 +264,8 @@ TEST(BurrSight, BloodAndBoneHideTheHeadAndWaterDoesNot) {
 }
 
 TEST(ParticlesBench, SaysWhatAMoveCostsAndHowWellABudgetIsKept) {
-    const auto all = bench_particles({.steps = 8, .budget_s = 1e-5});
+    EXPECT_EQ(ParticlesBenchSettings{}.counts, (std::vector<std::uint32_t>{1000, 10000, 100000, 200000}));
+    const auto all = bench_particles({.counts = {1000, 10000, 100000}, .steps = 8, .budget_s = 1e-5});
     for (const char* const key :
          {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99", "particle_ns_each_1000",
           "particle_moves_10000", "particles_alive_100000"}) {
