@@ -16,6 +16,7 @@
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/run_report.hpp"
 #include "deploy/tact/save_fit.hpp"
+#include "deploy/tact/servo_core.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
 #include "ipc/base/error.hpp"
@@ -27,6 +28,7 @@ constexpr auto kAttachLimit = std::chrono::seconds(60);     // loading a large m
 constexpr auto kWindowPatience = std::chrono::seconds(60);  // start of a window under software drawing
 constexpr auto kSampleEvery = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(1);
+constexpr auto kLeaveCoreEvery = std::chrono::seconds(1);
 constexpr int kHeaderEvery = 20;
 
 // What to do about a program that ended otherwise than asked.
@@ -133,8 +135,18 @@ private:
         if (observer_.seen() && !facts_.bodies_start)
             if (const auto bodies = newest(observer_.region().bodies))
                 facts_.bodies_start = places_.bodies(*bodies);
+        if (observer_.seen() && rt_ && !rt_->poll() && now >= core_due_) leave_core(now);
         if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
         judge(now);
+    }
+
+    void leave_core(Instant now) {
+        const auto core = servo_core(rt_->pid());
+        if (!core) return;  // not started yet, or without the rights to have one of its own
+        core_due_ = now + kLeaveCoreEvery;
+        keep_off_core(getpid(), *core);
+        if (gui_ && !gui_->poll()) keep_off_core(gui_->pid(), *core);
+        if (x_ && !x_->child().poll()) keep_off_core(x_->child().pid(), *core);
     }
 
     void take(Instant now) {
@@ -261,7 +273,7 @@ private:
     std::optional<Child> rt_, gui_;
     bool ending_ = false;
     int lines_ = 0;
-    Instant started_{}, sample_due_{}, line_due_{};
+    Instant started_{}, sample_due_{}, line_due_{}, core_due_{};
     std::optional<Instant> seen_at_;
     std::vector<Sample> samples_;
     std::vector<double> fps_;

@@ -1,5 +1,6 @@
 # Tests of deploy.
 tact_test(unit/deploy_child_test.cpp USES launch base)
+tact_test(unit/deploy_servo_core_test.cpp USES launch base)
 tact_test(unit/deploy_doctor_test.cpp USES launch)
 tact_test(unit/deploy_probe_test.cpp USES base launch probe)
 find_package(PNG REQUIRED)
