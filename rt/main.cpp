@@ -25,17 +25,11 @@
 #include "hal/registry.hpp"
 #include "ipc/assets/scene_file.hpp"
 #include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
-#include "ipc/base/units.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/text.hpp"
-#include "rt/force/docking/docking_model.hpp"
 #include "rt/force/drilling/drill_model.hpp"
-#include "rt/force/pointer_model.hpp"
-#include "rt/force/surface/surface_model.hpp"
-#include "rt/force/surface/tool_model.hpp"
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
@@ -44,186 +38,14 @@
 #include "rt/loop/supervisor.hpp"
 #include "rt/loop/tend_thread.hpp"
 #include "rt/loop/thread_setup.hpp"
+#include "rt/run_text.hpp"
 #include "rt/scene_bone.hpp"
-#include "rt/start_bodies.hpp"
-#include "rt/start_drill.hpp"
+#include "rt/start_model.hpp"
+#include "rt/start_options.hpp"
 
 namespace {
 
 using namespace tact;
-
-struct Options {
-    std::string scene, session = "default", config;
-    double seconds = 0.0;
-    bool arm = false, arm_with_gui = false, check = false;
-    double start_offset_a = 0.0, start_rotation_deg = 0.0;
-    std::uint64_t seed = 1;
-    std::uint32_t copies = 1;
-    std::string poses;
-    std::vector<std::string> levels;
-    double tool_radius_mm = 0.0;
-    SurfaceSettings surface;
-};
-
-// The command line goes on top of the file, so it is parsed into these and applied after it.
-struct Overrides {
-    std::optional<double> rate_hz, goal_hz, picture_goal_hz, force_scale;
-    std::optional<std::string> law, hand, hand2, surface_mode, pedal, burr_shape;
-    std::optional<double> burr_mm, burr_rpm;
-    std::vector<double> hand_at_mm;
-    std::optional<int> core, priority;
-    bool free_run = false;
-};
-
-void describe(CLI::App& app, Options& o, Overrides& v) {
-    app.add_option("scene", o.scene, "baked scene, from tact-prep")->required();
-    app.add_option("--session", o.session, "name under which the other programs find this one");
-    app.add_option("--config", o.config, "TOML file; deploy/tact.toml shows every key");
-    app.add_option("--seconds", o.seconds, "end after so long; 0: run until a signal")
-        ->check(CLI::Range(0.0, 1e7));
-    auto* rate = app.add_option("--rate", v.rate_hz, "servo rate in Hz")->check(CLI::Range(10.0, 20000.0));
-    app.add_flag("--free-run", v.free_run, "as many updates as the processor gives")->excludes(rate);
-    app.add_option("--law", v.law, "of the governor: elastic, sensitus or fixed");
-    app.add_option("--goal", v.goal_hz, "of the governor, in Hz")->check(CLI::Range(1.0, 1e7));
-    app.add_option("--picture-goal", v.picture_goal_hz, "of the governor, in frames a second; 0: none")
-        ->check(CLI::Range(0.0, 1000.0));
-    app.add_flag("--arm", o.arm, "arm at once instead of waiting for a command");
-    app.add_flag(
-        "--arm-with-gui", o.arm_with_gui,
-        "arm once, when the visual process has drawn its first frame, so that a person sees all of it");
-    app.add_option("--level", o.levels,
-                   "PATH=VALUE: a fixed level, e.g. docking.force=1; the law becomes fixed");
-    app.add_option("--core", v.core, "core of the servo thread; -1: chosen, -2: not pinned");
-    app.add_option("--priority", v.priority, "FIFO priority; 0: ordinary scheduling")
-        ->check(CLI::Range(0, 94));
-    auto* offset = app.add_option("--start-offset-a", o.start_offset_a,
-                                  "the first body starts so many angstroms from home")
-                       ->check(CLI::Range(0.0, 1e4));
-    auto* rotation =
-        app.add_option("--start-rotation-deg", o.start_rotation_deg, "and turned by so many degrees")
-            ->check(CLI::Range(0.0, 180.0));
-    auto* copies =
-        app.add_option(
-               "--copies", o.copies,
-               "so many bodies of the first structure; those behind the first stand free about the map")
-            ->check(CLI::Range(1, static_cast<int>(ModelBodies::kMax)));
-    app.add_option("--poses", o.poses,
-                   "start with the bodies in this JSON file, as the report of a run lists them")
-        ->excludes(offset)
-        ->excludes(rotation)
-        ->excludes(copies);
-    app.add_option("--hand", v.hand,
-                   "of the emulated device: passive, wander, stroke, drill, surgeon or sucker");
-    app.add_option("--hand2", v.hand2,
-                   "a second hand, emulated too, where the configuration has none; sucker: goes with the "
-                   "surgeon in the first");
-    app.add_option("--hand-at-mm", v.hand_at_mm, "X,Y: where an emulated surgeon works")
-        ->delimiter(',')
-        ->expected(2);
-    app.add_option("--pedal", v.pedal, "of the burr: button (of the stylus), line (a foot pedal) or always");
-    app.add_option("--burr-mm", v.burr_mm, "its diameter");
-    app.add_option("--burr-shape", v.burr_shape, "sphere, cylinder or cone");
-    app.add_option("--burr-rpm", v.burr_rpm, "its speed");
-    app.add_option("--tool-radius-mm", o.tool_radius_mm,
-                   "of the ball that touches a surface, in the hand's space; 0: a point. Of a tool that is a "
-                   "mesh: of the balls at its points; 0: as baked")
-        ->check(CLI::Range(0.0, 50.0));
-    app.add_option("--stiffness", o.surface.stiffness_n_m, "of a surface, N/m")
-        ->check(CLI::Range(1.0, 20000.0))
-        ->capture_default_str();
-    app.add_option("--friction", o.surface.friction, "coefficient of a surface")
-        ->check(CLI::Range(0.0, 2.0))
-        ->capture_default_str();
-    app.add_option("--mode", v.surface_mode,
-                   "how a surface is looked up: off-brute, off-tree or chr (fine around the tool)")
-        ->check(CLI::IsMember({"off-brute", "off-tree", "chr"}));
-    app.add_option("--seed", o.seed, "of that direction, and of the emulated hand");
-    app.add_option("--force-scale", v.force_scale, "times the scene's own gain")->check(CLI::Range(0.0, 1e6));
-    app.add_flag("--check", o.check, "read and check everything, then exit");
-}
-
-RtConfig configure(const Options& o, const Overrides& v) {
-    RtConfig c;
-    if (!o.config.empty()) read_config(o.config, c);
-    if (v.rate_hz) {
-        c.servo.period_us = 1e6 / *v.rate_hz;
-        c.servo.free_running = false;
-    }
-    if (v.free_run) c.servo.free_running = true;
-    // A FIFO loop that never sleeps would be throttled, so free running is ordinary unless asked otherwise.
-    if (c.servo.free_running && !v.priority) c.servo.priority = 0;
-    if (v.priority) c.servo.priority = *v.priority;
-    if (v.core) c.servo.core = *v.core;
-    if (v.law) c.governor.law = *v.law;
-    if (v.hand) c.device.hand = *v.hand;
-    if (v.hand2) {
-        if (c.device2.driver == "none") c.device2.driver = "sim";
-        c.device2.hand = *v.hand2;
-        if (*v.hand2 == "sucker") c.device2.hand_seed = static_cast<std::int64_t>(o.seed);
-    }
-    if (!v.hand_at_mm.empty()) c.device.hand_at_mm = {v.hand_at_mm[0], v.hand_at_mm[1]};
-    if (v.pedal) c.drilling.pedal = *v.pedal;
-    if (v.burr_mm) c.drilling.burr_diameter_mm = *v.burr_mm;
-    if (v.burr_shape) c.drilling.burr_shape = *v.burr_shape;
-    if (v.burr_rpm) c.drilling.burr_rpm = *v.burr_rpm;
-    if (v.surface_mode) c.surface.mode = *v.surface_mode;
-    if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;
-    if (v.picture_goal_hz) c.governor.picture_goal_hz = *v.picture_goal_hz;
-    if (v.force_scale) c.shape.force_scale = *v.force_scale;
-    if (!o.levels.empty()) c.governor.law = "fixed";
-    c.device.hand_seed = static_cast<std::int64_t>(o.seed);
-    check_config(c, "command line and configuration");
-    return c;
-}
-
-DockingSettings docking_settings(const Options& o, const SceneFile& scene) {
-    DockingSettings s{.start_offset_m = o.start_offset_a * kAngstromM,
-                      .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
-                      .seed = o.seed};
-    if (!o.poses.empty()) {
-        std::vector<std::string> names;
-        const SceneMeta meta = read_meta(scene);
-        for (std::uint32_t i = 0; i < meta.body_count; ++i) names.push_back(read_structure(scene, i).name);
-        s.bodies = read_start_bodies(o.poses, names);
-    }
-    if (o.copies > 1) s.more_bodies = copies_about(read_grid(scene), o.copies);
-    return s;
-}
-
-std::unique_ptr<ForceModel> load_tool_in_bone(const SceneFile& scene, SceneBone& bone,
-                                              DrillSettings settings) {
-    const SceneMeta meta = read_meta(scene);
-    if (fit_to_voxels(settings, meta, bone.bone().octree.bricks()))
-        spdlog::warn("{} of {:.2f} mm is felt, as thin as the voxels allow",
-                     settings.tool.cuts ? "a shaft" : "a sucker", 2e3 * settings.tool.shaft_radius_m);
-    return std::make_unique<DrillModel>(meta, bone.bone(), settings);
-}
-
-// The one place that knows which model a scene is for.
-std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, const Options& o,
-                                       const RtConfig& config) {
-    if (read_meta(scene).kind == SceneKind::surface) {
-        SurfaceSettings settings = o.surface;
-        settings.radius_m = 1e-3 * o.tool_radius_mm;
-        for (std::size_t i = 0; i < kSurfaceModeNames.size(); ++i)
-            if (config.surface.mode == kSurfaceModeNames[i]) settings.mode = static_cast<SurfaceMode>(i);
-        const bool tool = has_touch_tool(scene);
-        if (tool && settings.mode != SurfaceMode::off_tree)
-            throw StartupError("touching with a tool that is a mesh", "it is looked up in the tree alone",
-                               "choose mode off-tree");
-        if (tool) return load_tool_model(scene, settings);
-        return load_surface_model(scene, settings);
-    }
-    if (bone != nullptr) return load_tool_in_bone(scene, *bone, burr_settings(config, o.seed));
-    return load_docking_model(scene, docking_settings(o, scene));
-}
-
-// Of the second hand.
-std::unique_ptr<ForceModel> load_second(const SceneFile& scene, SceneBone* bone, const Options& o,
-                                        const RtConfig& config) {
-    if (bone == nullptr) return std::make_unique<PointerModel>();
-    return load_tool_in_bone(scene, *bone, sucker_settings(config, o.seed));
-}
 
 struct LevelWish {
     std::uint32_t path;
@@ -316,7 +138,7 @@ void say_how_it_went(const RtRegion& region) {
                  h.locks, h.page_faults);
 }
 
-int run(const Options& o, const Overrides& overrides) {
+int run(std::span<char* const> arguments, const StartOptions& o, const StartOverrides& overrides) {
     const RtConfig config = configure(o, overrides);
     const DeviceEntry& driver = device_driver(config.device.driver);
     const bool two_hands = config.device2.driver != "none";
@@ -330,6 +152,7 @@ int run(const Options& o, const Overrides& overrides) {
     const std::string path = std::filesystem::absolute(o.scene).string();
     std::memcpy(region->scene_path, path.data(), std::min(path.size(), sizeof region->scene_path - 1));
     region->scene_checksum = scene.checksum();
+    tell_how_started(arguments, o, region->run_text);
     region.mark_ready();
     std::optional<SceneBone> bone;
     if (read_meta(scene).kind == SceneKind::drilling) bone.emplace(scene);
@@ -453,8 +276,8 @@ int main(int argc, char** argv) {
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
-    Options options;
-    Overrides overrides;
+    StartOptions options;
+    StartOverrides overrides;
     describe(app, options, overrides);
     try {
         app.parse(argc, argv);
@@ -462,7 +285,7 @@ int main(int argc, char** argv) {
         return app.exit(e) == 0 ? 0 : 1;
     }
     try {
-        return run(options, overrides);
+        return run(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), options, overrides);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-rt: %s\n", e.what());
         return 1;

@@ -9,6 +9,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
+#include "ipc/base/rt.hpp"
 
 namespace tact {
 
@@ -42,11 +43,38 @@ struct PathLoad {
     float fresh = 1.0F;       // of the items, those that this step did anew; the rest is of steps before
 };
 
+// Of the looks at one deadline: how many there were, and which found it passed. Kept by who gives the deadline and
+// written to a recording; given back in a replay, it makes the same looks find the same.
+struct DeadlineLooks {
+    std::uint32_t looks = 0;
+    std::uint32_t passed_at = 0;  // from 1; 0: none found it passed
+    bool replayed = false;        // passed_at decides, and no clock
+};
+
+// When a step has to be over; none by default. It can only be asked whether it has passed.
+class Deadline {
+public:
+    Deadline() = default;
+    Deadline(Instant at, DeadlineLooks* looks = nullptr) noexcept : at_(at), looks_(looks) {}
+
+    [[nodiscard]] bool passed() const noexcept TACT_RT {
+        if (looks_ == nullptr) return at_ != Instant::max() && Monotonic::now() >= at_;
+        ++looks_->looks;
+        if (!looks_->replayed && looks_->passed_at == 0 && at_ != Instant::max() && Monotonic::now() >= at_)
+            looks_->passed_at = looks_->looks;
+        return looks_->passed_at != 0 && looks_->looks >= looks_->passed_at;
+    }
+
+private:
+    Instant at_ = Instant::max();
+    DeadlineLooks* looks_ = nullptr;
+};
+
 // What a step may use. The level fixes the work before the step starts, so that runs repeat exactly; the
 // deadline is the net beneath it.
 struct Budget {
     float fidelity = 1.0F;
-    Instant deadline = Instant::max();
+    Deadline deadline;
     // In (0, 1]: how much of the level's work may be done anew where a model can keep the rest of steps
     // before. Nothing is left out: for spans too short for a change of the level.
     float share = 1.0F;

@@ -15,6 +15,7 @@
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
+#include "ipc/topics/record.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
 
@@ -35,11 +36,19 @@ struct RtRegion {
     Latest<LevelsTopic> levels;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
+    // For recordings. 1 kHz: half a minute is kept.
+    Latest<StartTopic> start;
+    Ring<CycleTopic, 32768> cycles;
+    Ring<HandTopic, 32768> hand[kHandsMax];
+    Ring<MailTopic, 1024> mail;
+    Ring<ReportTopic, 4096> reports;
+    RunText run_text;  // written before ready
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
     using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, HealthTopic,
-                             LatenessTopic, LevelsTopic, EventTopic, TraceTopic>;
+                             LatenessTopic, LevelsTopic, EventTopic, TraceTopic, StartTopic, CycleTopic,
+                             HandTopic, MailTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {

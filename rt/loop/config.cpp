@@ -321,6 +321,7 @@ Duration duration_us(double us) { return Duration(std::llround(us * 1e3)); }
 
 ServoSettings settings_from(const RtConfig& c, bool emulated) {
     ServoSettings s;
+    s.emulated = emulated;
     s.period = duration_us(c.servo.period_us);
     s.free_running = c.servo.free_running;
     s.model_max = duration_us(c.servo.model_us_max);

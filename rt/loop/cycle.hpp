@@ -27,6 +27,7 @@ struct HandCycle {
     bool sample_usable = false;
     ToolState tool;
     StepResult step;
+    DeadlineLooks deadline;          // of that step
     GainGlide field, walls, damper;  // of what is felt of them at today's delay
     Wrench wanted_world;             // after shaping
     OutputChain chain;
@@ -53,9 +54,13 @@ struct DrivesCycle {
 
 struct CycleState {
     std::uint64_t cycle = 0;
+    std::uint64_t step = 0;                             // cycles, those before the start too
+    std::array<Instant, CycleTopic::kLooksMax> look{};  // at the clock, in this cycle
+    std::uint8_t looks = 0;
     Instant planned{}, now{}, before{};
     Duration lateness{0}, dt{0}, cost{0}, model_cost{0};
-    Duration behind{0};    // how far past the next one's instant the cycle before this one ended
+    Duration behind{0};  // how far past the next one's instant the cycle before this one ended
+    Budget budget{};
     double fresh = 1.0;    // of the models' work, what was done anew; a mean over the hands
     bool overran = false;  // the cycle before this one
     std::uint64_t out_of_time = 0;

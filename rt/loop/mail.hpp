@@ -11,42 +11,11 @@
 
 #include "ipc/shm/latest.hpp"
 #include "ipc/shm/ring.hpp"
+#include "ipc/topics/record.hpp"
 #include "rt/force/force_model.hpp"
 #include "rt/loop/supervisor.hpp"
 
 namespace tact {
-
-// A command after validation: kinds and indexes are in range, values and poses are finite.
-struct ServoOrder {
-    std::uint64_t sequence;  // of the command; 0: from the command line, not acknowledged
-    double value;
-    std::uint32_t kind;      // CommandKind
-    std::uint32_t index;     // path or law
-    std::uint32_t body = 0;  // an id, or a structure; only the model knows which there are
-    std::uint32_t reserved = 0;
-    double pos_model_m[3] = {0.0, 0.0, 0.0};
-    double quat_model_body_xyzw[4] = {0.0, 0.0, 0.0, 1.0};  // of unit length
-};
-
-struct HouseReport {
-    std::int64_t gui_heartbeat_ns;  // when the GUI last reported; -1: never
-    std::uint64_t gui_generation;
-    std::uint64_t bad_input;
-    std::uint64_t page_faults;  // of the servo thread, from /proc, since it asked
-    double gui_fps;
-    double gui_busy_s;
-    std::uint64_t gui_frame;            // of the newest word
-    std::uint64_t gui_levels_sequence;  // of the levels that this frame obeyed
-    std::int64_t gui_taken_at_ns;
-    double gui_work_s;  // of the frame, without its pause
-    double gui_cpu_s;   // processor time since its start
-    std::uint32_t gui_vertices;
-    std::uint32_t gui_vertices_max;
-    std::uint32_t gui_particles_max;
-    double gui_particles_s;      // of the frame, for moving and drawing them
-    std::uint32_t gui_attached;  // 0 or 1
-    std::uint32_t reserved;
-};
 
 // The state of the loop at the first fault.
 struct FaultSnapshot {

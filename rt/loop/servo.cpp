@@ -53,6 +53,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
         h.chain = OutputChain(for_device(settings.chain, parts.hands[i].info));
     }
     c_->house.gui_heartbeat_ns = -1;
+    introduce(parts);
     const bool ok = governor_.add(settings_.bone ? kVolumeKnob : kMeshKnob) == kMeshIndex &&
                     governor_.add(c_->hand[0].model->knob()) == kForceIndex &&
                     (!settings_.bone || governor_.add(kParticlesKnob) == kParticlesIndex);
@@ -76,6 +77,10 @@ void Servo::warm_up() noexcept {
 
     CycleState& c = *c_;
     const Instant now = clock_.now();
+    StartTopic begun = begun_;
+    begun.started_at_ns = to_ns(now);
+    begun.dry_steps = c.step;
+    region_.start.publish(begun);
     c.cycle = 0;
     c.before = now;
     c.overran = false;
@@ -113,14 +118,24 @@ void Servo::run() noexcept {
     while (!finished_) cycle();
 }
 
+// What a cycle depends on is recorded, its looks at the clock among it.
+Instant Servo::look() noexcept {
+    const Instant now = clock_.now();
+    CycleState& c = *c_;
+    if (c.looks < c.look.size()) c.look[c.looks++] = now;
+    return now;
+}
+
 void Servo::wake(CycleState& c) noexcept {
+    ++c.step;
+    c.looks = 0;
     if (settings_.free_running || dry_) {
         c.now = c.planned = rest();
         c.lateness = Duration{0};
     } else {
         c.planned = pacer_.planned();
         clock_.wait_until(c.planned);
-        c.now = clock_.now();
+        c.now = look();
         c.lateness = c.now - c.planned;
         if (!dry_) statistics_.late(c.lateness);
     }
@@ -181,19 +196,22 @@ void Servo::model(CycleState& c) noexcept {
     take_model(c);
     ask_for_model(c);
     look_at_pedals(c);
-    const Instant begin = clock_.now();
-    const Budget budget{.fidelity = governor_.level(kForceIndex),
-                        .deadline = settings_.model_deadline ? begin + settings_.model_max : Instant::max(),
-                        .share = static_cast<float>(share_of_step(c))};
+    const Instant begin = look();
+    const Instant end = settings_.model_deadline ? begin + settings_.model_max : Instant::max();
+    c.budget = {.fidelity = governor_.level(kForceIndex),
+                .deadline = end,
+                .share = static_cast<float>(share_of_step(c))};
     c.fresh = 0.0;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         HandCycle& h = c.hand[i];
         h.model->drive({.burr_rad_s = i == 0 ? c.drives.burr_rad_s : 0.0, .step_s = to_s(c.dt)});
-        h.step = h.model->step(h.tool, budget);
+        h.deadline = {};
+        c.budget.deadline = Deadline(end, &h.deadline);
+        h.step = h.model->step(h.tool, c.budget);
         if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
         c.fresh += static_cast<double>(h.step.load.fresh) / c.hands;
     }
-    c.model_cost = clock_.now() - begin;
+    c.model_cost = look() - begin;
 }
 
 void Servo::safety(CycleState& c) noexcept {
@@ -224,7 +242,11 @@ void Servo::safety(CycleState& c) noexcept {
     c.events.trip = c.trip.reason;
     const int signal = mail_.stop_signal.load(std::memory_order_relaxed);
     c.events.stop = signal != 0;
-    if (c.events.stop && !stopping_) say(EventCode::stopping, static_cast<double>(signal), 0.0);
+    if (c.events.stop && !stopping_) {
+        say(EventCode::stopping, static_cast<double>(signal), 0.0);
+        note_mail(MailKind::stop,
+                  {.sequence = 0, .value = static_cast<double>(signal), .kind = 0, .index = 0});
+    }
     stopping_ = c.events.stop;
     bool still = true;
     for (std::uint32_t i = 0; i < c.hands; ++i) still = still && c.hand[i].out.gain <= 0.0;
@@ -287,8 +309,9 @@ void Servo::publish(CycleState& c) noexcept {
 }
 
 void Servo::close(CycleState& c) noexcept {
-    const Instant end = clock_.now();
+    const Instant end = look();
     c.cost = end - c.now;
+    publish_cycle(c, dry_);
     if (dry_) return;
     statistics_.spent(c.cost);
     interval_cost_ += c.cost;

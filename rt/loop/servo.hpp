@@ -61,6 +61,7 @@ struct ServoSettings {
     Duration gui_silent = std::chrono::milliseconds(500);
     bool gui_silent_ramps = false;  // else it is only said
     std::uint32_t dry_cycles = 1000;
+    bool emulated = false;                                   // nobody's hand is on the device
     Duration lines_age_max = std::chrono::milliseconds(20);  // of their newest look
 };
 
@@ -115,6 +116,12 @@ private:
     void publish(CycleState& c) noexcept TACT_RT;
     void govern(CycleState& c) noexcept TACT_RT;
     void close(CycleState& c) noexcept TACT_RT;
+    [[nodiscard]] Instant look() noexcept TACT_RT;
+
+    // For recordings (servo_record.cpp).
+    void introduce(const ServoParts& parts) noexcept;
+    void publish_cycle(const CycleState& c, bool dry) noexcept TACT_RT;
+    void note_mail(MailKind kind, const ServoOrder& order) noexcept TACT_RT;
 
     // Parts of stages: mail in and out (servo_mail.cpp), safety lines (servo_lines.cpp), topics out
     // (servo_publish.cpp), bounds by the delay (servo_shape.cpp).
@@ -183,6 +190,7 @@ private:
     bool building_ = false;                 // a model is being built aside
     std::uint16_t governed_structure_ = 0;  // whose knob the governor has
     std::uint64_t page_faults_ = 0;
+    StartTopic begun_{};  // but for the instant
     std::uint32_t schedule_flags_ = 0;
 
     // Of the governor's running interval.

@@ -91,7 +91,7 @@ bool Servo::holds_rate() const noexcept {
 // Where a freely running loop is ahead of its goal and a picture is coarser than it could be, it waits: the
 // picture has the time at once, long before the law has turned it finer. The instant at which it goes on.
 Instant Servo::rest() noexcept {
-    const Instant now = clock_.now();
+    const Instant now = look();
     const auto paths = governor_.paths();
     const bool wanted = std::any_of(paths.begin(), paths.end(), [](const GovernedPath& p) {
         return p.present && !p.knob.haptic && p.level < 1.0F;
@@ -100,7 +100,7 @@ Instant Servo::rest() noexcept {
     const double rest_s = hold_.rest_s(now, governor_.settings().goal_hz);
     if (rest_s <= 0.0) return now;
     clock_.wait_until(now + Duration{static_cast<std::int64_t>(1e9 * rest_s)});
-    const Instant end = clock_.now();
+    const Instant end = look();
     interval_rest_ += end - now;
     statistics_.work.rested(end - now);
     return end;

@@ -34,6 +34,7 @@ bool Servo::supervisor_dropped(CycleState& c) noexcept {
     const std::uint64_t drops = mail_.pulse.drops.load(std::memory_order_acquire);
     const bool dropped = drops != c.drops_seen;
     c.drops_seen = drops;
+    if (dropped) note_mail(MailKind::drops, {.sequence = drops, .value = 0.0, .kind = 0, .index = 0});
     return dropped;
 }
 

@@ -66,11 +66,13 @@ void Servo::take_mail(CycleState& c) noexcept {
     c.order = {};
     if (mail_.house.count() != house_seen_) {
         house_seen_ = mail_.house.count();
-        static_cast<void>(mail_.house.read(c.house));
+        if (mail_.house.read(c.house)) region_.reports.push({.step = c.step, .said = c.house});
     }
     ServoOrder order{};
-    for (int i = 0; i < kOrdersPerCycle && c.order.kind == 0 && mail_.orders.next(orders_, order); ++i)
+    for (int i = 0; i < kOrdersPerCycle && c.order.kind == 0 && mail_.orders.next(orders_, order); ++i) {
+        note_mail(MailKind::order, order);
         obey(c, order);
+    }
 
     const bool attached = c.house.gui_attached != 0;
     if (attached != gui_attached_ || (attached && c.house.gui_generation != gui_generation_)) {
@@ -189,6 +191,7 @@ void Servo::acknowledge(const ServoOrder& order, CommandResult result) noexcept 
 void Servo::take_model(CycleState& c) noexcept {
     ForceModel* const fresh = mail_.model.take();
     if (fresh == nullptr) return;
+    note_mail(MailKind::model_taken, {});
     HandCycle& h = c.hand[0];
     ForceModel* const old = h.model;
     const ModelBodies before = old->bodies();
@@ -212,6 +215,7 @@ void Servo::take_model(CycleState& c) noexcept {
 void Servo::ask_for_model(CycleState& c) noexcept {
     ForceModel& model = *c.hand[0].model;
     if (building_ && mail_.build.refused()) {
+        note_mail(MailKind::build_refused, {});
         const ModelBodies before = model.bodies();
         model.give_up();
         mail_.build.settle();

@@ -38,7 +38,10 @@ void push(benchmark::State& state) {
     const auto ring = std::make_unique<Ring<T, Capacity>>();
     T value{};
     for (auto _ : state) {
-        ++value.taken_at_ns;
+        if constexpr (requires { value.step; })
+            ++value.step;
+        else
+            ++value.taken_at_ns;
         ring->push(value);
     }
     state.counters["bytes"] = sizeof(T);
@@ -68,6 +71,8 @@ BENCHMARK(read<LevelsTopic>);
 BENCHMARK(read<BodiesTopic>);
 BENCHMARK(push<EventTopic, 1024>);
 BENCHMARK(push<TraceTopic, 16384>);
+BENCHMARK(push<CycleTopic, 32768>);
+BENCHMARK(push<HandTopic, 32768>);
 BENCHMARK(push_and_next<EventTopic, 1024>);
 BENCHMARK(push_and_next<TraceTopic, 16384>);
 

@@ -20,6 +20,7 @@ BELOW = {
     "ipc/shm": ["ipc/base"],
     "ipc/topics": ["ipc/base", "ipc/shm"],
     "ipc/assets": ["ipc/base"],
+    "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
     "hal": ["ipc/base", "ipc/shm"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/assets"],
     # Force models do not know each other.
@@ -43,8 +44,9 @@ WRAPPED = [
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
     (r"png\.h|pngconf", ["gui", "deploy/tact/plot_canvas", "prep/volume/png_stack", "tests"]),
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
+    (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
-    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
+    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/start_model", "rt/start_options", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)

@@ -22,3 +22,10 @@ endif()
 tact_test(unit/deploy_reproduce_test.cpp USES launch assets base plot)
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_rights_test.py ${CMAKE_SOURCE_DIR})
+# h5py comes from the system's packages, and is seen by the system's Python alone.
+find_program(TACT_SYSTEM_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(TACT_SYSTEM_PYTHON3)
+    add_test(NAME record_kill_test COMMAND ${TACT_SYSTEM_PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/unit/record_kill_test.py
+        $<TARGET_FILE_DIR:tact-record> $<TARGET_FILE:write_small_scene>)
+    set_tests_properties(record_kill_test PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
+endif()

@@ -35,6 +35,7 @@ tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force loop s
 tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force loop LABELS tsan)
 tact_test(scenario/servo_faults_scenario_test.cpp USES base topics hal force loop)
 tact_test(scenario/lines_scenario_test.cpp USES base topics hal force loop)
+tact_test(scenario/record_scenario_test.cpp USES base topics hal force loop recorder)
 tact_test(scenario/bodies_scenario_test.cpp USES base topics assets hal force loop)
 tact_test(scenario/governor_scenario_test.cpp USES base topics hal force loop govern)
 

@@ -25,8 +25,6 @@ namespace {
 constexpr std::size_t kSafeShare = 16;
 constexpr double kOnLevel = 1e-5;  // of the way to the next level
 
-bool is_over(Instant deadline) { return deadline != Instant::max() && Monotonic::now() >= deadline; }
-
 }  // namespace
 
 float LevelBlend::start_fidelity() const noexcept {
@@ -64,7 +62,7 @@ PathLoad LevelBlend::predict(float fidelity) const noexcept {
 PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model_body, const Budget& budget,
                                           KeptSums* kept) const noexcept {
     const PointSet& points = levels[level];
-    const Instant deadline = points.size() > DockingParts::kAlways ? budget.deadline : Instant::max();
+    const Deadline deadline = points.size() > DockingParts::kAlways ? budget.deadline : Deadline();
     if (kept != nullptr && points.size() >= PartialSums::kPointsMin)
         return (*kept)[level % kept->size()].step(map, points, T_model_body,
                                                   static_cast<double>(budget.share), deadline);
@@ -107,7 +105,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
         if (p.upper != p.lower) {
             PartialSums::Result upper;
             upper.complete = false;
-            if (!is_over(budget.deadline)) upper = sum_level(p.upper, T_model_body, budget, kept);
+            if (!budget.deadline.passed()) upper = sum_level(p.upper, T_model_body, budget, kept);
             if (!upper.complete) {
                 result.status = StepStatus::out_of_time;
             } else {
@@ -121,7 +119,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
                 const auto m = static_cast<float>(wanted), n = static_cast<float>(levels[p.upper].size());
                 result.load.fresh = (m * lower.fresh + n * upper.fresh) / (m + n);
             }
-        } else if (is_over(budget.deadline)) {
+        } else if (budget.deadline.passed()) {
             result.status = StepStatus::out_of_time;  // complete, but too late
         }
     }

@@ -25,12 +25,12 @@ void add(DensitySums& to, const DensitySums& part) {
 
 }  // namespace
 
-bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body, Instant deadline,
-               DensitySums& sums) noexcept {
+bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body,
+               const Deadline& deadline, DensitySums& sums) noexcept {
     sums = DensitySums{};
     const std::size_t n = points.size();
     for (std::size_t begin = 0; begin < n; begin += kChunk) {
-        if (deadline != Instant::max() && Monotonic::now() >= deadline) return false;
+        if (deadline.passed()) return false;
         const std::size_t count = std::min(kChunk, n - begin);
         add(sums, map.sum({points.x.subspan(begin, count), points.y.subspan(begin, count),
                            points.z.subspan(begin, count), points.weight.subspan(begin, count)},
@@ -47,7 +47,7 @@ double PartialSums::motion_m(const Pose& from, const Pose& to) const noexcept {
 }
 
 PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& points, const Pose& T_model_body,
-                                      double share, Instant deadline) noexcept {
+                                      double share, const Deadline& deadline) noexcept {
     if (map_ != &map || points_ != &points) {
         map_ = &map;
         points_ = &points;

@@ -40,7 +40,7 @@ public:
 
     // share in (0, 1]; anything else is 1. The pose finite.
     Result step(const DensityMap& map, const PointSet& points, const Pose& T_model_body, double share,
-                Instant deadline) noexcept TACT_RT;
+                const Deadline& deadline) noexcept TACT_RT;
 
 private:
     struct Slice {
@@ -58,7 +58,7 @@ private:
 };
 
 // In pieces, with a look at the clock before each; false: the deadline came first.
-bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body, Instant deadline,
-               DensitySums& sums) noexcept TACT_RT;
+bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body,
+               const Deadline& deadline, DensitySums& sums) noexcept TACT_RT;
 
 }  // namespace tact

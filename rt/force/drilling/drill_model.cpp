@@ -153,7 +153,7 @@ ModelDrill DrillModel::drill() const noexcept {
 }
 
 DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurried,
-                                  Instant deadline) noexcept {
+                                  const Deadline& deadline) noexcept {
     Felt felt;
     felt.late = hurried;
     depth_ = 0.0;
@@ -166,7 +166,7 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
     const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const ToolBall& ball = tool_.ball[i];
-        if (!felt.late && i > 0 && deadline != Instant::max()) felt.late = Monotonic::now() >= deadline;
+        if (!felt.late && i > 0) felt.late = deadline.passed();
         const double radius = ball.radius_m / per_voxel_m_;
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius,
                                            (felt.late ? kBlockCoarse : block) * radius, depths_[i]);
@@ -268,7 +268,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             fade_.fall();
         else
             fade_.rise();
-        const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+        const bool hurried = budget.deadline.passed();
         const double block = block_of(budget.fidelity);
         const Felt felt = feel(tool, block, hurried, budget.deadline);
         elastic_n_ = felt.elastic_n;
@@ -284,8 +284,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max);
 
         const bool cuts = !clutch && drive_.burr_rad_s > 0.0;
-        const bool late =
-            felt.late || (budget.deadline != Instant::max() && Monotonic::now() >= budget.deadline);
+        const bool late = felt.late || budget.deadline.passed();
         if (late) result.status = StepStatus::out_of_time;
         if (!led_) {
             forget_way();

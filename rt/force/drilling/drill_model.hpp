@@ -117,7 +117,7 @@ private:
         bool late = false;
     };
     [[nodiscard]] Felt feel(const ToolState& tool, double block, bool hurried,
-                            Instant deadline) noexcept TACT_RT;
+                            const Deadline& deadline) noexcept TACT_RT;
     void forget_way() noexcept TACT_RT;
     void expose(double exposure) noexcept TACT_RT;
     void cut_turn() noexcept TACT_RT;

@@ -159,7 +159,8 @@ Vec3 SurfaceContact::held_back(const Guards::Solution& free, const Vec3& goal_m,
     return guards_.solve(wanted, tolerance_m).move_m;
 }
 
-Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Instant deadline) noexcept {
+Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
+                               const Deadline& deadline) noexcept {
     Contact contact;
     const double step = kFollowedSteps * (goal_m - goal_m_).norm();
     goal_m_ = goal_m;
@@ -174,7 +175,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max, Inst
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
     while (contact.moves < moves_max && contact.triangles < kTrianglesMost) {
-        if (contact.moves > 0 && deadline != Instant::max() && Monotonic::now() >= deadline) {
+        if (contact.moves > 0 && deadline.passed()) {
             contact.late = true;
             break;
         }

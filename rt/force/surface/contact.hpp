@@ -86,7 +86,7 @@ public:
     // The proxy is at the goal, or where that is inside a closed surface, outside at the nearest place.
     void seat(const Vec3& goal_m) noexcept TACT_RT;
     Contact follow(const Vec3& goal_m, std::uint32_t moves_max,
-                   Instant deadline = Instant::max()) noexcept TACT_RT;
+                   const Deadline& deadline = {}) noexcept TACT_RT;
 
 private:
     bool collect(double& reach_m) noexcept TACT_RT;

@@ -239,7 +239,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             else
                 fade_.rise();
             choose_surface(goal_m, budget.fidelity);
-            const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+            const bool hurried = budget.deadline.passed();
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
             if (on_time && contact_.state == ContactState::lagging) ++lagging_;

@@ -111,7 +111,7 @@ void ToolContact::list_places(const TwistGuards::Solution& solution, ToolTouch& 
 }
 
 ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTouch& touch,
-                                         Instant deadline) noexcept {
+                                         const Deadline& deadline) noexcept {
     const double gyration = points_.gyration_m();
     const auto twist = [&](const Vec6& y) {
         return std::pair<Vec3, Vec3>(y.head<3>(), y.tail<3>() / gyration);
@@ -147,7 +147,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTo
         list_places(best, touch);
         const std::size_t count = points_.beyond(v, w, beyond_);
         if (count == 0) return move;
-        const bool late = deadline != Instant::max() && Monotonic::now() >= deadline;
+        const bool late = deadline.passed();
         touch.late |= late;
         if (late || !room || round == kMoveRounds || touch.looked >= kLooksMost ||
             touch.asked >= kQueriesMost)
@@ -176,7 +176,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTo
 }
 
 ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                              Instant deadline) noexcept {
+                              const Deadline& deadline) noexcept {
     ToolTouch touch;
     const Pose to{goal.p_m, goal.q.normalized()};
     const double glide = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.glide_m;

@@ -74,7 +74,7 @@ public:
     void seat(const Pose& goal) noexcept TACT_RT;
     [[nodiscard]] bool seating() const noexcept TACT_RT { return seating_ > 0; }
     ToolTouch follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                     Instant deadline = Instant::max()) noexcept TACT_RT;
+                     const Deadline& deadline = {}) noexcept TACT_RT;
 
 private:
     struct Move {
@@ -82,7 +82,8 @@ private:
         bool cut = false;     // by what a move or a step may do at the most
         bool short_ = false;  // by what is not known to be free
     };
-    Move find_move(const Vec6& wish, double left_m, ToolTouch& touch, Instant deadline) noexcept TACT_RT;
+    Move find_move(const Vec6& wish, double left_m, ToolTouch& touch,
+                   const Deadline& deadline) noexcept TACT_RT;
     bool look(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
     [[nodiscard]] Vec6 held_back(const TwistGuards::Solution& free, const Vec6& goal_m,
                                  double tolerance_m) const noexcept TACT_RT;

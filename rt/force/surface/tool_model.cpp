@@ -148,7 +148,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 fade_.rest();
             else
                 fade_.rise();
-            const bool hurried = budget.deadline != Instant::max() && begin >= budget.deadline;
+            const bool hurried = budget.deadline.passed();
             touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline);
             const bool on_time = !hurried && !touch_.late;
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;

@@ -1,0 +1,88 @@
+// Writes a recording: rows are kept in memory until flush(), which puts them into the file so that a kill loses none.
+//
+// Killed   what the last flush() wrote stays, whole; repair.hpp takes away the mark of a writer.
+// Rows     of /cycles and of the hands belong together, one of each a step; the caller sees to it.
+// Lock     held while it lives, so that nobody repairs the file of a living writer.
+// Thread   one.
+// Fails by StartupError where the file cannot be made, RecordError where it takes no more (the disk is full); then
+//          abandon() it: what was flushed stays.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ipc/record/rows.hpp"
+#include "ipc/shm/region.hpp"
+#include "ipc/topics/regions.hpp"
+
+namespace tact {
+
+// What is known when a recording begins.
+struct RecordingHead {
+    StartTopic start{};
+    RunText text{};
+    LevelsTopic levels{};                      // names of the paths
+    std::string scene_path, session, program;  // program: with its version
+    std::uint64_t scene_checksum = 0, generation = 0, first_step = 1;
+    std::int64_t created_utc_ns = 0, created_ns = 0;  // the same instant on both clocks
+};
+
+// How it was ended.
+enum class RecordingEnd : std::uint64_t { open, whole, repaired };
+
+template <class Row>
+struct RowStore {
+    Hdf5Table table;
+    std::vector<Row> kept;
+    void flush() {
+        table.append(kept.data(), kept.size());
+        kept.clear();
+    }
+};
+
+class RecordingWriter {
+public:
+    RecordingWriter(const std::filesystem::path& path, const RecordingHead& head);
+    ~RecordingWriter();  // closes as far as it can
+    RecordingWriter(const RecordingWriter&) = delete;
+    RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+    void add(const CycleTopic& row) { cycles_.kept.push_back(row); }
+    void add(std::size_t hand, const HandTopic& row);
+    void add(const MailTopic& row) { mail_.kept.push_back(row); }
+    void add(const ReportTopic& row) { reports_.kept.push_back(row); }
+    void add(const EventTopic& row) { events_.kept.push_back(row); }
+    void add(const LevelsTopic& topic);
+    void add(const HealthTopic& topic);
+    void add(const BodiesTopic& topic);
+    void add(const DropRow& row) { drops_.kept.push_back(row); }
+    [[nodiscard]] std::size_t kept_rows() const { return cycles_.kept.size(); }
+
+    void flush();
+    // In order: everything is in the file, and it says that it is whole.
+    void close();
+    void abandon() noexcept;
+    [[nodiscard]] std::uint64_t cycles() const { return cycles_.table.rows(); }
+
+private:
+    void make(const RecordingHead& head);
+
+    Hdf5Handle file_;
+    FileDescriptor lock_;
+    std::filesystem::path path_;
+    std::uint32_t hands_;
+    Pose T_world_dev_;
+    RowStore<CycleTopic> cycles_;
+    RowStore<HandRow> hand_[kHandsMax];
+    RowStore<MailTopic> mail_;
+    RowStore<ReportTopic> reports_;
+    RowStore<EventTopic> events_;
+    RowStore<LevelsRow> levels_;
+    RowStore<HealthRow> health_;
+    RowStore<BodyRow> bodies_;
+    RowStore<DropRow> drops_;
+};
+
+}  // namespace tact

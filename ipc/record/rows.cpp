@@ -1,0 +1,206 @@
+#include "ipc/record/rows.hpp"
+
+#include <type_traits>
+
+namespace tact {
+namespace {
+
+template <class T>
+constexpr Number number_of() {
+    using N = std::remove_all_extents_t<T>;
+    if constexpr (std::is_same_v<N, double>) return Number::f64;
+    if constexpr (std::is_same_v<N, float>) return Number::f32;
+    if constexpr (std::is_same_v<N, std::int64_t>) return Number::i64;
+    if constexpr (std::is_same_v<N, std::uint64_t>) return Number::u64;
+    if constexpr (std::is_same_v<N, std::uint32_t>) return Number::u32;
+    if constexpr (std::is_same_v<N, std::uint16_t>) return Number::u16;
+    return Number::u8;
+}
+
+// A member under its own name; and several of one kind that lie one behind the other, as one.
+#define TACT_COLUMN(Row, member, what)                                                  \
+    Column {                                                                            \
+#member, number_of < decltype(Row::member)>(), offsetof(Row, member),           \
+            std::extent_v < decltype(Row::member)>> 0                                   \
+            ? static_cast < std::uint32_t>(std::extent_v <decltype(Row::member)>) : 1U, \
+            what                                                                        \
+    }
+
+constexpr std::size_t in_hand(std::size_t offset) { return offsetof(HandRow, t) + offset; }
+constexpr std::size_t in_order(std::size_t offset) { return offsetof(MailTopic, order) + offset; }
+constexpr std::size_t in_said(std::size_t offset) { return offsetof(ReportTopic, said) + offset; }
+
+static_assert(offsetof(HandTopic, quat_dev_tool_xyzw) == offsetof(HandTopic, pos_dev_m) + 24);
+static_assert(offsetof(HandTopic, angular_dev_rad_s) == offsetof(HandTopic, velocity_dev_m_s) + 24);
+static_assert(offsetof(HandTopic, torque_world_n_m) == offsetof(HandTopic, force_world_n) + 24);
+static_assert(offsetof(HandTopic, torque_model_world_n_m) == offsetof(HandTopic, force_model_world_n) + 24);
+static_assert(offsetof(HandRow, quat_world_tool_xyzw) == offsetof(HandRow, pos_world_m) + 24);
+static_assert(offsetof(BodyRow, quat_model_body_xyzw) == offsetof(BodyRow, pos_model_m) + 24);
+static_assert(offsetof(ServoOrder, quat_model_body_xyzw) == offsetof(ServoOrder, pos_model_m) + 24);
+
+constexpr std::array kCycle{
+    TACT_COLUMN(CycleTopic, step,
+                "cycles so far, dry ones too; from 1; joins /cycles, /hand0, /hand1, /mail, /reports"),
+    TACT_COLUMN(CycleTopic, cycle, "of the loop, from 1; dry ones before it count for themselves"),
+    TACT_COLUMN(CycleTopic, clock_ns, "the servo's looks at the monotonic clock"),
+    TACT_COLUMN(CycleTopic, now_ns, "the look that the cycle goes by"),
+    TACT_COLUMN(CycleTopic, lateness_ns, "of its beginning"),
+    TACT_COLUMN(CycleTopic, cost_ns, "of the whole cycle"),
+    TACT_COLUMN(CycleTopic, model_ns, "of the force models' steps"),
+    TACT_COLUMN(CycleTopic, level, "of the haptic path, 0 to 1"),
+    TACT_COLUMN(CycleTopic, share, "of the level's work that might be done anew, 0 to 1"),
+    TACT_COLUMN(CycleTopic, lines_taken_at_ns, "safety lines, where flags has 2"),
+    TACT_COLUMN(CycleTopic, lines_sequence, ""),
+    TACT_COLUMN(CycleTopic, lines_trips, ""),
+    TACT_COLUMN(CycleTopic, lines_state, ""),
+    TACT_COLUMN(CycleTopic, lines_cause, ""),
+    TACT_COLUMN(CycleTopic, lines_inputs, ""),
+    TACT_COLUMN(CycleTopic, lines_outputs, ""),
+    TACT_COLUMN(CycleTopic, run_state, "0 off, 1 ready, 2 armed, 3 active, 4 fault"),
+    TACT_COLUMN(CycleTopic, run_reason, "of a fault"),
+    TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety lines were looked at"),
+    TACT_COLUMN(CycleTopic, looks, "how many of clock_ns there are"),
+};
+
+constexpr std::array kHand{
+    Column{"step", Number::u64, in_hand(offsetof(HandTopic, step)), 1, "joins /cycles"},
+    Column{"taken_at_ns", Number::i64, in_hand(offsetof(HandTopic, taken_at_ns)), 1,
+           "when the device measured"},
+    Column{"sequence", Number::u64, in_hand(offsetof(HandTopic, sequence)), 1, "of the device's samples"},
+    Column{"pose_world", Number::f64, offsetof(HandRow, pos_world_m), 7,
+           "of the tool: x y z in m, quaternion x y z w"},
+    Column{"wrench_world", Number::f64, in_hand(offsetof(HandTopic, force_world_n)), 6,
+           "sent to the device, at the tool: force in N, torque in N m"},
+    Column{"wrench_model", Number::f64, in_hand(offsetof(HandTopic, force_model_world_n)), 6,
+           "wanted by the force model, world axes: force in N, torque in N m"},
+    Column{"pose_dev", Number::f64, in_hand(offsetof(HandTopic, pos_dev_m)), 7, "as the device gave it"},
+    Column{"twist_dev", Number::f64, in_hand(offsetof(HandTopic, velocity_dev_m_s)), 6,
+           "as the device gave it: m/s, rad/s"},
+    Column{"delay_ns", Number::i64, in_hand(offsetof(HandTopic, delay_ns)), 1,
+           "from sample to motor; 0: unknown"},
+    Column{"model_error_n", Number::f32, in_hand(offsetof(HandTopic, model_error_n)), 1,
+           "bound of the force's distance from the exact one"},
+    Column{"items", Number::u32, in_hand(offsetof(HandTopic, items)), 1, "points, blocks or moves felt"},
+    Column{"buttons", Number::u32, in_hand(offsetof(HandTopic, buttons)), 1, "1: clutch; 2: drives the tool"},
+    Column{"deadline_look", Number::u32, in_hand(offsetof(HandTopic, deadline_look)), 1,
+           "the look at the step's deadline that found it passed; 0: none did"},
+    Column{"read_status", Number::u8, in_hand(offsetof(HandTopic, read_status)), 1,
+           "0 ok, 1 stale, 2 lost, 3 fault"},
+    Column{"write_status", Number::u8, in_hand(offsetof(HandTopic, write_status)), 1, "as read_status"},
+    Column{"hand_present", Number::u8, in_hand(offsetof(HandTopic, hand_present)), 1, "0 or 1"},
+    Column{"device_state", Number::u8, in_hand(offsetof(HandTopic, device_state)), 1,
+           "0 closed, 1 ready, 2 powered, 3 watchdog tripped, 4 fault"},
+    Column{"notice", Number::u8, in_hand(offsetof(HandTopic, notice)), 1, "what the device asks of a person"},
+    Column{"step_status", Number::u8, in_hand(offsetof(HandTopic, step_status)), 1,
+           "of the model: 0 ok, 1 out of time, 2 out of range"},
+    Column{"at_wall", Number::u8, in_hand(offsetof(HandTopic, at_wall)), 1,
+           "1: a wall of the workspace pushes back"},
+};
+
+constexpr std::array kMail{
+    TACT_COLUMN(MailTopic, step, "in which the servo took it"),
+    TACT_COLUMN(MailTopic, kind,
+                "1 order, 2 model taken, 3 build refused, 4 stop, 5 drops of the supervisor"),
+    Column{"sequence", Number::u64, in_order(offsetof(ServoOrder, sequence)), 1, "of the command"},
+    Column{"value", Number::f64, in_order(offsetof(ServoOrder, value)), 1, ""},
+    Column{"order", Number::u32, in_order(offsetof(ServoOrder, kind)), 1, "CommandKind"},
+    Column{"index", Number::u32, in_order(offsetof(ServoOrder, index)), 1, "path or law"},
+    Column{"body", Number::u32, in_order(offsetof(ServoOrder, body)), 1, "id or structure"},
+    Column{"pose_model", Number::f64, in_order(offsetof(ServoOrder, pos_model_m)), 7,
+           "of the body: m, quaternion x y z w"},
+};
+
+#define TACT_SAID(member)                                                                                    \
+    Column {                                                                                                 \
+#member, number_of < decltype(HouseReport::member)>(), in_said(offsetof(HouseReport, member)), 1, "" \
+    }
+constexpr std::array kReport{
+    TACT_COLUMN(ReportTopic, step, "in which the servo took it"),
+    TACT_SAID(gui_heartbeat_ns),
+    TACT_SAID(gui_generation),
+    TACT_SAID(bad_input),
+    TACT_SAID(page_faults),
+    TACT_SAID(gui_fps),
+    TACT_SAID(gui_busy_s),
+    TACT_SAID(gui_frame),
+    TACT_SAID(gui_levels_sequence),
+    TACT_SAID(gui_taken_at_ns),
+    TACT_SAID(gui_work_s),
+    TACT_SAID(gui_cpu_s),
+    TACT_SAID(gui_vertices),
+    TACT_SAID(gui_vertices_max),
+    TACT_SAID(gui_particles_max),
+    TACT_SAID(gui_attached),
+    TACT_SAID(gui_particles_s),
+};
+#undef TACT_SAID
+
+constexpr std::array kEvent{
+    TACT_COLUMN(EventTopic, taken_at_ns, "monotonic clock"),
+    TACT_COLUMN(EventTopic, cycle, "of the loop"),
+    TACT_COLUMN(EventTopic, code, "EventCode; the attribute codes of /events has their names"),
+    TACT_COLUMN(EventTopic, a, "meaning by the code"),
+    TACT_COLUMN(EventTopic, b, "meaning by the code"),
+};
+
+constexpr std::array kLevels{
+    TACT_COLUMN(LevelsRow, taken_at_ns, "monotonic clock"),
+    TACT_COLUMN(LevelsRow, sequence, "rises with every change"),
+    TACT_COLUMN(LevelsRow, goal_hz, "of the governor"),
+    TACT_COLUMN(LevelsRow, rate_hz, "what its law last saw"),
+    TACT_COLUMN(LevelsRow, level, "0 to 1, by the attribute paths of /levels"),
+};
+
+constexpr std::array kHealth{
+    TACT_COLUMN(HealthRow, taken_at_ns, "monotonic clock"),
+    TACT_COLUMN(HealthRow, cycle, ""),
+    TACT_COLUMN(HealthRow, force_rate_hz, ""),
+    TACT_COLUMN(HealthRow, lateness_p50_ns, "of the last second"),
+    TACT_COLUMN(HealthRow, lateness_p99_ns, ""),
+    TACT_COLUMN(HealthRow, lateness_max_ns, ""),
+    TACT_COLUMN(HealthRow, cycle_cost_p50_ns, ""),
+    TACT_COLUMN(HealthRow, cycle_cost_max_ns, ""),
+    TACT_COLUMN(HealthRow, overruns, "so far"),
+    TACT_COLUMN(HealthRow, skipped, ""),
+    TACT_COLUMN(HealthRow, allocations, ""),
+    TACT_COLUMN(HealthRow, locks, ""),
+    TACT_COLUMN(HealthRow, page_faults, ""),
+    TACT_COLUMN(HealthRow, bad_input, ""),
+    TACT_COLUMN(HealthRow, gui_fps, ""),
+    TACT_COLUMN(HealthRow, gui_vertices, ""),
+    TACT_COLUMN(HealthRow, state, "0 off, 1 ready, 2 armed, 3 active, 4 fault"),
+    TACT_COLUMN(HealthRow, reason, ""),
+    TACT_COLUMN(HealthRow, device_state, ""),
+    TACT_COLUMN(HealthRow, gui_attached, ""),
+};
+
+constexpr std::array kBody{
+    TACT_COLUMN(BodyRow, taken_at_ns, "monotonic clock"),
+    TACT_COLUMN(BodyRow, cycle, ""),
+    Column{"pose_model", Number::f64, offsetof(BodyRow, pos_model_m), 7,
+           "of the centre of mass: x y z in m, quaternion x y z w"},
+    TACT_COLUMN(BodyRow, id, "from 1, never used again"),
+    TACT_COLUMN(BodyRow, structure, "index in the scene"),
+    TACT_COLUMN(BodyRow, flags, "1: fixed"),
+};
+
+constexpr std::array kDrop{
+    TACT_COLUMN(DropRow, noticed_at_ns, "monotonic clock"),
+    TACT_COLUMN(DropRow, ring, "0 cycles, 1 hand 0, 2 hand 1, 3 mail, 4 reports, 5 events"),
+    TACT_COLUMN(DropRow, records, "lost, as the recorder was too slow"),
+};
+#undef TACT_COLUMN
+
+}  // namespace
+
+std::span<const Column> cycle_columns() { return kCycle; }
+std::span<const Column> hand_columns() { return kHand; }
+std::span<const Column> mail_columns() { return kMail; }
+std::span<const Column> report_columns() { return kReport; }
+std::span<const Column> event_columns() { return kEvent; }
+std::span<const Column> levels_columns() { return kLevels; }
+std::span<const Column> health_columns() { return kHealth; }
+std::span<const Column> body_columns() { return kBody; }
+std::span<const Column> drop_columns() { return kDrop; }
+
+}  // namespace tact

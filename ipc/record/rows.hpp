@@ -1,0 +1,85 @@
+// What a recording consists of: tables, their rows, and where the numbers of a row lie. See RECORDING.md.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ipc/record/hdf5_file.hpp"
+#include "ipc/topics/event.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/record.hpp"
+
+namespace tact {
+
+// A hand in one step; pose_world follows from the device's pose.
+struct HandRow {
+    HandTopic t;
+    double pos_world_m[3];
+    double quat_world_tool_xyzw[4];
+};
+
+// The governor's levels, when they changed.
+struct LevelsRow {
+    std::int64_t taken_at_ns;
+    std::uint64_t sequence;
+    double goal_hz, rate_hz;
+    float level[kPathsMax];  // by the names in /levels
+};
+
+// Ten times a second.
+struct HealthRow {
+    std::int64_t taken_at_ns;
+    std::uint64_t cycle;
+    double force_rate_hz;
+    std::int64_t lateness_p50_ns, lateness_p99_ns, lateness_max_ns;  // of the last second
+    std::int64_t cycle_cost_p50_ns, cycle_cost_max_ns;
+    std::uint64_t overruns, skipped, allocations, locks, page_faults, bad_input;  // so far
+    double gui_fps;
+    std::uint32_t gui_vertices;
+    std::uint8_t state, reason, device_state, gui_attached;
+};
+
+// A placed structure, when it had moved; up to fifty times a second.
+struct BodyRow {
+    std::int64_t taken_at_ns;
+    std::uint64_t cycle;
+    double pos_model_m[3];
+    double quat_model_body_xyzw[4];
+    std::uint32_t id;
+    std::uint16_t structure, flags;
+};
+
+enum class RecordRing : std::uint32_t { cycles, hand0, hand1, mail, reports, events };
+
+// What the recorder was too slow for: never silently.
+struct DropRow {
+    std::int64_t noticed_at_ns;
+    std::uint32_t ring;  // RecordRing
+    std::uint32_t reserved;
+    std::uint64_t records;
+};
+
+// group: its place in the file; hand: "/hand0" or "/hand1".
+[[nodiscard]] std::span<const Column> cycle_columns();
+[[nodiscard]] std::span<const Column> hand_columns();
+[[nodiscard]] std::span<const Column> mail_columns();
+[[nodiscard]] std::span<const Column> report_columns();
+[[nodiscard]] std::span<const Column> event_columns();
+[[nodiscard]] std::span<const Column> levels_columns();
+[[nodiscard]] std::span<const Column> health_columns();
+[[nodiscard]] std::span<const Column> body_columns();
+[[nodiscard]] std::span<const Column> drop_columns();
+
+inline constexpr const char* kCyclesGroup = "/cycles";
+inline constexpr std::array kHandGroups{"/hand0", "/hand1"};
+inline constexpr const char* kMailGroup = "/mail";
+inline constexpr const char* kReportsGroup = "/reports";
+inline constexpr const char* kEventsGroup = "/events";
+inline constexpr const char* kLevelsGroup = "/levels";
+inline constexpr const char* kHealthGroup = "/health";
+inline constexpr const char* kBodiesGroup = "/bodies";
+inline constexpr const char* kDropsGroup = "/drops";
+
+}  // namespace tact

@@ -1,0 +1,120 @@
+// What the loop says of every cycle for recordings: all of it, in order, with the inputs as they came.
+#include <gtest/gtest.h>
+
+#include "deploy/record/drain.hpp"
+#include "tests/scenario/lockstep.hpp"
+
+namespace tact {
+namespace {
+
+using record::Batch;
+using record::Drain;
+
+SimSettings wandering() {
+    SimSettings s;
+    s.hand.script = "wander";
+    return s;
+}
+
+TEST(RecordScenario, every_cycle_is_there_with_its_hand_and_the_dry_ones_too) {
+    Lockstep loop({}, wandering());
+    Drain drain(*loop.region_);
+    loop.active();
+    Batch batch;
+    drain.take(batch, 0);
+    ASSERT_EQ(batch.cycles.size(), 620U);
+    ASSERT_EQ(batch.hand[0].size(), 620U);
+    EXPECT_TRUE(batch.hand[1].empty());
+    EXPECT_EQ(drain.dropped(), 0U);
+    for (std::size_t i = 0; i < batch.cycles.size(); ++i) {
+        EXPECT_EQ(batch.cycles[i].step, i + 1);
+        EXPECT_EQ(batch.hand[0][i].step, i + 1);
+        EXPECT_EQ((batch.cycles[i].flags & kCycleDry) != 0, i < 20);
+        EXPECT_EQ(batch.cycles[i].cycle, i < 20 ? i + 1 : i - 19);
+    }
+    StartTopic start{};
+    ASSERT_TRUE(loop.region_->start.read(start));
+    EXPECT_EQ(start.dry_steps, 20U);
+    EXPECT_EQ(start.hands, 1U);
+    EXPECT_EQ(start.period_ns, 1'000'000);
+    EXPECT_GT(start.device[0].force_n_max, 1.0);
+}
+
+TEST(RecordScenario, a_step_says_what_the_device_gave_and_what_it_was_sent) {
+    Lockstep loop({}, wandering());
+    loop.active();
+    loop.cycles(1);
+    Drain drain(*loop.region_);
+    Batch batch;
+    drain.take(batch, 0);
+    const HandTopic& h = batch.hand[0].back();
+    const HandCycle& c = loop.servo_->state().hand[0];
+    const ToolTopic tool = loop.tool();
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(h.pos_dev_m[i], c.sample.T_dev_tool.p_m[i]);
+        EXPECT_EQ(h.velocity_dev_m_s[i], c.sample.twist_dev.linear_m_s[i]);
+        EXPECT_EQ(h.force_world_n[i], tool.force_world_n[i]);
+        EXPECT_EQ(h.force_model_world_n[i], tool.force_model_n[i]);
+    }
+    EXPECT_EQ(h.taken_at_ns, tool.taken_at_ns);
+    EXPECT_EQ(h.hand_present, 1);
+    EXPECT_EQ(h.deadline_look, 0U);
+    EXPECT_EQ(batch.cycles.back().run_state, static_cast<std::uint8_t>(RunState::active));
+    EXPECT_EQ(batch.cycles.back().looks, 4);  // wake, before and behind the model, end
+}
+
+TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
+    Lockstep loop;
+    loop.cycles(10);
+    loop.order(CommandKind::set_goal_hz, 500.0);
+    loop.cycles(5);
+    loop.mail_.house.publish(gui_at(loop.clock_.now()));
+    loop.cycles(5);
+    Drain drain(*loop.region_);
+    Batch batch;
+    drain.take(batch, 0);
+    ASSERT_EQ(batch.mail.size(), 1U);
+    EXPECT_EQ(batch.mail[0].step, 20U + 11U);
+    EXPECT_EQ(batch.mail[0].kind, static_cast<std::uint32_t>(MailKind::order));
+    EXPECT_EQ(batch.mail[0].order.kind, static_cast<std::uint32_t>(CommandKind::set_goal_hz));
+    EXPECT_EQ(batch.mail[0].order.value, 500.0);
+    ASSERT_EQ(batch.reports.size(), 1U);
+    EXPECT_EQ(batch.reports[0].step, 20U + 16U);
+    EXPECT_EQ(batch.reports[0].said.gui_generation, 5U);
+    EXPECT_FALSE(batch.health.empty());
+    EXPECT_FALSE(batch.levels.empty());
+}
+
+TEST(RecordScenario, a_reader_that_was_lapped_says_how_many_it_missed) {
+    Lockstep loop;
+    Drain drain(*loop.region_);
+    Batch batch;
+    const int capacity = static_cast<int>(decltype(RtRegion::cycles)::kCapacity);
+    loop.cycles(capacity + 100);
+    drain.take(batch, 77);
+    ASSERT_FALSE(batch.cycles.empty());
+    ASSERT_FALSE(batch.drops.empty());
+    const std::uint64_t lost = batch.cycles.front().step - 1;
+    EXPECT_GE(lost, 100U);
+    EXPECT_EQ(batch.drops[0].ring, static_cast<std::uint32_t>(RecordRing::cycles));
+    EXPECT_EQ(batch.drops[0].records, lost);
+    EXPECT_EQ(batch.drops[0].noticed_at_ns, 77);
+    EXPECT_EQ(batch.hand[0].front().step, batch.cycles.front().step);
+    EXPECT_EQ(batch.cycles.back().step, static_cast<std::uint64_t>(capacity) + 120U);
+    EXPECT_EQ(batch.cycles.size() + lost, static_cast<std::size_t>(capacity) + 120U);
+}
+
+TEST(RecordScenario, who_comes_late_begins_with_the_oldest_and_has_dropped_nothing) {
+    Lockstep loop;
+    loop.cycles(static_cast<int>(decltype(RtRegion::cycles)::kCapacity) + 100);
+    Drain drain(*loop.region_);
+    Batch batch;
+    drain.take(batch, 0);
+    EXPECT_EQ(drain.dropped(), 0U);
+    EXPECT_TRUE(batch.drops.empty());
+    ASSERT_GT(batch.cycles.size(), 16000U);
+    EXPECT_EQ(batch.cycles.front().step, batch.hand[0].front().step);
+}
+
+}  // namespace
+}  // namespace tact

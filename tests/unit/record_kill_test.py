@@ -1,0 +1,189 @@
+#!/usr/bin/python3
+"""A recorder is killed at random instants: each file opens in h5py, and at most a second is lost.
+
+usage: record_kill_test.py BIN_DIR WRITE_SMALL_SCENE [--runs N] [--seed S]. Exit 77 (skipped) where there is no h5py.
+"""
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+try:
+    import h5py
+    import numpy
+except ImportError:
+    print("skipped: no python3-h5py here")
+    sys.exit(77)
+
+LOST_NS_MAX = 1_000_000_000
+PATIENCE_S = 120
+
+
+def look_at(path, killed_ns, again):
+    """Opens a recording as its users do; what it has, and what is wrong with it."""
+    wrong = []
+    with h5py.File(path, "r") as f:
+        step = f["cycles/step"][:]
+        lengths = {name: len(f[group][name]) for group in ("cycles", "hand0") for name in f[group]}
+        if set(lengths.values()) != {len(step)}:
+            wrong.append("columns of different lengths: %s" % lengths)
+        for group in f:
+            if group != "start" and len({len(f[group][name]) for name in f[group]}) != 1:
+                wrong.append("columns of /%s of different lengths" % group)
+        lost = sum(f["drops/records"][:])
+        if len(step) and not lost and not numpy.array_equal(step, numpy.arange(step[0], step[0] + len(step), dtype=step.dtype)):
+            wrong.append("steps are missing and no drop is said")
+        if not numpy.array_equal(step, f["hand0/step"][:]):
+            wrong.append("the hand's steps are not the cycles'")
+        if f["hand0/pose_world"].shape[1:] != (7,) or f["hand0/wrench_world"].shape[1:] != (6,):
+            wrong.append("poses or wrenches have another shape")
+        if not numpy.isfinite(f["hand0/wrench_world"][:]).all():
+            wrong.append("a wrench is not finite")
+        if f.attrs["end"] != (2 if again["damaged"] else 1):
+            wrong.append("the file does not say how it ended")
+        lost_ns = killed_ns - int(f["cycles/now_ns"][-1]) if len(step) else None
+        return len(step), lost_ns, wrong
+
+
+class Campaign:
+    def __init__(self, programs, writer):
+        self.programs = programs
+        self.dir = tempfile.mkdtemp(prefix="tact_record_")
+        self.env = dict(os.environ, TACT_RUNTIME_DIR=self.dir)
+        self.scene = os.path.join(self.dir, "small.tact")
+        subprocess.run([writer, self.scene], check=True)
+        with open(os.path.join(self.dir, "tact.toml"), "w", encoding="utf-8") as config:
+            config.write('[device]\nhand = "wander"\nwatchdog_us = 1e6\n')
+        self.controller = subprocess.Popen([self.program("tact-rt"), self.scene, "--config", os.path.join(self.dir, "tact.toml"),
+                                            "--priority", "0", "--arm"], env=self.env, stderr=subprocess.DEVNULL)
+
+    def program(self, name):
+        return os.path.join(self.programs, name)
+
+    def recorder(self, *words):
+        return subprocess.Popen([self.program("tact-record"), *words], env=self.env, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+
+    def to_end(self, *words):
+        child = self.recorder(*words)
+        out, err = child.communicate(timeout=PATIENCE_S)
+        return child.returncode, out, err
+
+    def wait_for(self, path, child):
+        """False: the recorder ended."""
+        end = time.monotonic() + PATIENCE_S
+        while not os.path.exists(path):
+            if child.poll() is not None or time.monotonic() > end:
+                return False
+            time.sleep(0.001)
+        return True
+
+    def kill_once(self, number, after_s):
+        path = os.path.join(self.dir, "run%d.h5" % number)
+        child = self.recorder(path)
+        if not self.wait_for(path, child):
+            return ["the recorder made no file: " + child.communicate()[1]], 0, 0
+        time.sleep(after_s)
+        wrong = []
+        code, _, err = self.to_end("--repair", path)
+        if code != 1 or "still writing" not in err:
+            wrong.append("a living recorder's file was repaired: %d %s" % (code, err))
+        # Stopped first, so that the instant of its death is known.
+        child.send_signal(signal.SIGSTOP)
+        killed_ns = time.monotonic_ns()
+        child.kill()
+        child.communicate()
+        code, out, err = self.to_end("--repair", path, "--json")
+        if code != 0:
+            return wrong + ["not repaired: " + err], 0, 0
+        said = json.loads(out)
+        if not said["damaged"]:
+            wrong.append("the damage is not reported")
+        cycles, lost_ns, more = look_at(path, killed_ns, said)
+        wrong += more
+        if cycles != said["cycles"]:
+            wrong.append("another number of cycles was reported")
+        if lost_ns is None or lost_ns > LOST_NS_MAX:
+            wrong.append("%s ns were lost" % lost_ns)
+        code, out, _ = self.to_end("--repair", path, "--json")
+        if code != 0 or json.loads(out)["damaged"]:
+            wrong.append("a repaired file is damaged again")
+        os.remove(path)
+        return wrong, lost_ns or 0, cycles
+
+    def in_order(self):
+        """SIGINT ends a recording whole."""
+        path = os.path.join(self.dir, "whole.h5")
+        child = self.recorder(path, "--json")
+        if not self.wait_for(path, child):
+            return ["no file: " + child.communicate()[1]]
+        time.sleep(0.6)
+        child.send_signal(signal.SIGINT)
+        out, err = child.communicate(timeout=PATIENCE_S)
+        if child.returncode != 0:
+            return ["SIGINT: exit code %d %s" % (child.returncode, err)]
+        cycles, _, wrong = look_at(path, 0, {"damaged": False})
+        said = json.loads(out)
+        if said["end"] != "stopped" or said["cycles"] != cycles or said["lost"] != 0:
+            wrong.append("the outcome says otherwise: " + out)
+        code, _, err = self.to_end(path)
+        if code != 1 or "there already" not in err:
+            wrong.append("an older recording was overwritten")
+        return wrong
+
+    def disk_full(self):
+        """A file that takes no more is said, and opens."""
+        path = os.path.join(self.dir, "full.h5")
+        command = 'ulimit -f 1500; exec "$0" "$1"'  # of 512 or 1024 bytes
+        child = subprocess.Popen(["sh", "-c", command, self.program("tact-record"), path], env=self.env,
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        _, err = child.communicate(timeout=PATIENCE_S)
+        if child.returncode != 1 or "mend: make space" not in err:
+            return ["a full disk: exit code %d %s" % (child.returncode, err)]
+        code, out, err = self.to_end("--repair", path, "--json")
+        if code != 0:
+            return ["after a full disk: " + err]
+        return look_at(path, 0, json.loads(out))[2]
+
+    def close(self):
+        self.controller.terminate()
+        self.controller.wait(timeout=PATIENCE_S)
+        shutil.rmtree(self.dir)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("programs")
+    parser.add_argument("writer")
+    parser.add_argument("--runs", type=int, default=4)
+    parser.add_argument("--seed", type=int, default=20261123)
+    wish = parser.parse_args()
+    chance = random.Random(wish.seed)
+    campaign = Campaign(wish.programs, wish.writer)
+    failed = False
+    try:
+        for name, test in (("ended in order", campaign.in_order), ("disk full", campaign.disk_full)):
+            wrong = test()
+            failed = failed or bool(wrong)
+            print("%s: %s" % (name, "; ".join(wrong) or "good"))
+        losses = []
+        for number in range(wish.runs):
+            wrong, lost_ns, cycles = campaign.kill_once(number, chance.uniform(0.0, 1.5))
+            failed = failed or bool(wrong)
+            losses.append(lost_ns)
+            print("kill %d: %d cycles, %.3f s lost%s" % (number, cycles, lost_ns * 1e-9, "; " + "; ".join(wrong) if wrong else ""))
+        if losses:
+            print("%d kills: at most %.3f s lost" % (len(losses), max(losses) * 1e-9))
+    finally:
+        campaign.close()
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
