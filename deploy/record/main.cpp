@@ -26,7 +26,7 @@ extern "C" void on_stop(int) { stop_asked = 1; }
 struct Wishes {
     RecorderSettings settings;
     std::string repair;
-    bool json = false;
+    bool json = false, quiet = false;
 };
 
 int repair_file(const Wishes& w) {
@@ -46,11 +46,14 @@ int repair_file(const Wishes& w) {
 }
 
 int make_recording(Wishes& w) {
-    const bool terminal = isatty(STDERR_FILENO) == 1;
+    const bool terminal = isatty(STDERR_FILENO) == 1 && !w.quiet;
     const std::string name = w.settings.file.string();
     w.settings.stop = [] { return stop_asked != 0; };
     const RecorderOutcome outcome = record::record(
-        w.settings, [](const std::string& text) { std::fprintf(stderr, "tact-record: %s\n", text.c_str()); },
+        w.settings,
+        [&](const std::string& text) {
+            if (!w.quiet) std::fprintf(stderr, "tact-record: %s\n", text.c_str());
+        },
         [&](const RecorderProgress& p) {
             if (terminal)
                 std::fprintf(stderr, "\r%s: %.1f s, %llu cycles, %.1f MB, %llu lost ", name.c_str(),
@@ -101,6 +104,7 @@ int main(int argc, char** argv) {
     app.add_option("--repair", w.repair,
                    "opens a recording whose recorder was killed, and says what was lost");
     app.add_flag("--json", w.json, "the outcome as JSON on standard output");
+    app.add_flag("--quiet", w.quiet, "only the outcome and errors");
     app.set_version_flag("--version", TACT_VERSION);
     try {
         app.parse(argc, argv);

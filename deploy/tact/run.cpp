@@ -80,6 +80,12 @@ private:
                         options_.gui ? "--arm-with-gui" : "--arm"};
         rt.arguments.insert(rt.arguments.end(), options_.controller.begin(), options_.controller.end());
         rt.grace = options_.grace;
+        if (!options_.record.empty()) {  // before the controller, so that it has the run from its first cycle
+            ChildSettings record;
+            record.arguments = {options_.record.string(), "--session", options_.session, "--quiet"};
+            record.grace = options_.grace;
+            record_.emplace("tact-record", find_program("tact-record", options_.programs), record);
+        }
         rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
         if (options_.gui) {
             ChildSettings gui;
@@ -203,6 +209,11 @@ private:
     [[nodiscard]] bool over() { return ending_ && rt_->poll() && (!gui_ || gui_->poll()); }
 
     int finish() {
+        if (record_) {  // ends by itself when the controller has
+            if (!record_->wait(std::chrono::seconds(10))) record_->stop();
+            if (const auto& ending = record_->wait(options_.grace + std::chrono::seconds(1)))
+                note("tact-record", *ending);
+        }
         if (x_) {
             x_->child().stop();
             x_->child().wait(std::chrono::seconds(10));
@@ -270,7 +281,7 @@ private:
     std::optional<ScratchFolder> scratch_;  // outlives the X server that uses it
     std::optional<XServer> x_;
     std::vector<std::pair<std::string, std::string>> display_;
-    std::optional<Child> rt_, gui_;
+    std::optional<Child> rt_, gui_, record_;
     bool ending_ = false;
     int lines_ = 0;
     Instant started_{}, sample_due_{}, line_due_{}, core_due_{};

@@ -72,6 +72,10 @@ void RunOptions::settle() {
                            "--screenshot needs the visual process, and --no-gui leaves it out",
                            "leave one of the two away; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
+    if (!record.empty()) record = std::filesystem::absolute(record);
+    if (!record.empty() && std::filesystem::exists(record))
+        throw StartupError("recording to " + record.string(), "the file is there already",
+                           "name another one, or remove it");
     if (!save.empty()) save = std::filesystem::absolute(save);
     if (!screenshot.empty()) {
         screenshot = std::filesystem::absolute(screenshot);
@@ -99,6 +103,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     app.add_option("--save", options.save,
                    "new folder for the placed structures, their matrices and a table, at the end of the run")
         ->type_name("DIR");
+    app.add_option("--record", options.record,
+                   "new file for every cycle of the run; see tact record, tact replay")
+        ->type_name("FILE.h5");
     app.add_option("--session", options.session, "name under which the processes find each other")
         ->type_name("NAME")
         ->capture_default_str();

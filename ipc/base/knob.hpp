@@ -74,7 +74,7 @@ private:
 // deadline is the net beneath it.
 struct Budget {
     float fidelity = 1.0F;
-    Deadline deadline;
+    Deadline deadline = {};
     // In (0, 1]: how much of the level's work may be done anew where a model can keep the rest of steps
     // before. Nothing is left out: for spans too short for a change of the level.
     float share = 1.0F;

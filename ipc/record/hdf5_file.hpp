@@ -25,7 +25,7 @@ enum class Number : std::uint8_t { f64, f32, i64, u64, u32, u16, u8 };
 struct Column {
     const char* name;
     Number number;
-    std::size_t offset;  // in the row's struct; a multiple of the number's size
+    std::size_t offset;  // in the row's struct
     std::uint32_t width = 1;
     const char* what = "";  // unit and meaning, as the file says it
 };
@@ -64,6 +64,8 @@ public:
     [[nodiscard]] static bool exists(Hdf5Id file, const char* group);
 
     void append(const void* rows, std::size_t count);
+    // Over rows that there are.
+    void write(std::uint64_t first, std::size_t count, const void* rows) const;
     // Rows from first on, which there must be; columns that the file lacks do not exist here.
     void read(std::uint64_t first, std::size_t count, void* rows) const;
     void flush();
@@ -79,8 +81,11 @@ private:
         Hdf5Handle set;
         Column column;
     };
+    void put(const Set& s, std::uint64_t first, std::size_t count, const void* rows) const;
+
     std::vector<Set> sets_;
     std::size_t row_bytes_ = 0;
+    mutable std::vector<char> numbers_;  // of one column, on their way
     std::uint64_t rows_ = 0, rows_most_ = 0;
 };
 

@@ -12,13 +12,10 @@
 namespace tact {
 namespace {
 
-// A living recorder holds a shared lock.
+// A living recorder holds a shared lock; so do readers, but they are no hindrance where nothing is to be mended.
 void refuse_a_living_writers(const std::filesystem::path& path) {
     const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file.valid())
-        throw StartupError("opening '" + path.string() + "'", last_error(),
-                           "name a recording of tact record");
-    if (flock(file.get(), LOCK_EX | LOCK_NB) != 0)
+    if (file.valid() && flock(file.get(), LOCK_EX | LOCK_NB) != 0)
         throw StartupError("repairing '" + path.string() + "'", "a recorder is still writing it",
                            "end the recording first (Ctrl-C where it runs)");
 }
@@ -33,9 +30,12 @@ struct Cut {
 RepairReport repair_recording(const std::filesystem::path& path) {
     hdf5::quiet();
     RepairReport report;
-    refuse_a_living_writers(path);
+    if (!std::filesystem::is_regular_file(path))
+        throw StartupError("opening '" + path.string() + "'", "there is no such file",
+                           "name a recording of tact record");
     try {
         const bool marked = hdf5::marked_open(path);
+        if (marked) refuse_a_living_writers(path);
         Hdf5Handle file = marked ? hdf5::open_abandoned(path) : hdf5::open_file(path, false);
         const auto end = static_cast<RecordingEnd>(hdf5::number(file.get(), "/", "end"));
         if (!marked && end == RecordingEnd::open) {  // closed, but not by us

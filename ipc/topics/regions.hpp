@@ -42,7 +42,7 @@ struct RtRegion {
     Ring<HandTopic, 32768> hand[kHandsMax];
     Ring<MailTopic, 1024> mail;
     Ring<ReportTopic, 4096> reports;
-    RunText run_text;  // written before ready
+    RunText run_text;      // written before ready
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero

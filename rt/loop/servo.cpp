@@ -36,6 +36,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
       region_(parts.region),
       mail_(parts.mail),
       lines_(parts.lines),
+      script_(parts.script),
       settings_(settings),
       arena_(sizeof(CycleState) + 4096),
       c_(arena_.take<CycleState>(1).data()),
@@ -71,12 +72,18 @@ void Servo::warm_up() noexcept {
     // Bounded in time too: a step of 100 000 atoms takes a millisecond.
     constexpr Duration kMax = std::chrono::milliseconds(200);
     const Instant begin = clock_.now();
-    dry_ = true;
-    for (std::uint32_t i = 0; i < settings_.dry_cycles && clock_.now() - begin < kMax; ++i) cycle();
-    dry_ = false;
+    for (std::uint32_t i = 0; i < settings_.dry_cycles && clock_.now() - begin < kMax; ++i) dry_cycle();
+    start(clock_.now());
+}
 
+void Servo::dry_cycle() noexcept {
+    dry_ = true;
+    cycle();
+    dry_ = false;
+}
+
+void Servo::start(Instant now) noexcept {
     CycleState& c = *c_;
-    const Instant now = clock_.now();
     StartTopic begun = begun_;
     begun.started_at_ns = to_ns(now);
     begun.dry_steps = c.step;
@@ -198,7 +205,7 @@ void Servo::model(CycleState& c) noexcept {
     look_at_pedals(c);
     const Instant begin = look();
     const Instant end = settings_.model_deadline ? begin + settings_.model_max : Instant::max();
-    c.budget = {.fidelity = governor_.level(kForceIndex),
+    c.budget = {.fidelity = script_ != nullptr ? script_->level : governor_.level(kForceIndex),
                 .deadline = end,
                 .share = static_cast<float>(share_of_step(c))};
     c.fresh = 0.0;
@@ -206,6 +213,8 @@ void Servo::model(CycleState& c) noexcept {
         HandCycle& h = c.hand[i];
         h.model->drive({.burr_rad_s = i == 0 ? c.drives.burr_rad_s : 0.0, .step_s = to_s(c.dt)});
         h.deadline = {};
+        if (script_ != nullptr)
+            h.deadline = {.looks = 0, .passed_at = script_->deadline_look[i], .replayed = true};
         c.budget.deadline = Deadline(end, &h.deadline);
         h.step = h.model->step(h.tool, c.budget);
         if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;

@@ -71,12 +71,19 @@ struct HandParts {
     DeviceInfo info;
 };
 
+// Of a cycle that is done again: what cannot be asked twice.
+struct CycleScript {
+    float level = 1.0F;                                    // of the haptic path
+    std::array<std::uint32_t, kHandsMax> deadline_look{};  // that found the deadline passed; 0: none
+};
+
 struct ServoParts {
     Clock& clock;
     std::span<const HandParts> hands;  // 1 or 2
     RtRegion& region;
     ServoMail& mail;
-    Lines* lines = nullptr;  // null: none are fitted
+    Lines* lines = nullptr;               // null: none are fitted
+    const CycleScript* script = nullptr;  // of a replay, read in every cycle
 };
 
 class Servo {
@@ -87,6 +94,9 @@ public:
 
     // Cycles with the gate closed that warm caches and pages; then counters from zero, state ready.
     void warm_up() noexcept;
+    // Its parts, for a replay: one such cycle; the start at an instant.
+    void dry_cycle() noexcept;
+    void start(Instant now) noexcept;
     void cycle() noexcept TACT_RT;
     // Until the stop signal has led to zero force and the amplifier is off.
     void run() noexcept;
@@ -169,6 +179,7 @@ private:
     RtRegion& region_;
     ServoMail& mail_;
     Lines* lines_;
+    const CycleScript* script_;
     ServoSettings settings_;
     Arena arena_;
     CycleState* c_;

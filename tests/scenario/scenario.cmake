@@ -8,3 +8,5 @@ tact_test(scenario/faults_test.cpp USES base shm topics assets launch TIMEOUT 60
 tact_scenario_rig(faults_test)
 tact_test(scenario/kill_campaign_test.cpp USES base shm topics assets launch TIMEOUT 600 LABELS scenario)
 tact_scenario_rig(kill_campaign_test)
+tact_test(scenario/replay_scenario_test.cpp USES base shm topics assets record recorder replay launch TIMEOUT 600 LABELS scenario)
+tact_scenario_rig(replay_scenario_test)

@@ -46,8 +46,8 @@ WRAPPED = [
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
     (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
-    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/start_model", "rt/start_options", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
-    (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "tests"]),
+    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/start_model", "rt/start_options", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
+    (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "rt/replay", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

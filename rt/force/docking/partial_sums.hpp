@@ -18,7 +18,7 @@
 #include <cstddef>
 
 #include "ipc/assets/density_map.hpp"
-#include "ipc/base/clock.hpp"
+#include "ipc/base/knob.hpp"
 #include "ipc/base/rt.hpp"
 #include "rt/force/docking/point_set.hpp"
 

@@ -28,7 +28,7 @@
 
 #include "ipc/assets/surface_mesh.hpp"
 #include "ipc/assets/triangle_look.hpp"
-#include "ipc/base/clock.hpp"
+#include "ipc/base/knob.hpp"
 #include "ipc/base/pose.hpp"
 #include "rt/force/surface/guards.hpp"
 

@@ -19,7 +19,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/base/clock.hpp"
+#include "ipc/base/knob.hpp"
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/tool_lists.hpp"
 #include "rt/force/surface/tool_points.hpp"

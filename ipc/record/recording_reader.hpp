@@ -1,0 +1,86 @@
+// Reads a recording step by step, whole or while it grows no more, in blocks: memory does not depend on its length.
+//
+// Repairs   first, where its recorder was killed; what was found is in repaired().
+// Hostile   every number may be anything; counts are bounded, texts printable by whoever shows them. A file that is no
+//           recording is refused.
+// Thread    one. Fails by StartupError (opening), RecordError (reading on).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "ipc/record/repair.hpp"
+#include "ipc/record/rows.hpp"
+#include "ipc/topics/regions.hpp"
+
+namespace tact {
+
+// Rows of one table in order, read a block at a time.
+template <class Row>
+class RowStream {
+public:
+    static constexpr std::size_t kBlock = 4096;
+
+    RowStream() = default;
+    explicit RowStream(Hdf5Table table) : table_(std::move(table)) {}
+    [[nodiscard]] std::uint64_t rows() const { return table_.rows(); }
+    // Null: there is none any more. Good until next() of another block.
+    const Row* peek() {
+        if (at_ < block_.size()) return &block_[at_];
+        const std::uint64_t left = table_.rows() - done_;
+        if (left == 0) return nullptr;
+        block_.resize(static_cast<std::size_t>(left < kBlock ? left : kBlock));
+        table_.read(done_, block_.size(), block_.data());
+        done_ += block_.size();
+        at_ = 0;
+        return &block_[0];
+    }
+    void next() { ++at_; }
+
+private:
+    Hdf5Table table_;
+    std::vector<Row> block_;
+    std::size_t at_ = 0;
+    std::uint64_t done_ = 0;
+};
+
+// All that one step was given, and what came of it.
+struct RecordedStep {
+    CycleTopic cycle{};
+    HandRow hand[kHandsMax]{};
+    std::vector<MailTopic> mail;
+    std::optional<ReportTopic> report;
+};
+
+class RecordingReader {
+public:
+    explicit RecordingReader(const std::filesystem::path& path);
+
+    struct About {
+        StartTopic start{};
+        std::vector<std::string> arguments;  // of the controller
+        std::string config, poses, scene_path, program;
+        bool known = false;  // all of those are there
+        std::uint64_t scene_checksum = 0, first_step = 0, cycles = 0, dropped = 0;
+        RepairReport repair;
+    };
+    [[nodiscard]] const About& about() const { return about_; }
+    // False: that was the last one. Mail of steps that are not there comes with the next one that is.
+    bool next(RecordedStep& step);
+
+    [[nodiscard]] RowStream<EventTopic>& events() { return events_; }
+
+private:
+    void read_about(const std::filesystem::path& path);
+
+    Hdf5Handle file_;
+    About about_;
+    RowStream<CycleTopic> cycles_;
+    RowStream<HandRow> hand_[kHandsMax];
+    RowStream<MailTopic> mail_;
+    RowStream<ReportTopic> reports_;
+    RowStream<EventTopic> events_;
+};
+
+}  // namespace tact

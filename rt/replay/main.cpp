@@ -1,0 +1,184 @@
+// tact-replay: does a recorded run again, with the controller's own code, and compares every force with the recording.
+//
+// Exit  0  the same to the bit
+//       1  error
+//       2  wrong usage
+//       3  not the same; or the recording does not hold all that it takes, and that is said
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "ipc/base/error.hpp"
+#include "ipc/shm/link.hpp"
+#include "rt/replay/replay.hpp"
+
+namespace {
+
+using namespace tact;
+
+volatile sig_atomic_t stop_asked = 0;
+extern "C" void on_stop(int) { stop_asked = 1; }
+
+struct Wishes {
+    ReplaySettings settings;
+    std::string session = "default";
+    bool show = false, json = false;
+    double from_s = 0.0, speed = 1.0, wait_s = 30.0;
+};
+
+// A window may watch: the region goes to whoever asks for it, as from a controller.
+class Stage {
+public:
+    Stage(const Wishes& w, Replay& replay)
+        : link_(w.session, replay.region().fd(), replay.bone_fd()), speed_(w.speed), from_s_(w.from_s) {
+        const Instant begin = Monotonic::now();
+        while (!there_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
+        if (!there_ && stop_asked == 0)
+            throw StartupError("showing a replay in session '" + w.session + "'", "no window came",
+                               "start it with tact replay --show, or tact-gui --session " + w.session);
+        if (const RecordedStep* const first = replay.upcoming()) {
+            begin_ns_ = first->cycle.now_ns;
+            begun_ = Monotonic::now();
+            replay.shift_by(begun_ - instant_from_ns(begin_ns_));
+        }
+    }
+    // False: the window has gone.
+    bool wait_for(const CycleTopic& next) {
+        const double at_s = static_cast<double>(next.now_ns - begin_ns_) * 1e-9 - from_s_;
+        if (at_s < 0.0) {
+            begun_ = Monotonic::now();
+            return there_;
+        }
+        if (Monotonic::now() - attended_ > std::chrono::milliseconds(10)) attend(0);
+        const Instant due = begun_ + Duration(static_cast<std::int64_t>(1e9 * at_s / speed_));
+        while (there_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1)) attend(1);
+        return there_;
+    }
+
+private:
+    void attend(int timeout_ms) {
+        const LinkServer::News news = link_.poll(timeout_ms);
+        if (news.gui_arrived) there_ = true;
+        if (news.gui_left) there_ = false;
+        attended_ = Monotonic::now();
+    }
+    LinkServer link_;
+    double speed_, from_s_;
+    bool there_ = false;
+    std::int64_t begin_ns_ = 0;
+    Instant begun_{}, attended_{};
+};
+
+void print_json(const Wishes& w, const Replay& replay) {
+    const ReplayResult& r = replay.result();
+    nlohmann::json j{{"file", w.settings.recording.string()},
+                     {"steps", r.steps},
+                     {"different", r.different},
+                     {"obstacle", replay.obstacle()},
+                     {"repaired", replay.recording().about().repair.needed},
+                     {"lost", replay.recording().about().dropped},
+                     {"removed_levels", r.removed_levels},
+                     {"force_n_most", r.force_n_most},
+                     {"first_difference", nullptr}};
+    if (r.first)
+        j["first_difference"] = {{"step", r.first->step},         {"cycle", r.first->cycle},
+                                 {"hand", r.first->hand},         {"what", r.first->what},
+                                 {"recorded", r.first->recorded}, {"replayed", r.first->replayed}};
+    std::printf("%s\n", j.dump().c_str());
+}
+
+void print_words(const Replay& replay) {
+    const ReplayResult& r = replay.result();
+    if (!replay.obstacle().empty()) std::printf("not exact: %s\n", replay.obstacle().c_str());
+    if (!r.first) {
+        std::printf("%llu steps, up to %.3f N: every force is the same to the bit\n",
+                    static_cast<unsigned long long>(r.steps), r.force_n_most);
+        return;
+    }
+    const ReplayDifference& d = *r.first;
+    std::printf(
+        "%llu of %llu steps differ; the first is step %llu (cycle %llu), hand %u: %s\n"
+        "  recorded %.17g %.17g %.17g\n  replayed %.17g %.17g %.17g\n",
+        static_cast<unsigned long long>(r.different), static_cast<unsigned long long>(r.steps),
+        static_cast<unsigned long long>(d.step), static_cast<unsigned long long>(d.cycle), d.hand,
+        d.what.c_str(), d.recorded[0], d.recorded[1], d.recorded[2], d.replayed[0], d.replayed[1],
+        d.replayed[2]);
+}
+
+int run(const Wishes& w) {
+    Replay replay(w.settings);
+    const RecordingReader::About& about = replay.recording().about();
+    if (about.repair.needed) spdlog::warn("{}", repair_text(w.settings.recording, about.repair));
+    if (about.dropped > 0) spdlog::warn("the recorder lost {} records", about.dropped);
+    if (!replay.obstacle().empty()) spdlog::warn("this replay cannot be exact: {}", replay.obstacle());
+    std::optional<Stage> stage;
+    if (w.show) stage.emplace(w, replay);
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    Instant said = Monotonic::now();
+    while (const RecordedStep* const next = replay.upcoming()) {
+        if (stop_asked != 0 || (stage && !stage->wait_for(next->cycle))) break;
+        replay.do_step();
+        if (terminal && Monotonic::now() - said > std::chrono::milliseconds(500)) {
+            said = Monotonic::now();
+            std::fprintf(stderr, "\r%llu of %llu steps ",
+                         static_cast<unsigned long long>(replay.result().steps),
+                         static_cast<unsigned long long>(about.cycles));
+        }
+    }
+    if (terminal) std::fprintf(stderr, "\r");
+    if (w.json)
+        print_json(w, replay);
+    else
+        print_words(replay);
+    return replay.result().different == 0 && replay.obstacle().empty() ? 0 : 3;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("tact-replay"));
+    spdlog::set_pattern("%n %^%l%$ %v");
+    Wishes w;
+    std::string file, scene;
+    CLI::App app{
+        "tact-replay: does a recorded run again with the controller's own code, and compares every force"};
+    app.add_option("file", file, "recording of tact record")->required();
+    app.add_option("--scene", scene, "where the recorded scene is now");
+    auto* show = app.add_flag("--show", w.show, "at the recorded pace, for a window in the session");
+    app.add_option("--session", w.session, "of the window")->capture_default_str()->needs(show);
+    app.add_option("--from", w.from_s, "seconds into the recording at which showing begins")
+        ->check(CLI::Range(0.0, 1e7))
+        ->needs(show);
+    app.add_option("--speed", w.speed, "of showing, times the recorded one")
+        ->check(CLI::Range(0.01, 100.0))
+        ->needs(show);
+    app.add_flag("--json", w.json, "the outcome as JSON on standard output");
+    app.set_version_flag("--version", TACT_VERSION);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
+    struct sigaction action {};
+    action.sa_handler = &on_stop;
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+    w.settings.recording = file;
+    w.settings.scene = scene;
+    try {
+        return run(w);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact-replay: %s\n", e.what());
+        return 1;
+    }
+}

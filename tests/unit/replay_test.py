@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""Sessions of docking, surface and drilling are recorded and done again: every force is the same to the bit.
+
+usage: replay_test.py BIN_DIR [--seconds S]. Also: what is changed in a recording is found; another scene is refused; a recording that begins
+in the middle says that it cannot be exact.
+"""
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+PATIENCE_S = 240
+
+
+class Sessions:
+    def __init__(self, programs, seconds):
+        self.programs, self.seconds = programs, seconds
+        self.dir = tempfile.mkdtemp(prefix="tact_replay_")
+        self.env = dict(os.environ, TACT_RUNTIME_DIR=self.dir, XDG_CACHE_HOME=os.path.join(self.dir, "cache"))
+        self.bad = 0
+
+    def path(self, name):
+        return os.path.join(self.dir, name)
+
+    def run(self, program, *words):
+        done = subprocess.run([os.path.join(self.programs, program), *map(str, words)], env=self.env, text=True,
+                              capture_output=True, timeout=PATIENCE_S)
+        return done.returncode, done.stdout, done.stderr
+
+    def must(self, program, *words):
+        code, out, err = self.run(program, *words)
+        if code != 0:
+            sys.exit("%s %s: exit code %d\n%s%s" % (program, " ".join(map(str, words)), code, out, err))
+        return out
+
+    def claim(self, what, good, more=""):
+        self.bad += not good
+        print("%s %s%s" % ("ok  " if good else "FAIL", what, "" if good else ": " + str(more)))
+
+    def session(self, name, scene, *options, felt_n=0.05):
+        recording = self.path(name + ".h5")
+        self.must("tact", "run", scene, "--no-gui", "--quiet", "--seconds", self.seconds, "--record", recording, *options)
+        code, out, err = self.run("tact", "replay", recording, "--json")
+        if code not in (0, 3):
+            self.claim(name, False, err)
+            return recording, {}
+        said = json.loads(out)
+        self.claim("%s: %d steps, up to %.2f N, the same to the bit" % (name, said["steps"], said["force_n_most"]),
+                   code == 0 and said["different"] == 0 and said["obstacle"] == "" and said["lost"] == 0 and
+                   said["force_n_most"] > felt_n and said["steps"] > 300 * self.seconds, said)
+        return recording, said
+
+    def late(self, scene, rest_s=0.7):
+        """A recorder that comes when the rings have gone round."""
+        controller = subprocess.Popen([os.path.join(self.programs, "tact-rt"), scene, "--rate", "20000", "--priority", "0", "--arm"],
+                                      env=self.env, stderr=subprocess.DEVNULL)
+        try:
+            time.sleep(3.0 + rest_s)
+            recording = self.path("late.h5")
+            self.must("tact", "record", recording, "--seconds", "0.5", "--wait", "60", "--quiet")
+        finally:
+            controller.terminate()
+            controller.wait(timeout=PATIENCE_S)
+        code, out, _ = self.run("tact", "replay", recording, "--json")
+        said = json.loads(out) if code == 3 else {}
+        self.claim("a recording from the middle of a run says so", "middle of a run" in said.get("obstacle", ""), (code, out))
+
+    def close(self):
+        shutil.rmtree(self.dir)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("programs")
+    parser.add_argument("--seconds", type=float, default=3.0)
+    wish = parser.parse_args()
+    s = Sessions(os.path.abspath(wish.programs), wish.seconds)
+    try:
+        s.must("tact-prep", "demo", "dock", "-o", s.path("dock.tact"))
+        recording, _ = s.session("docking", s.path("dock.tact"), "--start-offset-a", 3, "--hand", "wander", "--copies", 2)
+        s.session("docking, freely running", s.path("dock.tact"), "--free-run", "--goal", 2000, "--law", "fixed", "--level", "docking.force=1",
+                  "--hand", "wander", "--start-offset-a", 2)
+        s.must("tact-prep", "demo", "touch", "--parts", 60, "-o", s.path("ground.tact"))
+        s.session("surface", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1)
+        s.must("tact-prep", "drill", "--synthetic", "--voxels", 64, "-o", s.path("bone.tact"))
+        s.seconds = max(s.seconds, 8.0)  # the surgeon first has to find the bone
+        _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "sucker", "--hand-at-mm", "-6,-1.5")
+        s.claim("bone was taken in it", said.get("removed_levels", 0) > 255, said)
+        code, _, err = s.run("tact", "replay", recording, "--scene", s.path("ground.tact"))
+        s.claim("another scene is refused", code == 1 and "another scene" in err, (code, err))
+        code, _, err = s.run("tact", "replay", s.path("dock.tact"))
+        s.claim("a file that is no recording is refused", code == 1 and "no HDF5 file" in err, (code, err))
+        code, _, err = s.run("tact", "run", s.path("dock.tact"), "--no-gui", "--seconds", 1, "--record", recording)
+        s.claim("a recording is not overwritten", code == 1 and "there already" in err, (code, err))
+        s.late(s.path("dock.tact"))
+    finally:
+        s.close()
+    sys.exit(1 if s.bad else 0)
+
+
+if __name__ == "__main__":
+    main()
