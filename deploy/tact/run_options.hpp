@@ -41,7 +41,7 @@ void let_the_hand_stroke(RunOptions& options);
 void let_the_hands_drill(RunOptions& options);
 
 // Where they open the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
-inline constexpr const char* kMastoidMm = "-6,-1.5";
+inline constexpr const char* kMastoidMm = "-4.5,0";
 
 void add_run_options(CLI::App& app, RunOptions& options);
 

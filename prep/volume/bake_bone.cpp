@@ -4,6 +4,7 @@
 #include <array>
 
 #include "ipc/base/error.hpp"
+#include "prep/volume/approach.hpp"
 #include "prep/volume/brick_rows.hpp"
 #include "prep/volume/distance.hpp"
 #include "prep/volume/note_line.hpp"
@@ -16,13 +17,14 @@ struct BoneBox {
     std::uint64_t voxels = 0, sum = 0;
 };
 
-BoneBox measure(const BoneData& bone) {
+BoneBox measure(const BoneData& bone, BoneHeights& heights) {
     BoneBox box;
     const auto& n = bone.bricks.size;
     std::vector<std::uint8_t> row(brick_row_bytes(bone.bricks));
     for (std::uint32_t z = 0; z < n[2]; ++z) {
         for (std::uint32_t y = 0; y < n[1]; ++y) {
             brick_row(bone.bricks, bone.density, y, z, row);
+            heights.add_row(y, z, row);
             for (std::uint32_t x = 0; x < n[0]; ++x) {
                 const std::uint8_t d = row[x];
                 if (d == 0) continue;
@@ -39,13 +41,16 @@ BoneBox measure(const BoneData& bone) {
     return box;
 }
 
-void place_hand(const BoneBricks& bricks, const BoneBox& box, SceneMeta& meta) {
+BoneHeights::Place place_hand(const BoneBricks& bricks, const BoneBox& box, const BoneHeights& heights,
+                              SceneMeta& meta) {
     const Vec3 low = bricks.to_model(Vec3(box.low[0], box.low[1], box.low[2]));
     const Vec3 high = bricks.to_model(Vec3(box.high[0], box.high[1], box.high[2]));
+    const BoneHeights::Place place = heights.place(0.5 * (low + high));
     meta.world_per_model = 1.0;
-    meta.centre_model_m[0] = 0.5 * (low.x() + high.x());
-    meta.centre_model_m[1] = 0.5 * (low.y() + high.y());
-    meta.centre_model_m[2] = high.z() + BoneInput::kInFrontM;
+    meta.centre_model_m[0] = place.surface_m.x();
+    meta.centre_model_m[1] = place.surface_m.y();
+    meta.centre_model_m[2] = place.front_m + BoneInput::kInFrontM;
+    return place;
 }
 
 }  // namespace
@@ -64,12 +69,13 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     BoneData& bone = input.bone;
     const BoneBricks& b = bone.bricks;
     report(progress, 0.5, "looking at the bone");
-    const BoneBox box = measure(bone);
+    BoneHeights heights(b);
+    const BoneBox box = measure(bone, heights);
     if (box.voxels == 0)
         throw StartupError("bake a volume of bone", "no voxel of it is bone",
                            "give a lower --threshold-hu, or another part with --crop");
     baked.meta.kind = SceneKind::drilling;
-    place_hand(b, box, baked.meta);
+    const BoneHeights::Place place = place_hand(b, box, heights, baked.meta);
     input.title.copy(baked.meta.title, sizeof baked.meta.title - 1);
     baked.bone_voxels = box.voxels;
     const double voxel_m3 = b.voxel_m * b.voxel_m * b.voxel_m;
@@ -80,6 +86,9 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     baked.note +=
         note_line("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
                   100.0 * static_cast<double>(box.voxels) / (double{1} * b.size[0] * b.size[1] * b.size[2]));
+    baked.note += note_line("hand: %.1f mm in front of the bone at model (%.2f, %.2f, %.2f) mm\n",
+                            1e3 * (baked.meta.centre_model_m[2] - place.surface_m.z()),
+                            1e3 * place.surface_m.x(), 1e3 * place.surface_m.y(), 1e3 * place.surface_m.z());
     if (bone.view().has_hu())
         baked.note += note_line("density: 0 is %g HU and below, 255 is %g HU and above\n",
                                 static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));

@@ -1,7 +1,8 @@
 // Puts a drilling scene together: densities, labels, distances to critical structures, and where the hand is.
 //
-// Place     a hand's millimetre is a bone's. The middle of the hand's space lies kInFrontM in front of the bone's
-//           nearest point, the largest z, so that a hand at rest is outside.
+// Place     a hand's millimetre is a bone's. The middle of the hand's space lies straight before a patch of bone that a
+//           tool can be set on, near the middle (approach.hpp), kInFrontM in front of all bone that is near: a hand at
+//           rest is outside and meets bone when it goes straight on.
 // Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
 // Repeats   the same input gives the same sections.
 #pragma once

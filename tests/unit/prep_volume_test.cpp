@@ -5,6 +5,7 @@
 #include <set>
 
 #include "prep/synthetic/temporal_bone.hpp"
+#include "prep/volume/approach.hpp"
 #include "prep/volume/bake_bone.hpp"
 #include "prep/volume/distance.hpp"
 #include "tests/unit/assets_samples.hpp"
@@ -150,7 +151,9 @@ TEST(BakedBone, HasEverySectionAndPutsTheHandInFrontOfTheBone) {
                     front = z;
                     sum += d;
                 }
-    EXPECT_NEAR(meta.centre_model_m[2], bricks.to_model(Vec3(0, 0, front)).z() + 0.01, 1e-9);
+    const double front_m = bricks.to_model(Vec3(0, 0, front)).z();
+    EXPECT_LE(meta.centre_model_m[2], front_m + 0.01 + 1e-9);
+    EXPECT_GT(meta.centre_model_m[2], front_m - 0.01);
     EXPECT_NEAR(baked.bone_m3, static_cast<double>(sum) / 255.0 * 1e-9, 1e-15);
     for (const DistanceField& f : fields)  // the hand at rest is outside of all
         EXPECT_GT(f.distance_m(meta.to_model(Vec3::Zero())), 0.005);
@@ -160,6 +163,73 @@ TEST(BakedBone, HasEverySectionAndPutsTheHandInFrontOfTheBone) {
     empty.bone.density.resize(512);
     EXPECT_NE(sample::error_of([&] { (void)bake_bone(std::move(empty), out); }).find("no voxel"),
               std::string::npos);
+}
+
+// Bone of 0.5 mm voxels: heights in voxels by column, one voxel thick, 200 dense.
+struct Relief {
+    BoneBricks bricks{.size = {80, 80, 64}, .voxel_m = 5e-4};
+    std::vector<std::uint8_t> row = std::vector<std::uint8_t>(80);
+    BoneHeights heights{bricks};
+    template <class F>
+    explicit Relief(F height, std::uint8_t density = 200) {
+        for (std::uint32_t z = 0; z < 64; ++z)
+            for (std::uint32_t y = 0; y < 80; ++y) {
+                for (std::uint32_t x = 0; x < 80; ++x)
+                    row[x] = height(x, y) == static_cast<int>(z) ? density : std::uint8_t{0};
+                heights.add_row(y, z, row);
+            }
+    }
+    [[nodiscard]] Vec3 found() const {  // voxels
+        return bricks.to_voxels(heights.place(bricks.to_model(Vec3(40, 40, 0))).surface_m);
+    }
+};
+
+double off_middle(const Vec3& at) { return std::hypot(at.x() - 40.0, at.y() - 40.0); }
+
+TEST(BoneHeights, BoneInTheMiddleIsMetThere) {
+    const Relief plate([](std::uint32_t, std::uint32_t) { return 30; });
+    EXPECT_LT(off_middle(plate.found()), 3.0);
+    EXPECT_NEAR(plate.found().z(), 30.0, 1e-6);
+}
+
+TEST(BoneHeights, AHoleAnEdgeAndASplinterAreNotSetOn) {
+    const auto squared = [](std::uint32_t x, std::uint32_t y) {
+        return (static_cast<int>(x) - 40) * (static_cast<int>(x) - 40) +
+               (static_cast<int>(y) - 40) * (static_cast<int>(y) - 40);
+    };
+    // A hole of 7.5 mm, and in its middle a pin that stands out.
+    const Relief ring([&](std::uint32_t x, std::uint32_t y) {
+        return squared(x, y) < 2 ? 60 : squared(x, y) < 15 * 15 ? -1 : 30;
+    });
+    EXPECT_GT(off_middle(ring.found()), 15.0);
+    EXPECT_LT(off_middle(ring.found()), 24.0) << "but the nearest place that is good";
+    EXPECT_NEAR(ring.found().z(), 30.0, 1e-6);
+    const double front_m = ring.heights.place(ring.bricks.to_model(Vec3(40, 40, 0))).front_m;
+    EXPECT_NEAR(ring.bricks.to_voxels(Vec3(0, 0, front_m)).z(), 60.0, 1e-6)
+        << "the hand rests before the pin";
+}
+
+TEST(BoneHeights, ARidgeIsMetOnItsBackAndNotOnItsFlank) {
+    const Relief finger([](std::uint32_t x, std::uint32_t) {
+        const double off = static_cast<double>(x) - 60.0;  // 8 mm wide
+        return std::abs(off) < 8.0 ? static_cast<int>(20.0 + std::sqrt(64.0 - off * off)) : -1;
+    });
+    EXPECT_NEAR(finger.found().x(), 60.0, 2.5);
+}
+
+TEST(BoneHeights, ALittleNearerToTheUserCountsAsALittleAside) {
+    const Relief step([](std::uint32_t x, std::uint32_t) { return x < 36 ? 60 : 4; });
+    EXPECT_LT(step.found().x(), 36.0);
+    EXPECT_NEAR(step.found().z(), 60.0, 1e-6);
+}
+
+TEST(BoneHeights, WithoutAGoodPlaceItIsTheOutermostVoxel) {
+    const Relief pins([](std::uint32_t x, std::uint32_t y) {
+        return x == 10 && y == 70 ? 50 : x % 8 == 0 && y % 8 == 0 ? 20 : -1;
+    });
+    EXPECT_EQ(pins.found(), Vec3(10, 70, 50));
+    const Relief soft([](std::uint32_t x, std::uint32_t) { return x > 60 ? 12 : -1; }, 20);
+    EXPECT_GT(soft.found().x(), 60.0) << "soft bone, where there is no other";
 }
 
 }  // namespace
