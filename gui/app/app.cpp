@@ -33,6 +33,7 @@
 #include "gui/app/touch_show.hpp"
 #include "gui/app/window.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/stage/stage.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 
@@ -75,6 +76,9 @@ public:
         }
         view_options_.depth_cue = options.depth_cue;
         fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
+        if (options.stage.mode != StereoMode::off)
+            stage_ = std::make_unique<Stage>(options.stage, window_.handle(), options.hidden,
+                                             window_.paced_by_display());
         if (!options.scene.empty())
             start_loading(options.scene);
         else
@@ -88,7 +92,7 @@ public:
             const Instant now = Monotonic::now();
             // A picture is asked for to see the scene, so the time is not over before it is there.
             const bool picture_waits = pictures_.wanted_at_end() && loader_.running();
-            last = stop_signal != 0 || window_.close_wanted() ||
+            last = stop_signal != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
                    (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
             frame(now, last && pictures_.wanted_at_end());
             if (!last) clock_.pace(fps_max_);
@@ -126,7 +130,10 @@ private:
         clock_.end_part(FramePart::scene);
         draw_panels();
         clock_.end_part(FramePart::panels);
-        if (take_picture) pictures_.save_at_end(window_.picture());
+        if (take_picture) {
+            pictures_.save_at_end(window_.picture());
+            if (stage_ && view_) pictures_.save_stage(stage_->pictures());
+        }
         if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
         window_.show();
         clock_.end_part(FramePart::swap);
@@ -267,6 +274,7 @@ private:
             if (key == Key::burr) look_at_burr();
             if (key == Key::style) state_.toggles.style = (state_.toggles.style + 1) % 3;
             if (key == Key::picture) picture_wanted_ = true;
+            if (key == Key::swap_eyes && stage_) stage_->swap_eyes();
             if (key == Key::raise && content_) nudge_contour(state_.contours, content_->scale, 1.0);
             if (key == Key::lower && content_) nudge_contour(state_.contours, content_->scale, -1.0);
             if (key == Key::help) state_.show_keys = !state_.show_keys;
@@ -340,9 +348,8 @@ private:
         view.height_px = std::max(static_cast<int>(rect.height * to_px), 1);
         view.y_px = size.height_px - view.height_px;
         paint_grounds(layout, to_px, size.height_px);
-        glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
         if (!programs_) programs_ = std::make_unique<Programs>();
-        if (view_options_.gradient) programs_->draw_background();
+        if (!view_ || !stage_) begin_view(view);
         state_.a_per_px = static_cast<double>(camera_.a_per_px(rect.height));
         const Eigen::Matrix3f axes = camera_.orientation().toRotationMatrix();
         for (int i = 0; i < 3; ++i)
@@ -393,7 +400,11 @@ private:
         view_options_.depth_cue = t.depth_cue;
         view_->molecules().set_look(
             {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
-        view_->draw(camera_, view_options_, view);
+        if (stage_)
+            draw_stage(view, now_ns);
+        else
+            view_->draw(camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px)),
+                        view_options_, view);
         drilling_.drawn(*view_);
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
@@ -401,6 +412,30 @@ private:
                 spdlog::info("bodies drawn as tubes, as this renderer has no time for their atoms: {}",
                              left_out);
         }
+    }
+
+    void begin_view(const ViewFrame& view) {
+        glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
+        if (view_options_.gradient) programs_->draw_background();
+    }
+
+    void draw_stage(ViewFrame view, std::int64_t now_ns) {
+        stage_->follow(controller_.attached() && controller_.have_head ? &controller_.head : nullptr, now_ns,
+                       clock_.frame_s(), {view.x_px, view.y_px, view.width_px, view.height_px});
+        view.x_px = view.y_px = 0;
+        view.width_px = stage_->eye_width_px();
+        view.height_px = stage_->eye_height_px();
+        view.bone_rays /= 2;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            stage_->begin(eye, view_options_.plain_ground);
+            begin_view(view);
+            view_->draw(stage_->eye(eye, camera_, content_->meta.world_per_model,
+                                    content_->meta.to_world(content_->centre_model_m), view_->radius_a()),
+                        view_options_, view);
+        }
+        stage_->show(window_.frame_buffer());
+        state_.stage = std::string("stereo: ") + stage_words(*stage_);
+        state_.head_lost = stage_->head().sight() == HeadSight::lost;
     }
 
     void draw_panels() {
@@ -451,6 +486,7 @@ private:
     const std::int64_t first_ns_ = to_ns(Monotonic::now());
     double fps_max_ = 60.0;
     // OpenGL objects go before the window: members are destroyed from below.
+    std::unique_ptr<Stage> stage_;  // of a stereo picture
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
@@ -468,7 +504,7 @@ private:
     SceneLoader loader_;
     std::string next_scene_;  // asked for while another was being read
     std::size_t left_out_ = 0;
-    PictureFiles pictures_{options_.screenshot, options_.every_s};
+    PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
     PictureFiles::View drawn_view_;
     bool picture_wanted_ = false;
     bool sharp_ = false;  // this frame is kept: all its rays

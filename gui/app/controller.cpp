@@ -23,9 +23,10 @@ Controller::News Controller::poll() {
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
         bone_ = MappedBoneRegion();
         if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
-        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_health_ = seen_levels_ =
-            0;
-        have_tool = have_second = have_bodies = have_touch = have_drill = have_health = have_levels = false;
+        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_head_ = seen_health_ =
+            seen_levels_ = 0;
+        have_tool = have_second = have_bodies = have_touch = have_drill = have_head = have_health =
+            have_levels = false;
         cursor_ = trace_cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -57,6 +58,7 @@ Controller::Fresh Controller::read() {
     fresh.bodies = take(region_->bodies, seen_bodies_, bodies, have_bodies);
     fresh.touch = take(region_->touch, seen_touch_, touch, have_touch);
     fresh.drill = take(region_->drill, seen_drill_, drill, have_drill);
+    fresh.head = take(region_->head, seen_head_, head, have_head);
     fresh.health = take(region_->health, seen_health_, health, have_health);
     fresh.levels = take(region_->levels, seen_levels_, levels, have_levels);
     return fresh;

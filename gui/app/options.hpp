@@ -7,6 +7,7 @@
 
 #include "gui/app/contour_option.hpp"
 #include "gui/render/looks.hpp"
+#include "gui/stage/stage_file.hpp"
 
 namespace tact {
 
@@ -21,6 +22,8 @@ struct GuiOptions {
     int width_px = 1280, height_px = 720;
     bool hidden = false;
     bool plain = false;
+    StageSettings stage;                  // of a stereo picture
+    std::string stage_screenshot;         // PNG of the stereo picture at the end; empty: none
     MoleculeLook look;                    // of all bodies at the start
     std::vector<ContourOption> contours;  // empty: the scene's own
     bool depth_cue = true;

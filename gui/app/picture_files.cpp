@@ -35,6 +35,17 @@ void PictureFiles::save_of_series(const Image& window, const View& view) {
     write(path, part);
 }
 
+void PictureFiles::save_stage(const std::vector<Image>& eyes) {
+    if (stage_.empty()) return;
+    if (eyes.size() == 1) return write(stage_, eyes[0]);
+    for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+        std::filesystem::path path = stage_;
+        path.replace_filename(path.stem().string() + (eye == 0 ? "-left" : "-right") +
+                              path.extension().string());
+        write(path, eyes[eye]);
+    }
+}
+
 void PictureFiles::save_now(const Image& window) {
     const auto moment = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::system_clock::now().time_since_epoch());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "gui/render/target.hpp"
 #include "ipc/base/clock.hpp"
@@ -14,10 +15,12 @@ namespace tact {
 
 class PictureFiles {
 public:
-    // path: of the one at the end; empty: neither that nor a series. every_s: between two of the series; 0: none.
-    PictureFiles(std::string path, double every_s) : path_(std::move(path)), every_s_(every_s) {}
+    // path: of the one at the end; empty: neither that nor a series. every_s: between two of the series; 0: none. stage: of
+    // the stereo picture at the end; empty: none.
+    PictureFiles(std::string path, double every_s, std::string stage)
+        : path_(std::move(path)), stage_(std::move(stage)), every_s_(every_s) {}
 
-    [[nodiscard]] bool wanted_at_end() const { return !path_.empty(); }
+    [[nodiscard]] bool wanted_at_end() const { return !path_.empty() || !stage_.empty(); }
     // The first as soon as there is something to see.
     [[nodiscard]] bool series_due(Instant now, bool something_to_see);
     struct View {
@@ -25,14 +28,17 @@ public:
     };
     // Without what is written over the view.
     void save_of_series(const Image& window, const View& view);
-    void save_at_end(const Image& window) { write(path_, window); }
-    void save_now(const Image& window);  // in the working folder, named by the moment
+    void save_at_end(const Image& window) {
+        if (!path_.empty()) write(path_, window);
+    }
+    void save_stage(const std::vector<Image>& eyes);  // one of both, or left and right
+    void save_now(const Image& window);               // in the working folder, named by the moment
     [[nodiscard]] bool failed() const { return failed_; }
 
 private:
     void write(const std::filesystem::path& path, const Image& image);
 
-    const std::string path_;
+    const std::string path_, stage_;
     const double every_s_;
     std::uint32_t series_ = 0;  // so far
     Instant series_from_{};

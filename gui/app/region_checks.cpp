@@ -78,6 +78,11 @@ bool sensible(const DrillTopic& t) noexcept {
     });
 }
 
+bool sensible(const HeadTopic& h) noexcept {
+    return near(h.pos_screen_m) && unit_quaternion(h.quat_screen_head_xyzw) && near(h.velocity_screen_m_s) &&
+           near(h.angular_screen_rad_s) && h.state <= 2 && h.quality >= 0.0 && h.quality <= 1.0;
+}
+
 bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&

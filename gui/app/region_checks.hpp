@@ -5,6 +5,7 @@
 
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/drill.hpp"
+#include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/tool.hpp"
@@ -16,6 +17,7 @@ namespace tact {
 [[nodiscard]] bool sensible(const ToolTopic& tool) noexcept;
 [[nodiscard]] bool sensible(const TouchTopic& touch) noexcept;
 [[nodiscard]] bool sensible(const DrillTopic& drill) noexcept;
+[[nodiscard]] bool sensible(const HeadTopic& head) noexcept;
 [[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 

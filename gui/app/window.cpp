@@ -40,6 +40,7 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
     for (const auto& [which, what] : {std::pair{GLFW_KEY_HOME, Key::home},
                                       {GLFW_KEY_F, Key::burr},
                                       {GLFW_KEY_S, Key::style},
+                                      {GLFW_KEY_X, Key::swap_eyes},
                                       {GLFW_KEY_P, Key::picture},
                                       {GLFW_KEY_R, Key::refine},
                                       {GLFW_KEY_ENTER, Key::accept},

@@ -18,6 +18,7 @@ namespace tact {
 enum class Key {
     home,
     burr,
+    swap_eyes,
     style,
     picture,
     help,
@@ -51,6 +52,8 @@ public:
     void draw_panels();  // what ImGui was told in this frame
     void show();         // swaps, or finishes the image where hidden
     [[nodiscard]] std::vector<Key> take_keys();
+    [[nodiscard]] GLFWwindow* handle() const { return window_; }
+    [[nodiscard]] GLuint frame_buffer() const { return target_ ? target_->name() : 0; }
     [[nodiscard]] Image picture();  // of the frame just drawn, before show()
 
     [[nodiscard]] const std::string& renderer() const { return renderer_; }

@@ -209,6 +209,9 @@ struct DashboardState {
     double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
     std::string renderer;
+    std::string
+        stage;  // of a stereo picture: how it is shown and what becomes of the head; empty: there is none
+    bool head_lost = false;
     // What a person chose.
     SceneToggles toggles;
     int span_choice = 0;  // of the plots
@@ -253,6 +256,7 @@ inline constexpr KeyHelp kKeyHelp[] = {
     {"Home", "home view"},
     {"F", "look at the burr from near"},
     {"S", "surface: glass, solid, wire"},
+    {"X", "stereo: swap the eyes"},
     {"Alt+wheel, + -", "contour level"},
     {"1 ... 9", "take that body into the hand"},
     {"0", "let go of all bodies"},

@@ -88,6 +88,8 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
+        if (!state.stage.empty())
+            pen.text(pen.theme.small, {x, y}, state.head_lost ? colour::kWatch : colour::kDim, state.stage);
     }
     // Of bone, only what changed is seen through again.
     const bool still = state.scene.bone && state.load.vertices_drawn <= 1;

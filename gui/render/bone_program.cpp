@@ -12,12 +12,12 @@ namespace {
 
 constexpr char kRayVertex[] = R"(
 layout(location = 0) in vec2 corner;
-uniform vec2 u_tan;  // half the view over its distance
+uniform vec4 u_tan;  // half the view over its distance; its middle over that
 uniform mat3 u_from_eye;
 out vec3 v_ray;      // voxels
 out float v_y;
 void main() {
-    v_ray = u_from_eye * vec3(corner * u_tan, -1.0);
+    v_ray = u_from_eye * vec3(corner * u_tan.xy + u_tan.zw, -1.0);
     v_y = corner.y;
     gl_Position = vec4(corner, 0.0, 1.0);
 }
@@ -312,7 +312,8 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
                 static_cast<float>(cells[2]));
     glUniform3fv(origin_, 1, origin.data());
     glUniformMatrix3fv(from_eye_, 1, GL_FALSE, turned.data());
-    glUniform2f(tan_, 1.0F / projection(0, 0), 1.0F / projection(1, 1));
+    glUniform4f(tan_, 1.0F / projection(0, 0), 1.0F / projection(1, 1), projection(0, 2) / projection(0, 0),
+                projection(1, 2) / projection(1, 1));
     glUniform1f(step_, step_voxels);
     glUniform3fv(lamp_, 1, lamp.data());
     textures.bind();

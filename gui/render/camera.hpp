@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "gui/render/eye_view.hpp"
+
 namespace tact {
 
 class Camera {
@@ -27,6 +29,7 @@ public:
 
     [[nodiscard]] Eigen::Matrix4f view() const;  // scene -> eye, the eye looks along -z
     [[nodiscard]] Eigen::Matrix4f projection(float aspect) const;
+    [[nodiscard]] EyeView eye(float aspect) const { return {view(), projection(aspect), distance_a_}; }
     [[nodiscard]] Eigen::Quaternionf orientation() const { return q_eye_scene_; }
     [[nodiscard]] Eigen::Vector3f target_a() const { return target_a_; }
     [[nodiscard]] float distance_a() const { return distance_a_; }

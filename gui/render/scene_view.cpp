@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gui/render/arrow.hpp"
+#include "gui/render/camera.hpp"
 #include "gui/render/drawn_tool.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/units.hpp"
@@ -103,10 +104,8 @@ float SceneView::arrow_a_per_n() const {
     return std::max(1.0F, static_cast<float>(round_length(0.9 * static_cast<double>(radius_a()))));
 }
 
-void SceneView::draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame) {
-    const float aspect =
-        static_cast<float>(frame.width_px) / static_cast<float>(std::max(frame.height_px, 1));
-    const Pass pass{options, frame, camera.view(), camera.projection(aspect), haze_of(camera, options)};
+void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame) {
+    const Pass pass{options, frame, eye.eye_from_scene, eye.projection, haze_of(eye, options)};
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
@@ -138,10 +137,10 @@ void SceneView::draw(const Camera& camera, const ViewOptions& options, const Vie
     glUseProgram(0);
 }
 
-Haze SceneView::haze_of(const Camera& camera, const ViewOptions& options) const {
+Haze SceneView::haze_of(const EyeView& eye, const ViewOptions& options) const {
     Haze haze;
-    haze.begin_a = camera.distance_a() - kHazeBegin * radius_a();
-    haze.end_a = camera.distance_a() + kHazeEnd * radius_a();
+    haze.begin_a = eye.target_a - kHazeBegin * radius_a();
+    haze.end_a = eye.target_a + kHazeEnd * radius_a();
     if (options.depth_cue) haze.strength = kHazeStrength;
     if (!options.gradient) haze.top = haze.bottom = options.plain_ground;
     return haze;

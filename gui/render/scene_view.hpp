@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "gui/render/bone_view.hpp"
-#include "gui/render/camera.hpp"
 #include "gui/render/contours.hpp"
 #include "gui/render/detail_mesh.hpp"
 #include "gui/render/drill_tools.hpp"
+#include "gui/render/eye_view.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/programs.hpp"
@@ -67,7 +67,7 @@ public:
     // From now on, the bone of the scene as it is in `now`, which must outlive this. Throws StartupError: no room for it.
     void show_bone(const BoneVolumeView& now) { bone_ = std::make_unique<BoneView>(*content_, now); }
     [[nodiscard]] BoneView* bone() { return bone_.get(); }  // null: none is shown
-    void draw(const Camera& camera, const ViewOptions& options, const ViewFrame& frame);
+    void draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame);
     // What a person chose of bodies and surfaces.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
     [[nodiscard]] Contours& contours() { return contours_; }
@@ -90,7 +90,7 @@ private:
         GLsizei points = 0, edge_indices = 0;
     };
     struct Pass;  // matrices of one draw()
-    [[nodiscard]] Haze haze_of(const Camera& camera, const ViewOptions& options) const;
+    [[nodiscard]] Haze haze_of(const EyeView& eye, const ViewOptions& options) const;
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
     void draw_second_hand(const Pass& pass);

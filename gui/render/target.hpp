@@ -16,6 +16,7 @@ public:
     OffscreenTarget(const OffscreenTarget&) = delete;
     OffscreenTarget& operator=(const OffscreenTarget&) = delete;
     void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_); }
+    [[nodiscard]] GLuint name() const { return frame_; }
     [[nodiscard]] int width_px() const { return width_px_; }
     [[nodiscard]] int height_px() const { return height_px_; }
 

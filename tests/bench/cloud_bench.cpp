@@ -123,7 +123,8 @@ void cloud(benchmark::State& state) {
     for (auto _ : state) {
         state.PauseTiming();
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        view.draw(camera, options, frame);
+        view.draw(camera.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
+                  options, frame);
         glFinish();
         state.ResumeTiming();
         const Instant begin = Monotonic::now();

@@ -65,7 +65,8 @@ void draw(benchmark::State& state) {
     for (auto _ : state) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         camera.rotate(3.0F, 0.0F, kHeight);
-        view.draw(camera, {}, frame);
+        view.draw(camera.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)), {},
+                  frame);
         glFinish();
     }
     state.SetLabel(window.renderer());

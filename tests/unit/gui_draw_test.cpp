@@ -195,7 +195,8 @@ protected:
         frame.bodies = bodies;
         frame.active = 1000;
         frame.second_hand = second_hand_;
-        view_->draw(camera_, options_, frame);
+        view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
+                    options_, frame);
         return read_pixels(kWidth, kHeight);
     }
     std::shared_ptr<const SceneContent> content_;

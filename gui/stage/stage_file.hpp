@@ -1,0 +1,66 @@
+// How a stereo picture is shown: the way, the screen's place, the eyes, and where the scene stands. A TOML file that a person
+// types or the launcher passes on.
+//
+//     mode = "side-by-side"      # off, anaglyph, side-by-side, top-bottom, two-windows, quad-buffer
+//     monitors = [1]             # of the picture; [] : inside the dashboard's window. two-windows: [left, right]
+//     size_px = [1920, 1080]     # of its window where it does not fill a monitor
+//     place = "orbit"            # the scene in the middle of the screen, turned by the mouse; "workspace": in true size
+//                                # where the hand's world is, so that the tool is drawn where the hand is
+//     latency_ms = 20.0          # from the end of drawing to the light
+//     [screen]                   # corners of the picture, metres, in the frame of tracker.position_screen_m of tact.toml
+//     lower_left_m = [-0.26, -0.15, 0.0]
+//     lower_right_m = [0.26, -0.15, 0.0]
+//     upper_left_m = [-0.26, 0.15, 0.0]
+//     [eyes]
+//     apart_m = 0.064
+//     swapped = false
+//     middle_head_m = [0.0, 0.0, 0.0]  # between the eyes, from the sensor on the glasses
+//     rest_screen_m = [0.0, 0.0, 0.6]  # where the head is while none is tracked
+//     [workspace]                # the hand's world in the frame of the screen
+//     position_screen_m = [0.0, 0.0, 0.1]
+//     quat_screen_world_xyzw = [0.0, 0.0, 0.0, 1.0]
+//
+// Every key may be left out. Fails by StartupError that names the key, its range and the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gui/render/screen.hpp"
+
+namespace tact {
+
+enum class StereoMode : std::uint8_t { off, anaglyph, side_by_side, top_bottom, two_windows, quad_buffer };
+inline constexpr const char* kStereoModes[] = {"off",        "anaglyph",    "side-by-side",
+                                               "top-bottom", "two-windows", "quad-buffer"};
+[[nodiscard]] inline const char* stereo_mode_text(StereoMode mode) {
+    return kStereoModes[static_cast<std::size_t>(mode)];
+}
+// False: there is no such mode.
+[[nodiscard]] bool read_stereo_mode(const std::string& text, StereoMode& mode);
+
+struct StageSettings {
+    StereoMode mode = StereoMode::off;
+    std::vector<int> monitors;  // empty: inside the dashboard's window where the mode can
+    int width_px = 1280, height_px = 720;
+    bool in_workspace = false;
+    double latency_s = 0.02;
+    ScreenPlace screen = ScreenPlace::of_size(0.53, 0.30);  // a 24 inch monitor
+    bool screen_measured = false;
+    EyesOfHead eyes;
+    Vec3 rest_screen_m = Vec3(0.0, 0.0, 0.6);
+    Pose T_screen_world{Vec3(0.0, 0.0, 0.1), Quat::Identity()};
+
+    // In windows of its own.
+    [[nodiscard]] bool own_windows() const {
+        return mode == StereoMode::two_windows || mode == StereoMode::quad_buffer ||
+               (mode != StereoMode::off && !monitors.empty());
+    }
+};
+
+[[nodiscard]] StageSettings read_stage_text(std::string_view text, const std::string& name);
+[[nodiscard]] StageSettings read_stage_file(const std::filesystem::path& path);
+
+}  // namespace tact
