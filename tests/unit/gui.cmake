@@ -28,6 +28,6 @@ if(TACT_GUI)
     add_dependencies(gui_contour_test tact-prep)
     tact_test(unit/gui_drill_desk_test.cpp USES gui_app gui_drilling gui_link gui_panels gui_render prep_mesh topics shm assets base
         SYSTEM nlohmann_json::nlohmann_json CLI11::CLI11)
-    tact_test(unit/gui_draw_test.cpp USES gui_app gui_panels gui_render launch prep_mesh topics shm assets base
+    tact_test(unit/gui_draw_test.cpp USES gui_app gui_panels gui_stage gui_render launch prep_mesh topics shm assets base
         TIMEOUT 300)
 endif()

@@ -6,6 +6,9 @@
 #include <set>
 
 #include "gui/render/scene_view.hpp"
+#include "gui/render/screen.hpp"
+#include "gui/stage/eye_pictures.hpp"
+#include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
 #include "tests/unit/gui_fake.hpp"
@@ -158,6 +161,68 @@ TEST_F(GuiDraw, HazeEndsInTheBackgroundAndIsNothingBeforeItBegins) {
     const Rgb8 clear = middle(d + 10.0F, d + 20.0F), gone = middle(d - 30.0F, d - 20.0F);
     EXPECT_GT(clear[0], clear[1] + 50);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(gone[i], 255.0F * haze_.top[i], 1.5F);
+}
+
+// The middle of what one channel shows within an area, in pixels from its lower left corner; none: (-1, -1).
+Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelArea& area) {
+    Eigen::Vector2d sum(0.0, 0.0);
+    double count = 0.0;
+    for (int y = 0; y < area.height_px; ++y)
+        for (int x = 0; x < area.width_px; ++x) {
+            const std::size_t row = image.height_px - 1 - static_cast<std::size_t>(area.y_px + y);
+            if (image.rgb[3 * (row * image.width_px + static_cast<std::size_t>(area.x_px + x)) + channel] < 8)
+                continue;
+            sum += Eigen::Vector2d(x + 0.5, y + 0.5);
+            count += 1.0;
+        }
+    return count > 0.0 ? Eigen::Vector2d(sum / count) : Eigen::Vector2d(-1.0, -1.0);
+}
+
+TEST_F(GuiDraw, APlaceInTheRoomLandsOnThePredictedPixelOfEachEyeInEveryMode) {
+    constexpr int kOutputWidth = 900, kOutputHeight = 600;
+    constexpr float kRadiusA = 0.7F;
+    ImpostorPrograms programs;
+    EyePictures pictures;
+    SeededRandom random(21);
+    const auto within = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
+    const ScreenPlace screen = ScreenPlace::of_size(0.45, 0.30);
+    const ScenePlace scene{2e-3, quat_from_rotation_vector(Vec3(0.3, -0.2, 0.1)), Vec3(0.01, -0.02, 0.03)};
+    constexpr StereoMode kModes[] = {StereoMode::two_windows, StereoMode::side_by_side,
+                                     StereoMode::top_bottom, StereoMode::anaglyph};
+    for (int head = 0; head < 20; ++head) {
+        const StereoMode mode = kModes[head % 4];
+        const Pose pose{Vec3(within(0.25), within(0.2), 0.6 + within(0.2)),
+                        quat_from_rotation_vector(Vec3(within(0.4), within(0.4), within(0.2)))};
+        const auto eyes = eyes_of(pose, {});
+        const Vec3 place_a(within(30.0), within(20.0), within(25.0));
+        pictures.resize(mode, kOutputWidth, kOutputHeight);
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            pictures.begin(eye, Eigen::Vector3f::Zero());
+            const EyeView view = through_screen(screen, scene, eyes[eye], 60.0, Vec3::Zero());
+            ImpostorShapes shapes;
+            const AtomColours white{{255, 255, 255, 255}, {255, 255, 255, 255}};
+            shapes.fill(std::array{Sphere{{static_cast<float>(place_a.x()), static_cast<float>(place_a.y()),
+                                           static_cast<float>(place_a.z())},
+                                          kRadiusA,
+                                          white}});
+            programs.use_spheres({view.eye_from_scene, view.projection, haze_});
+            shapes.draw();
+        }
+        const bool each = mode == StereoMode::two_windows;
+        const std::vector<Image> shown = pictures.read(each);
+        ASSERT_EQ(shown.size(), each ? 2U : 1U);
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            const PixelArea area = area_of_eye(mode, eye, kOutputWidth, kOutputHeight);
+            // Where the line from the eye to the place meets the glass, which lies in z = 0.
+            const Vec3 p = scene.to_screen_m(place_a);
+            const Vec3 glass = eyes[eye] + eyes[eye].z() / (eyes[eye].z() - p.z()) * (p - eyes[eye]);
+            const Eigen::Vector2d wanted((glass.x() / 0.45 + 0.5) * area.width_px,
+                                         (glass.y() / 0.30 + 0.5) * area.height_px);
+            const Eigen::Vector2d seen = middle_of(shown[each ? eye : 0], eye == 0 ? 0 : 1, area);
+            EXPECT_LT((seen - wanted).norm(), 0.5)
+                << stereo_mode_text(mode) << ", head " << head << ", eye " << eye;
+        }
+    }
 }
 
 // Pixels that differ from the background.
