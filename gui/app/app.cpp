@@ -427,6 +427,7 @@ private:
         view.height_px = stage_->eye_height_px();
         view.bone_rays /= 2;
         for (std::size_t eye = 0; eye < 2; ++eye) {
+            view.eye = eye;
             stage_->begin(eye, view_options_.plain_ground);
             begin_view(view);
             view_->draw(stage_->eye(eye, camera_, content_->meta.world_per_model,

@@ -21,6 +21,16 @@ bool same_view(const BoneFrame& a, const BoneFrame& b) {
            a.width_px == b.width_px && a.height_px == b.height_px;
 }
 
+// Two triangles over a box, in clip space.
+std::array<float, 12> quad(const BoneFrame& of, const PixelBox& b) {
+    const auto clip = [](int px, int size) {
+        return 2.0F * static_cast<float>(px) / static_cast<float>(size) - 1.0F;
+    };
+    const float x0 = clip(b.x0, of.width_px), x1 = clip(b.x1, of.width_px);
+    const float y0 = clip(b.y0, of.height_px), y1 = clip(b.y1, of.height_px);
+    return {x0, y0, x1, y0, x1, y1, x0, y0, x1, y1, x0, y1};
+}
+
 }  // namespace
 
 BoneView::BoneView(const SceneContent& content, const BoneVolumeView& now)
@@ -72,6 +82,8 @@ float BoneView::reach_a() const {
 void BoneView::changed(std::uint32_t brick) {
     if (!field_.changed(brick)) cells_anew_ = true;
     changed_.push_back(brick);
+    for (Eyeful& eye : eye_)
+        if (eye.pixels() > 0) eye.changed.push_back(brick);
 }
 
 PixelBox BoneView::on_screen(const BoneFrame& frame, const Vec3& low, const Vec3& high) const {
@@ -95,115 +107,111 @@ PixelBox BoneView::on_screen(const BoneFrame& frame, const Vec3& low, const Vec3
             px(most.x(), frame.width_px, true), px(most.y(), frame.height_px, true)};
 }
 
-void BoneView::send_changes(const BoneFrame& frame, bool view_is_same) {
-    if (changed_.empty()) return;
-    const auto n = field_.bricks().bricks();
-    for (const std::uint32_t b : changed_) {
-        textures_.send(field_, b);
-        if (!view_is_same) continue;
-        const Vec3 low = Vec3(b % n[0], b / n[0] % n[1], b / n[0] / n[1]) * double{BoneBricks::kEdge};
-        tiles_.stale(
-            on_screen(frame, low.array() - kReachVoxels, low.array() + (BoneBricks::kEdge + kReachVoxels)));
-    }
+void BoneView::send_changes() {
+    for (const std::uint32_t b : changed_) textures_.send(field_, b);
     if (cells_anew_) textures_.send_cells(field_);
     cells_anew_ = false;
     changed_.clear();
 }
 
+void BoneView::mark_changes(Eyeful& eye, const BoneFrame& frame, bool view_is_same) const {
+    const auto n = field_.bricks().bricks();
+    for (const std::uint32_t b : eye.changed) {
+        if (!view_is_same) break;
+        const Vec3 low = Vec3(b % n[0], b / n[0] % n[1], b / n[0] / n[1]) * double{BoneBricks::kEdge};
+        eye.tiles.stale(
+            on_screen(frame, low.array() - kReachVoxels, low.array() + (BoneBricks::kEdge + kReachVoxels)));
+    }
+    eye.changed.clear();
+}
+
 void BoneView::draw(const BoneFrame& frame) {
     GLint bound = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
-    rays_ = 0;
-    pixels_ = static_cast<std::uint32_t>(frame.width_px) * static_cast<std::uint32_t>(frame.height_px);
-    const bool same = same_view(frame, last_);
-    if (frame.width_px != sharp_.width_px || frame.height_px != sharp_.height_px) {
-        sharp_.resize(frame.width_px, frame.height_px);
-        coarse_.resize((frame.width_px + 1) / 2, (frame.height_px + 1) / 2);
-        tiles_.resize(frame.width_px, frame.height_px);
+    Eyeful& eye = eye_[frame.eye];
+    eye.rays = 0;
+    const bool same = same_view(frame, eye.last);
+    if (frame.width_px != eye.sharp.width_px || frame.height_px != eye.sharp.height_px) {
+        eye.sharp.resize(frame.width_px, frame.height_px);
+        eye.coarse.resize((frame.width_px + 1) / 2, (frame.height_px + 1) / 2);
+        eye.tiles.resize(frame.width_px, frame.height_px);
     }
     if (!same) {
         const auto& size = field_.bricks().size;
-        tiles_.all_wrong(
+        eye.tiles.all_wrong(
             on_screen(frame, Vec3::Constant(-0.5), Vec3(size[0], size[1], size[2]).array() - 0.5));
     }
-    last_ = frame;
-    send_changes(frame, same);
+    eye.last = frame;
+    send_changes();
+    mark_changes(eye, frame, same);
 
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDisable(GL_BLEND);
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, corners_.get());
-    const std::uint32_t wrong = tiles_.rays_wrong();
+    const std::uint32_t wrong = eye.tiles.rays_wrong();
     if (!same && wrong > frame.rays_most)
-        draw_coarse(frame, frame.rays_most);
+        draw_coarse(eye, frame.rays_most);
     else
-        draw_tiles(tiles_.take(frame.rays_most));
+        draw_tiles(eye, eye.tiles.take(frame.rays_most));
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound));
     glViewport(frame.x_px, frame.y_px, frame.width_px, frame.height_px);
-    show();
+    show(eye);
     glBindVertexArray(0);
 }
 
-void BoneView::draw_coarse(const BoneFrame& frame, std::uint32_t rays_most) {
+void BoneView::draw_coarse(Eyeful& eye, std::uint32_t rays_most) {
+    const BoneFrame& frame = eye.last;
     const double pixels_a_ray =
-        static_cast<double>(std::max(tiles_.rays_wrong(), 1U)) / std::max(rays_most, 1U);
+        static_cast<double>(std::max(eye.tiles.rays_wrong(), 1U)) / std::max(rays_most, 1U);
     const int every = std::clamp(static_cast<int>(std::ceil(std::sqrt(pixels_a_ray))), 2, kCoarsest);
     const int w = (frame.width_px + every - 1) / every, h = (frame.height_px + every - 1) / every;
-    coarse_share_x_ = static_cast<float>(w) / static_cast<float>(coarse_.width_px);
-    coarse_share_y_ = static_cast<float>(h) / static_cast<float>(coarse_.height_px);
-    coarse_.bind(w, h);
+    eye.coarse_share_x = static_cast<float>(w) / static_cast<float>(eye.coarse.width_px);
+    eye.coarse_share_y = static_cast<float>(h) / static_cast<float>(eye.coarse.height_px);
+    eye.coarse.bind(w, h);
     program_.use(textures_, field_, frame.eye_from_scene * scene_from_voxels_, frame.projection, frame.haze,
                  kCoarseStep);
-    const auto corners = quad({0, 0, frame.width_px, frame.height_px});
+    const auto corners = quad(eye.last, {0, 0, frame.width_px, frame.height_px});
     glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners.data(), GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, 6);
-    rays_ += tiles_.rays_wrong() / static_cast<std::uint32_t>(every * every);
+    eye.rays += eye.tiles.rays_wrong() / static_cast<std::uint32_t>(every * every);
 }
 
-void BoneView::draw_tiles(std::span<const std::uint32_t> tiles) {
+void BoneView::draw_tiles(Eyeful& eye, std::span<const std::uint32_t> tiles) {
     if (tiles.empty()) return;
     std::vector<float> corners;
     for (const std::uint32_t i : tiles) {
-        const auto q = quad(tiles_.box(i));
+        const auto q = quad(eye.last, eye.tiles.box(i));
         corners.insert(corners.end(), q.begin(), q.end());
-        rays_ += tiles_.rays(i);
+        eye.rays += eye.tiles.rays(i);
     }
-    sharp_.bind(sharp_.width_px, sharp_.height_px);
-    program_.use(textures_, field_, last_.eye_from_scene * scene_from_voxels_, last_.projection, last_.haze,
-                 kSharpStep);
+    eye.sharp.bind(eye.sharp.width_px, eye.sharp.height_px);
+    program_.use(textures_, field_, eye.last.eye_from_scene * scene_from_voxels_, eye.last.projection,
+                 eye.last.haze, kSharpStep);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
                  GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size() / 2));
 }
 
-void BoneView::show() {
+void BoneView::show(Eyeful& eye) {
     glDepthFunc(GL_LESS);
     std::vector<float> good, wrong;
-    for (std::uint32_t i = 0; i < tiles_.count(); ++i) {
-        if (tiles_.rays(i) == 0) continue;
-        const auto q = quad(tiles_.box(i));
-        std::vector<float>& to = tiles_.wrong(i) ? wrong : good;
+    for (std::uint32_t i = 0; i < eye.tiles.count(); ++i) {
+        if (eye.tiles.rays(i) == 0) continue;
+        const auto q = quad(eye.last, eye.tiles.box(i));
+        std::vector<float>& to = eye.tiles.wrong(i) ? wrong : good;
         to.insert(to.end(), q.begin(), q.end());
     }
     const auto show_tiles = [&](Picture& picture, float x, float y, const std::vector<float>& corners) {
         if (corners.empty() || !(x > 0.0F)) return;
-        on_screen_.use(picture.colour.get(), picture.depth.get(), x, y, &picture == &coarse_);
+        on_screen_.use(picture.colour.get(), picture.depth.get(), x, y, &picture == &eye.coarse);
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
                      GL_STREAM_DRAW);
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size() / 2));
     };
-    show_tiles(sharp_, 1.0F, 1.0F, good);
-    show_tiles(coarse_, coarse_share_x_, coarse_share_y_, wrong);
-}
-
-std::array<float, 12> BoneView::quad(const PixelBox& b) const {
-    const auto clip = [](int px, int size) {
-        return 2.0F * static_cast<float>(px) / static_cast<float>(size) - 1.0F;
-    };
-    const float x0 = clip(b.x0, last_.width_px), x1 = clip(b.x1, last_.width_px);
-    const float y0 = clip(b.y0, last_.height_px), y1 = clip(b.y1, last_.height_px);
-    return {x0, y0, x1, y0, x1, y1, x0, y0, x1, y1, x0, y1};
+    show_tiles(eye.sharp, 1.0F, 1.0F, good);
+    show_tiles(eye.coarse, eye.coarse_share_x, eye.coarse_share_y, wrong);
 }
 
 }  // namespace tact

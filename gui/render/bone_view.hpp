@@ -8,8 +8,8 @@
 // Thread    frame thread, context current; the frame buffer and viewport that were bound are bound again.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "gui/render/bone_program.hpp"
@@ -23,6 +23,7 @@ struct BoneFrame {
     Haze haze;
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport
     std::uint32_t rays_most = 0;
+    std::size_t eye = 0;  // which of two: each keeps a picture
 };
 
 class BoneView {
@@ -33,11 +34,14 @@ public:
     void changed(std::uint32_t brick);
     void draw(const BoneFrame& frame);
 
-    [[nodiscard]] std::uint32_t rays() const { return rays_; }        // of the last draw()
-    [[nodiscard]] std::uint32_t rays_max() const { return pixels_; }  // one a pixel of the view
+    // Of the last draw() of each eye, together; at the most one a pixel.
+    [[nodiscard]] std::uint32_t rays() const { return eye_[0].rays + eye_[1].rays; }
+    [[nodiscard]] std::uint32_t rays_max() const { return eye_[0].pixels() + eye_[1].pixels(); }
     // Of a ball about the scene's centre that holds the bone as it is, ångström.
     [[nodiscard]] float reach_a() const;
-    [[nodiscard]] bool sharp() const { return tiles_.all_good(); }  // nothing is left to draw
+    [[nodiscard]] bool sharp() const {  // nothing is left to draw
+        return eye_[0].tiles.all_good() && eye_[1].tiles.all_good();
+    }
 
 private:
     struct Picture {
@@ -47,29 +51,36 @@ private:
         void resize(int width, int height);
         void bind(int width, int height);  // to draw into its lower left part
     };
-    void send_changes(const BoneFrame& frame, bool view_is_same);
+    struct Eyeful {
+        Picture sharp, coarse;
+        BoneTiles tiles;
+        BoneFrame last{};
+        std::vector<std::uint32_t> changed;  // bricks, since its last draw()
+        float coarse_share_x = 0.0F,
+              coarse_share_y = 0.0F;  // of the coarse picture that is in use; 0: none yet
+        std::uint32_t rays = 0;
+        [[nodiscard]] std::uint32_t pixels() const {
+            return static_cast<std::uint32_t>(sharp.width_px) * static_cast<std::uint32_t>(sharp.height_px);
+        }
+    };
+    void send_changes();
+    void mark_changes(Eyeful& eye, const BoneFrame& frame, bool view_is_same) const;
     [[nodiscard]] PixelBox on_screen(const BoneFrame& frame, const Vec3& low_voxels,
                                      const Vec3& high_voxels) const;
-    void draw_coarse(const BoneFrame& frame, std::uint32_t rays_most);
-    void draw_tiles(std::span<const std::uint32_t> tiles);
-    void show();
-    [[nodiscard]] std::array<float, 12> quad(const PixelBox& box) const;
+    void draw_coarse(Eyeful& eye, std::uint32_t rays_most);
+    void draw_tiles(Eyeful& eye, std::span<const std::uint32_t> tiles);
+    void show(Eyeful& eye);
 
     BoneField field_;
     BoneTextures textures_;
     BoneProgram program_;
     BoneOnScreen on_screen_;
     Eigen::Matrix4f scene_from_voxels_;
-    Picture sharp_, coarse_;
-    BoneTiles tiles_;
+    std::array<Eyeful, 2> eye_;
     GlVertexArray array_;
     GlBuffer corners_;
-    BoneFrame last_{};
     std::vector<std::uint32_t> changed_;
     bool cells_anew_ = false;
-    float coarse_share_x_ = 0.0F,
-          coarse_share_y_ = 0.0F;  // of the coarse picture that is in use; 0: none yet
-    std::uint32_t rays_ = 0, pixels_ = 0;
 };
 
 }  // namespace tact

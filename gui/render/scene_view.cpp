@@ -194,7 +194,7 @@ void SceneView::draw_bone(const Pass& pass) {
     if (!bone_) return;
     const ViewFrame& f = pass.frame;
     bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
-                 f.bone_rays});
+                 f.bone_rays, f.eye});
 }
 
 void SceneView::draw_drill_tools(const Pass& pass) {

@@ -48,6 +48,7 @@ struct ViewFrame {
     const Particles* particles = nullptr;
     bool time_particles = false;  // waits for the renderer, see particles_draw_s()
     std::uint32_t bone_rays = 0;  // through the bone, at most
+    std::size_t eye = 0;          // which of two
     std::span<const DrawnDrillTool> drill_tools;
 };
 
