@@ -43,6 +43,14 @@ constexpr Passed kController[] = {
     {"--mode", "NAME", "how a surface is looked up: off-brute, off-tree or chr"},
 };
 
+constexpr Passed kVisual[] = {
+    {"--fps-max", "FPS", "draw no more often"},
+    {"--particles", "N", "keep so many over bone, to measure what they cost"},
+    {"--stereo", "MODE", "anaglyph, side-by-side, top-bottom, two-windows or quad-buffer"},
+    {"--stage", "FILE", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
+    {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
+};
+
 }  // namespace
 
 bool RunOptions::has_controller_option(const std::string& name) const {
@@ -136,24 +144,15 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     visual->add_option("--size", options.size, "of the window in pixels")
         ->type_name("WxH")
         ->capture_default_str();
-    visual
-        ->add_option_function<std::string>(
-            "--fps-max",
-            [&options](const std::string& v) {
-                options.visual.emplace_back("--fps-max");
-                options.visual.push_back(v);
-            },
-            "draw no more often")
-        ->type_name("FPS");
-    visual
-        ->add_option_function<std::string>(
-            "--particles",
-            [&options](const std::string& v) {
-                options.visual.emplace_back("--particles");
-                options.visual.push_back(v);
-            },
-            "keep so many over bone, to measure what they cost")
-        ->type_name("N");
+    for (const Passed& p : kVisual)
+        visual
+            ->add_option_function<std::string>(
+                p.name,
+                [&options, name = p.name](const std::string& v) {
+                    options.visual.insert(options.visual.end(), {name, v});
+                },
+                p.help)
+            ->type_name(p.type);
 }
 
 }  // namespace tact::launch

@@ -73,7 +73,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     std::string stage_file, stereo;
     bool swap_eyes = false;
     app.add_option("--stage", stage_file,
-                   "TOML file of the stereo picture: screen, eyes, monitors (gui/stage/stage_file.hpp)");
+                   "TOML file of the stereo picture: screen, eyes, monitors (gui/stage/README.md)");
     app.add_option("--stereo", stereo, "off, anaglyph, side-by-side, top-bottom, two-windows or quad-buffer")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(kStereoModes), std::end(kStereoModes))));
     app.add_flag("--swap-eyes", swap_eyes, "the other eye's picture for each eye");

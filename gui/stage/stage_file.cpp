@@ -27,7 +27,7 @@ struct Reader {
 
     [[noreturn]] void fail(const std::string& where, const std::string& why) const {
         throw StartupError("reading " + file, where + why,
-                           "gui/stage/stage_file.hpp shows the keys and their form");
+                           "gui/stage/README.md shows the keys and their form");
     }
     double number(const toml::node& node, const StageKey& key) const {
         const auto value = node.value<double>();
@@ -148,7 +148,7 @@ StageSettings read_stage_file(const std::filesystem::path& path) {
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (error || bytes > kBytesMost)
         throw StartupError("reading '" + name + "'", error ? error.message() : "it is larger than a megabyte",
-                           "give a file of the form that gui/stage/stage_file.hpp shows");
+                           "give a file of the form that gui/stage/README.md shows");
     std::ifstream in(path);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     return read_stage_text(text, name);

@@ -1,26 +1,7 @@
-// How a stereo picture is shown: the way, the screen's place, the eyes, and where the scene stands. A TOML file that a person
-// types or the launcher passes on.
+// How a stereo picture is shown: the way, the screen's place, the eyes, and where the scene stands, from a TOML file that a
+// person types. README.md has its keys; every one may be left out.
 //
-//     mode = "side-by-side"      # off, anaglyph, side-by-side, top-bottom, two-windows, quad-buffer
-//     monitors = [1]             # of the picture; [] : inside the dashboard's window. two-windows: [left, right]
-//     size_px = [1920, 1080]     # of its window where it does not fill a monitor
-//     place = "orbit"            # the scene in the middle of the screen, turned by the mouse; "workspace": in true size
-//                                # where the hand's world is, so that the tool is drawn where the hand is
-//     latency_ms = 20.0          # from the end of drawing to the light
-//     [screen]                   # corners of the picture, metres, in the frame of tracker.position_screen_m of tact.toml
-//     lower_left_m = [-0.26, -0.15, 0.0]
-//     lower_right_m = [0.26, -0.15, 0.0]
-//     upper_left_m = [-0.26, 0.15, 0.0]
-//     [eyes]
-//     apart_m = 0.064
-//     swapped = false
-//     middle_head_m = [0.0, 0.0, 0.0]  # between the eyes, from the sensor on the glasses
-//     rest_screen_m = [0.0, 0.0, 0.6]  # where the head is while none is tracked
-//     [workspace]                # the hand's world in the frame of the screen
-//     position_screen_m = [0.0, 0.0, 0.1]
-//     quat_screen_world_xyzw = [0.0, 0.0, 0.0, 1.0]
-//
-// Every key may be left out. Fails by StartupError that names the key, its range and the file.
+// Fails by StartupError that names the key, its range and the file.
 #pragma once
 
 #include <cstdint>

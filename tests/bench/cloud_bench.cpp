@@ -11,6 +11,7 @@
 
 #include "gui/app/png.hpp"
 #include "gui/app/window.hpp"
+#include "gui/render/camera.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/assets/isosurface.hpp"

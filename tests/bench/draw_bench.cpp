@@ -9,6 +9,7 @@
 #include <random>
 
 #include "gui/app/window.hpp"
+#include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
 
 namespace tact {

@@ -86,6 +86,25 @@ TEST(RegionChecks, RefuseADrillThatCannotBe) {
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::sucker; }));  // of no size
 }
 
+TEST(RegionChecks, RefuseAHeadThatCannotBe) {
+    HeadTopic good{};
+    good.quat_screen_head_xyzw[3] = 1.0;
+    good.state = 2;
+    good.quality = 0.5;
+    EXPECT_TRUE(sensible(good));
+    const auto refused = [&](const auto& spoil) {
+        HeadTopic bad = good;
+        spoil(bad);
+        EXPECT_FALSE(sensible(bad));
+    };
+    refused([](HeadTopic& h) { h.pos_screen_m[1] = NAN; });
+    refused([](HeadTopic& h) { h.quat_screen_head_xyzw[3] = 0.4; });
+    refused([](HeadTopic& h) { h.velocity_screen_m_s[2] = 1e5; });
+    refused([](HeadTopic& h) { h.angular_screen_rad_s[0] = INFINITY; });
+    refused([](HeadTopic& h) { h.state = 3; });
+    refused([](HeadTopic& h) { h.quality = 1.5; });
+}
+
 TEST(RegionChecks, RefuseBodiesThatCannotBe) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();

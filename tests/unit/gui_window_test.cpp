@@ -328,6 +328,53 @@ TEST_F(GuiWindow, ASeriesIsOfTheViewAloneAndItsFirstOfTheScene) {
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/series-09.png"));
 }
 
+TEST_F(GuiWindow, EveryStereoModeShowsTwoEyesInTheViewOrInWindowsOfItsOwn) {
+    const std::string window = folder_ + "/window.png", picture = folder_ + "/stereo.png",
+                      file = folder_ + "/stage.toml";
+    for (const char* const mode : {"anaglyph", "side-by-side", "top-bottom"}) {
+        EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "0.6", "--stereo", mode, "--screenshot", window,
+                       "--stage-screenshot", picture})
+                      ->wait(),
+                  0)
+            << log();
+        EXPECT_GT(colours(window, 640, 480).size(), 100U) << mode;
+        EXPECT_TRUE(std::filesystem::remove(picture)) << mode << log();
+    }
+    // Windows that are seen, and no picture of the dashboard.
+    std::ofstream(file) << "monitors = [0]\n";
+    EXPECT_EQ(gui({scene(), "--seconds", "0.6", "--stage", file, "--stereo", "side-by-side",
+                   "--stage-screenshot", picture})
+                  ->wait(),
+              0)
+        << log();
+    EXPECT_GT(colours(picture, 800, 600).size(), 100U) << log();  // the X server's only monitor
+    std::ofstream(file) << "mode = \"two-windows\"\nsize_px = [500, 400]\nplace = \"workspace\"\n";
+    EXPECT_EQ(gui({scene(), "--seconds", "0.6", "--stage", file, "--stage-screenshot", picture})->wait(), 0)
+        << log();
+    const std::string left = folder_ + "/stereo-left.png", right = folder_ + "/stereo-right.png";
+    EXPECT_GT(colours(left, 500, 400).size(), 50U);
+    EXPECT_GT(colours(right, 500, 400).size(), 50U);
+    const auto bytes = [](const std::string& path) {
+        std::ifstream in(path, std::ios::binary);
+        return std::string{std::istreambuf_iterator<char>(in), {}};
+    };
+    EXPECT_NE(bytes(left), bytes(right));
+}
+
+TEST_F(GuiWindow, AStageThatCannotBeIsToldInWords) {
+    const std::string file = folder_ + "/stage.toml";
+    std::ofstream(file) << "monitors = [7]\nmode = \"anaglyph\"\n";
+    EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 1);
+    EXPECT_NE(log().find("no monitor 7"), std::string::npos) << log();
+    std::ofstream(file) << "mode = \"sideways\"\n";
+    EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 2);
+    EXPECT_NE(log().find("sideways"), std::string::npos) << log();
+    EXPECT_NE(gui({"--stereo", "sideways"})->wait(), 0);
+    // Drivers that draw on the processor have no buffers for two eyes.
+    EXPECT_EQ(gui({"--seconds", "0.5", "--stereo", "quad-buffer"})->wait(), 1);
+    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+}
+
 TEST_F(GuiWindow, PictureThatCannotBeWrittenIsAnErrorAndArgumentsAreChecked) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--screenshot", folder_ + "/none/such.png"})->wait(), 1);
     EXPECT_NE(log().find("such.png"), std::string::npos) << log();
