@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "ipc/assets/surface_mesh.hpp"
+#include "ipc/base/prefetch.hpp"
 
 namespace tact {
 namespace {
@@ -50,9 +51,12 @@ bool SurfaceMesh::leaves_near(const Vec3& centre_m, double radius_m, std::span<s
             if (code == SurfaceNode::kNone) continue;
             if ((code & SurfaceNode::kLeaf) == 0) {
                 stack[depth++] = code;
+                prefetch(&node_[code]);
+                prefetch(&node_[code].child);
             } else {
                 if (count == out.size()) return false;
                 out[count++] = code;
+                prefetch(&corner_[std::size_t{3} * SurfaceNode::leaf_first(code)]);
             }
         }
     }

@@ -23,10 +23,15 @@ F root(const F& v) {
     return F{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 #endif
 }
-F gather(const float* from, const I& at) { return F{from[at[0]], from[at[1]], from[at[2]], from[at[3]]}; }
-I gather(const std::uint32_t* from, const I& at) {
-    const auto value = [&](int lane) { return static_cast<std::int32_t>(from[at[lane]]); };
-    return I{value(0), value(1), value(2), value(3)};
+void points(const float* position, const std::uint32_t* corner, const std::uint32_t* triangle, F& x, F& y,
+            F& z) {
+    const auto of = [&](int lane) {
+        return position + std::size_t{3} * corner[std::size_t{3} * triangle[lane]];
+    };
+    const float *const p = of(0), *const q = of(1), *const r = of(2), *const s = of(3);
+    x = F{p[0], q[0], r[0], s[0]};
+    y = F{p[1], q[1], r[1], s[1]};
+    z = F{p[2], q[2], r[2], s[2]};
 }
 std::uint32_t bits(const I& mask) {
     return (static_cast<std::uint32_t>(mask[0]) & 1U) | (static_cast<std::uint32_t>(mask[1]) & 2U) |

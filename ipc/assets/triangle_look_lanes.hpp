@@ -1,6 +1,7 @@
 // The arithmetic of triangle_look.hpp for TACT_LANES triangles at once. Included by triangle_look_*.cpp, inside
-// their anonymous namespaces, behind F and I (that many floats and int32), root(F), gather(const float*, I),
-// gather(const std::uint32_t*, I), bits(I) and TACT_LANE, which declares a function.
+// their anonymous namespaces, behind F and I (that many floats and int32), root(F), bits(I), TACT_LANE, which
+// declares a function, and points(position, corner, triangle, x, y, z): of that many triangles the vertex that
+// corner[3 * triangle] names.
 //
 // GCC's vector extension: clang has it too.
 // No #pragma once: each includes it for other types.
@@ -32,11 +33,11 @@ TACT_LANE Lanes3 nearest_of_edge(const Lanes3& a, const Lanes3& ab) {
     return {a.x + t * ab.x, a.y + t * ab.y, a.z + t * ab.z};
 }
 
-// corner3: three times the numbers of a corner's vertices.
-TACT_LANE Lanes3 corner_from(const LookJob& job, const I& corner3) {
-    return {(gather(job.position, corner3) - job.whole[0]) - job.rest[0],
-            (gather(job.position + 1, corner3) - job.whole[1]) - job.rest[1],
-            (gather(job.position + 2, corner3) - job.whole[2]) - job.rest[2]};
+TACT_LANE Lanes3 corners_from(const LookJob& job, std::size_t corner, std::size_t first) {
+    F x, y, z;
+    points(job.position, job.corner + corner, job.triangle + first, x, y, z);
+    return {(x - job.whole[0]) - job.rest[0], (y - job.whole[1]) - job.rest[1],
+            (z - job.whole[2]) - job.rest[2]};
 }
 
 TACT_LANE void store(const F& v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
@@ -47,12 +48,8 @@ TACT_LANE void store(const Lanes3& v, float (*to)[kLooks], std::size_t first) {
 }
 
 TACT_LANE void look_at(const LookJob& job, std::size_t first, TriangleLooks& out) {
-    I number;
-    __builtin_memcpy(&number, job.triangle + first, sizeof number);
-    number = 3 * number;
-    const Lanes3 a = corner_from(job, 3 * gather(job.corner, number)),
-                 b = corner_from(job, 3 * gather(job.corner + 1, number)),
-                 c = corner_from(job, 3 * gather(job.corner + 2, number));
+    const Lanes3 a = corners_from(job, 0, first), b = corners_from(job, 1, first),
+                 c = corners_from(job, 2, first);
     const Lanes3 ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
     const Lanes3 on_ab = nearest_of_edge(a, ab), on_bc = nearest_of_edge(b, bc),
                  on_ca = nearest_of_edge(c, ca);

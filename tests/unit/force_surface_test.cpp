@@ -322,6 +322,25 @@ TEST(Surface, TheProxyNeverJamsOnARoughSurface) {
     }
 }
 
+TEST(Surface, MostStepsOfASlideAreAtRestAfterTheirFirstMove) {
+    SeededRandom random(9);
+    for (const double radius_m : {0.0, 0.001}) {
+        Hand hand(rough(), plain(radius_m), slide(0.0, -0.008));
+        (void)hand.lead(slide(0.0, 0.0015 - radius_m));
+        int one = 0;
+        constexpr int kSteps = 1500;
+        for (int i = 0; i < kSteps; ++i) {
+            const Vec3 before = hand.proxy();
+            (void)hand.step(slide(1e-3 * i, 0.0015 - radius_m));
+            const Contact& contact = hand.model->contact();
+            if (contact.moves > 1 || contact.state != ContactState::settled) continue;
+            if ((hand.proxy() - before).norm() < 2e-5) continue;  // it rested before
+            if (++one % 40 == 0) expect_settled(hand, radius_m, random);
+        }
+        EXPECT_GT(one, kSteps / 3) << radius_m;
+    }
+}
+
 // In hollows of a dense rough surface that the ball just fits, every way is as level as numbers are good: moves that lead
 // round in a ring must not use up the step. Two places of a slide where they did, ten and seven steps in a row.
 TEST(Surface, ABallInAHollowThatItFitsComesToRest) {

@@ -14,9 +14,12 @@ constexpr std::size_t kCollectedFew = 4096;
 constexpr double kBoundSlack = 1e-5;    // of distances in single precision
 constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther than the goal
 constexpr double kNextMove = 0.3;
+constexpr double kGoesOn = 1.5;  // after a move that was cut, what was left of it
 constexpr double kSlidesOn = 1.15;
+constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
+constexpr double kTangentMargins = 0.25;
 constexpr std::uint32_t kSeatVisits = 4096;  // of the tree: some 100 us
 
 }  // namespace
@@ -93,16 +96,28 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
     return false;
 }
 
-// The guards of all triangles that a move of reach_m can touch; shorter, where there are too many.
-void SurfaceContact::look(double& reach_m, std::uint32_t& triangles) noexcept {
+// The guards of all triangles that a move of reach_m can touch: shorter, where there are too many, and up to
+// most_m where that has no more than are looked at together.
+void SurfaceContact::look(double& reach_m, double most_m, std::uint32_t& triangles) noexcept {
     LookJob job = mesh_.look_job(proxy_m_);
     TriangleLooks seen;
     const auto way = static_cast<float>(way_m_ * (1.0 - kBoundSlack));
+    const auto bound = [&](double reach) {
+        return static_cast<float>((settings_.radius_m + reach + way_m_) * (1.0 + kBoundSlack));
+    };
+    if (most_m > reach_m) {
+        const float narrow = bound(reach_m), wide = bound(most_m);
+        std::size_t some = 0, all = 0;
+        for (std::size_t i = 0; i < collected_; ++i) {
+            some += bound_m_[i] <= narrow ? 1 : 0;
+            all += bound_m_[i] <= wide ? 1 : 0;
+        }
+        if (all <= 2 * kLooks || all == some) reach_m = most_m;
+    }
     for (int attempt = 0; attempt < 8; ++attempt) {
         guards_.clear();
         job.limit = static_cast<float>(settings_.radius_m + reach_m);
-        const auto in_reach =
-            static_cast<float>((settings_.radius_m + reach_m + way_m_) * (1.0 + kBoundSlack));
+        const float in_reach = bound(reach_m);
         std::size_t count = 0;
         for (std::size_t i = 0; i < collected_; ++i) {
             slot_[count] = static_cast<std::uint32_t>(i);
@@ -141,22 +156,46 @@ bool SurfaceContact::guard(std::uint32_t triangle, const TriangleLooks& seen, st
                        !over && height >= 0.0);
 }
 
+// What holds the solution touches the ball there, and pushes as it was taken to: another move would find the same
+// place again. The triangles that do not hold it are no nearer than their guards say.
+bool SurfaceContact::rests(const Guards::Solution& solution) const noexcept {
+    if (!solution.exact) return false;
+    const double most = kTangentMargins * settings_.margin_m;
+    std::array<std::uint32_t, 4> number{};
+    for (std::size_t i = 0; i < number.size(); ++i)
+        number[i] = guards_.triangle(solution.active[i < solution.active_count ? i : 0].guard);
+    LookJob job = mesh_.look_job(proxy_m_ + solution.move_m);
+    job.triangle = number.data();
+    TriangleLooks seen;
+    look_at_four(job, seen);
+    for (std::size_t i = 0; i < solution.active_count; ++i) {
+        const Guards::Active& active = solution.active[i];
+        const bool over = (seen.over >> i & 1U) != 0;
+        const double rest = settings_.radius_m - (over ? 0.0 : settings_.margin_m);
+        if (std::abs(static_cast<double>(seen.distance[i]) - rest) > most) return false;
+        const Vec3 away(static_cast<double>(seen.away[0][i]), static_cast<double>(seen.away[1][i]),
+                        static_cast<double>(seen.away[2][i]));
+        if ((away - active.normal).norm() * active.weight_m > most) return false;
+    }
+    return true;
+}
+
 // Where friction leaves the proxy that would go to `free` without.
-Vec3 SurfaceContact::held_back(const Guards::Solution& free, const Vec3& goal_m,
-                               double tolerance_m) const noexcept {
+Guards::Solution SurfaceContact::held_back(const Guards::Solution& free, const Vec3& goal_m,
+                                           double tolerance_m) const noexcept {
     const Vec3 lift = free.move_m - goal_m;
     const double depth = lift.norm();
-    if (!(depth > 0.0) || free.active_count == 0) return free.move_m;
+    if (!(depth > 0.0) || free.active_count == 0) return free;
     // It falls freely on what it does not touch yet.
     bool touches = false;
     for (std::size_t i = 0; i < free.active_count; ++i)
         touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
-    if (!touches) return free.move_m;
+    if (!touches) return free;
     const Vec3 normal = lift / depth;
     const Vec3 along = free.move_m - normal.dot(free.move_m) * normal;
     const double way = along.norm(), held = settings_.friction * depth;
     const Vec3 wanted = way > held ? Vec3(free.move_m - (held / way) * along) : Vec3(free.move_m - along);
-    return guards_.solve(wanted, tolerance_m).move_m;
+    return guards_.solve(wanted, tolerance_m);
 }
 
 Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
@@ -169,8 +208,9 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
     const double allowed = step + settings_.glide_m;
     double left = allowed;
-    double least_m = std::numeric_limits<double>::infinity();  // from the goal, of moves that were not cut
-    bool in_a_ring = false;  // the last of them came no nearer than one before
+    double least_m = std::numeric_limits<double>::infinity();  // from the goal, of the moves
+    bool cut_before = false;
+    int rounds = 0;  // the last so many of them came no nearer than one before
     // A slide goes on as it did: where it does not, a second move makes up for it.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
@@ -183,7 +223,11 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const Vec3 wish = goal_m - proxy_m_;
         double reach_now = std::min({reach, left, std::max(wish.norm(), settings_.margin_m)});
         if (!collect(reach_now)) break;
-        look(reach_now, contact.triangles);
+        // Where it rubs, the place without friction is found with the guards in reach, however the rest was collected.
+        const bool rubs = settings_.friction > 0.0;
+        const double room = collected_m_ - (proxy_m_ - collected_at_m_).norm();
+        look(reach_now, rubs ? 0.0 : std::min({room, left, std::max(wish.norm(), settings_.margin_m)}),
+             contact.triangles);
         // Single precision of a guard over the length of the wish, and of the distances.
         const double tolerance = 3e-7 * (wish.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
         Guards::Solution free = guards_.solve(wish, tolerance);
@@ -195,9 +239,12 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         for (std::size_t i = 0; i < free.active_count; ++i)
             contact.plane[i] = {free.active[i].normal, free.active[i].weight_m,
                                 guards_.triangle(free.active[i].guard)};
-        Vec3 move = settings_.friction > 0.0 ? held_back(free, wish, tolerance) : free.move_m;
+        const Guards::Solution held = rubs ? held_back(free, wish, tolerance) : free;
+        Vec3 move = held.move_m;
         const double length = move.norm();
         const bool cut = length > reach_now;
+        const bool small = free.exact && length <= settings_.margin_m;
+        const bool at_rest = !cut && (small || (rests(free) && (!rubs || rests(held))));
         if (cut) move *= reach_now / length;
         // At rest it rests: what is left is rounding.
         if (cut || length > kRestingMargins * settings_.margin_m) {
@@ -209,7 +256,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const bool to_and_fro = (proxy_m_ - two_ago_m).norm() <= settings_.margin_m;
         two_ago_m = one_ago_m;
         one_ago_m = proxy_m_;
-        if (!cut && (free.active_count == 0 || to_and_fro || (free.exact && length <= settings_.margin_m))) {
+        if (!cut && (free.active_count == 0 || to_and_fro || at_rest)) {
             contact.state = ContactState::settled;
             break;
         }
@@ -218,16 +265,21 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
             break;
         }
         // In a hollow that the ball just fits all ways are as level as numbers are good: moves lead round in a ring.
-        if (!cut) {
-            const double gap_m = (goal_m - proxy_m_).norm();
-            in_a_ring = gap_m > least_m - kNearerMargins * settings_.margin_m;
-            least_m = std::min(least_m, gap_m);
-        }
+        const double gap_m = (goal_m - proxy_m_).norm();
+        rounds = gap_m > least_m - kNearerMargins * settings_.margin_m ? rounds + 1 : 0;
+        least_m = std::min(least_m, gap_m);
+        if (rounds == kRounds) break;
         // A move that was not cut is followed by a much shorter one, as only the curvature is left.
-        reach = cut ? 2.0 * reach_now : std::max(kNextMove * length, settings_.margin_m);
+        // Of one that was cut the rest is left; where that was cut too, it goes on to who knows where.
+        const double rest = kGoesOn * (length - reach_now), twice = 2.0 * reach_now;
+        reach = std::max(!cut         ? kNextMove * length
+                         : cut_before ? twice
+                                      : std::min(twice, rest),
+                         settings_.margin_m);
+        cut_before = cut;
     }
     // What was used up on a ring was not lacking: it is where it should be, but for a margin.
-    if (contact.state == ContactState::lagging && in_a_ring && !contact.late)
+    if (contact.state == ContactState::lagging && rounds > 0 && !contact.late)
         contact.state = ContactState::settled;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;

@@ -92,10 +92,11 @@ private:
     bool collect(double& reach_m) noexcept TACT_RT;
     bool find(double radius_m) noexcept TACT_RT;
     bool find_in_all(double radius_m) noexcept TACT_RT;
-    void look(double& reach_m, std::uint32_t& triangles) noexcept TACT_RT;
+    void look(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
     bool guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept TACT_RT;
-    [[nodiscard]] Vec3 held_back(const Guards::Solution& free, const Vec3& goal_m,
-                                 double tolerance_m) const noexcept TACT_RT;
+    [[nodiscard]] bool rests(const Guards::Solution& solution) const noexcept TACT_RT;
+    [[nodiscard]] Guards::Solution held_back(const Guards::Solution& free, const Vec3& goal_m,
+                                             double tolerance_m) const noexcept TACT_RT;
     [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view

@@ -10,6 +10,7 @@ namespace {
 
 using F4 [[gnu::vector_size(16)]] = float;
 using I4 [[gnu::vector_size(16)]] = std::int32_t;
+constexpr float kAlwaysKept = 1e30F;
 
 // Nearest to the goal on the planes n·x + s = 0 of at most three half-spaces: x = goal + sum of weight n. False
 // where the planes are nearly parallel or a weight is negative.
@@ -48,6 +49,11 @@ bool Guards::add(std::uint32_t triangle, const TriangleLooks& look, std::size_t 
                  float facet_slack_m, bool facet_holds) noexcept {
     if (count_ == kMax) return false;
     const std::size_t i = count_++;
+    // They are gone through by fours: behind the last are such as are kept by every move.
+    for (std::size_t k = i + 1; i % 4 == 0 && k < i + 4; ++k) {
+        for (const Row r : {near_x, near_y, near_z, facet_x, facet_y, facet_z, facet_s}) row(r)[k] = 0.0F;
+        row(near_s)[k] = kAlwaysKept;
+    }
     row(near_x)[i] = look.away[0][lane];
     row(near_y)[i] = look.away[1][lane];
     row(near_z)[i] = look.away[2][lane];
@@ -77,10 +83,10 @@ std::size_t Guards::most_violated(const Vec3& move_m, double& value) const noexc
         return near > facet ? near : facet;
     };
     // g++ leaves a loop for the least and its place as it is: four lanes by hand.
-    std::size_t i = 0;
     F4 least4 = F4{} + 1e30F;
     I4 at4{};
-    for (I4 here{0, 1, 2, 3}; i + 4 <= count_; i += 4, here += 4) {
+    I4 here{0, 1, 2, 3};
+    for (std::size_t i = 0; i < count_; i += 4, here += 4) {
         const F4 kept4 = kept([&](Row r) {
             F4 v;
             std::memcpy(&v, row(r) + i, sizeof v);
@@ -96,12 +102,6 @@ std::size_t Guards::most_violated(const Vec3& move_m, double& value) const noexc
         if (least4[lane] >= least) continue;
         least = least4[lane];
         at = static_cast<std::size_t>(at4[lane]);
-    }
-    for (; i < count_; ++i) {
-        const float kept1 = kept([&](Row r) { return row(r)[i]; });
-        if (kept1 >= least) continue;
-        least = kept1;
-        at = i;
     }
     value = static_cast<double>(least);
     return at;

@@ -44,7 +44,7 @@ public:
         bool exact = true;  // false: numbers or rounds ran out, and the move was shortened until it is free
     };
 
-    Guards() : float_(std::size_t{8} * kMax), triangle_(kMax) {}
+    Guards() : float_(std::size_t{8} * kRow), triangle_(kMax) {}
 
     void clear() noexcept TACT_RT { count_ = 0; }
     [[nodiscard]] std::size_t size() const noexcept TACT_RT { return count_; }
@@ -60,9 +60,11 @@ public:
     [[nodiscard]] Solution solve(const Vec3& goal_m, double tolerance_m) const noexcept TACT_RT;
 
 private:
+    // A cache line more, so that the rows of one guard do not fall on the same lines of the cache.
+    static constexpr std::size_t kRow = kMax + 16;
     enum Row : std::size_t { near_x, near_y, near_z, near_s, facet_x, facet_y, facet_z, facet_s };
-    [[nodiscard]] float* row(Row r) noexcept { return float_.data() + r * kMax; }
-    [[nodiscard]] const float* row(Row r) const noexcept { return float_.data() + r * kMax; }
+    [[nodiscard]] float* row(Row r) noexcept { return float_.data() + r * kRow; }
+    [[nodiscard]] const float* row(Row r) const noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] std::size_t most_violated(const Vec3& move_m, double& value) const noexcept TACT_RT;
     [[nodiscard]] Active half_space(std::size_t guard, bool facet) const noexcept TACT_RT;
     [[nodiscard]] Active asked_least(std::size_t guard, const Vec3& move_m,

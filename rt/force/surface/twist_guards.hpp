@@ -48,7 +48,7 @@ public:
         bool exact = true;  // false: numbers or rounds ran out; the move is free, but maybe not the nearest
     };
 
-    TwistGuards() : float_(std::size_t{14} * kMax), triangle_(kMax), point_(kMax) {}
+    TwistGuards() : float_(std::size_t{14} * kRow), triangle_(kMax), point_(kMax) {}
 
     void clear() noexcept TACT_RT { count_ = 0; }
     [[nodiscard]] std::size_t size() const noexcept TACT_RT { return count_; }
@@ -70,9 +70,11 @@ public:
     void turn(const Vec6& goal_m, double tolerance_m, Solution& best) const noexcept TACT_RT;
 
 private:
+    // A cache line more, so that the rows of one guard do not fall on the same lines of the cache.
+    static constexpr std::size_t kRow = kMax + 16;
     // Rows of 7: three of the way, three of the turn, slack; first of the nearest points, then of the planes.
-    [[nodiscard]] float* row(std::size_t r) noexcept { return float_.data() + r * kMax; }
-    [[nodiscard]] const float* row(std::size_t r) const noexcept { return float_.data() + r * kMax; }
+    [[nodiscard]] float* row(std::size_t r) noexcept { return float_.data() + r * kRow; }
+    [[nodiscard]] const float* row(std::size_t r) const noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] std::size_t most_violated(const Vec6& move_m, double& value) const noexcept TACT_RT;
     [[nodiscard]] Active half_space(std::size_t guard, bool facet) const noexcept TACT_RT;
     [[nodiscard]] Active asked_least(std::size_t guard, const Vec6& move_m,
