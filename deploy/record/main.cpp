@@ -1,4 +1,5 @@
-// tact-record: writes what a controller's rings hold into an HDF5 file; repairs files of recorders that were killed.
+// tact-record: writes what a controller's rings hold into an HDF5 file; keeps its last seconds for when something happens; repairs
+// files of recorders that were killed; makes tables of text of them.
 //
 // Exit  0  as asked: the recording is whole, or the file was repaired or needed none
 //       1  error, or the disk was nearly full: what was recorded till then is whole
@@ -12,6 +13,8 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "deploy/record/csv.hpp"
+#include "deploy/record/flight.hpp"
 #include "deploy/record/recorder.hpp"
 #include "ipc/record/repair.hpp"
 
@@ -21,11 +24,16 @@ using namespace tact;
 using namespace tact::record;
 
 volatile sig_atomic_t stop_asked = 0;
+volatile sig_atomic_t save_asked = 0;
 extern "C" void on_stop(int) { stop_asked = 1; }
+extern "C" void on_save(int) { save_asked = 1; }
 
 struct Wishes {
     RecorderSettings settings;
-    std::string repair;
+    FlightSettings flight;
+    CsvSettings csv;
+    std::string file, repair, folder, table, output;
+    double length_s = 30.0;
     bool json = false, quiet = false;
 };
 
@@ -85,6 +93,91 @@ int make_recording(Wishes& w) {
     return 1;
 }
 
+int keep_flights(Wishes& w) {
+    w.flight.folder = w.folder;
+    w.flight.session = w.settings.session;
+    w.flight.program = w.settings.program;
+    w.flight.seconds = w.settings.seconds;
+    w.flight.wait_s = w.settings.wait_s;
+    w.flight.length = Duration(static_cast<std::int64_t>(w.length_s * 1e9));
+    w.flight.stop = [] { return stop_asked != 0; };
+    w.flight.save = [] {
+        const bool asked = save_asked != 0;
+        save_asked = 0;
+        return asked;
+    };
+    const FlightOutcome outcome = fly(w.flight, [&](const std::string& text) {
+        if (!w.quiet) std::fprintf(stderr, "tact-record: %s\n", text.c_str());
+    });
+    if (w.json)
+        std::printf("%s\n", nlohmann::json{{"folder", w.folder},
+                                           {"files", outcome.files},
+                                           {"failed", outcome.failed},
+                                           {"lost", outcome.dropped}}
+                                .dump()
+                                .c_str());
+    else
+        std::printf("%s: %llu flights saved, %llu failed; %llu records lost\n", w.folder.c_str(),
+                    static_cast<unsigned long long>(outcome.files),
+                    static_cast<unsigned long long>(outcome.failed),
+                    static_cast<unsigned long long>(outcome.dropped));
+    return outcome.failed == 0 ? 0 : 1;
+}
+
+int make_table(Wishes& w) {
+    w.csv.recording = w.table;
+    w.csv.file = w.output;
+    const std::uint64_t rows = write_csv(w.csv, [] { return stop_asked != 0; });
+    if (w.json)
+        std::printf("%s\n", nlohmann::json{{"file", w.output}, {"rows", rows}}.dump().c_str());
+    else
+        std::printf("%s: %llu rows\n", w.output.c_str(), static_cast<unsigned long long>(rows));
+    return 0;
+}
+
+int do_as_wished(Wishes& w) {
+    if (!w.repair.empty()) return repair_file(w);
+    if (!w.table.empty()) return make_table(w);
+    if (!w.folder.empty()) return keep_flights(w);
+    w.settings.file = w.file;
+    return make_recording(w);
+}
+
+void describe(CLI::App& app, Wishes& w) {
+    auto* const what = app.add_option_group("What", "one of these");
+    what->add_option("file", w.file, "to write every cycle to, e.g. run.h5; must not be there");
+    what->add_option("--flight", w.folder,
+                     "DIR: keeps the last seconds in memory, and writes them there at an overrun, a fault, "
+                     "the window's key M "
+                     "or SIGUSR1");
+    what->add_option("--repair", w.repair,
+                     "FILE: opens a recording whose recorder was killed, and says what was lost");
+    auto* const csv = what->add_option("--csv", w.table, "FILE: a recording as a table of text, to --output");
+    what->require_option(1);
+    app.add_option("--session", w.settings.session, "name under which the controller is found")
+        ->capture_default_str();
+    app.add_option("--seconds", w.settings.seconds, "end after so long; 0: when the controller ends")
+        ->type_name("S")
+        ->check(CLI::Range(0.0, 1e7));
+    app.add_option("--wait", w.settings.wait_s, "seconds to wait for a controller; 0: as long as it takes")
+        ->type_name("S")
+        ->check(CLI::Range(0.0, 1e7));
+    app.add_option("--length", w.length_s, "of a flight, in seconds")
+        ->check(CLI::Range(1.0, 600.0))
+        ->capture_default_str();
+    app.add_option("--keep", w.flight.files_max, "so many flights; older ones are removed")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    auto* const output = app.add_option("-o,--output", w.output, "the table to write")->needs(csv);
+    csv->needs(output);
+    app.add_option("--every", w.csv.every, "a row for one cycle of so many")
+        ->check(CLI::Range(1, 1000000))
+        ->needs(csv);
+    app.add_flag("--json", w.json, "the outcome as JSON on standard output");
+    app.add_flag("--quiet", w.quiet, "only the outcome and errors");
+    app.set_version_flag("--version", TACT_VERSION);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,33 +186,20 @@ int main(int argc, char** argv) {
     CLI::App app{
         "tact-record: writes what a controller's rings hold into an HDF5 file.\n"
         "Ctrl-C ends the recording; kill -9 loses at most a second."};
-    std::string file;
-    app.add_option("file", file, "to write, e.g. run.h5; must not be there");
-    app.add_option("--session", w.settings.session, "name under which the controller is found")
-        ->capture_default_str();
-    app.add_option("--seconds", w.settings.seconds, "end after so long; 0: when the controller ends")
-        ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--wait", w.settings.wait_s, "seconds to wait for a controller; 0: as long as it takes")
-        ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--repair", w.repair,
-                   "opens a recording whose recorder was killed, and says what was lost");
-    app.add_flag("--json", w.json, "the outcome as JSON on standard output");
-    app.add_flag("--quiet", w.quiet, "only the outcome and errors");
-    app.set_version_flag("--version", TACT_VERSION);
+    describe(app, w);
     try {
         app.parse(argc, argv);
-        if (file.empty() == w.repair.empty())
-            throw CLI::ValidationError("name a file to write, or --repair FILE");
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;
     }
     struct sigaction action {};
     action.sa_handler = &on_stop;
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
+    action.sa_handler = &on_save;
+    sigaction(SIGUSR1, &action, nullptr);
     signal(SIGXFSZ, SIG_IGN);  // a file too big is an error of a write
-    w.settings.file = file;
     try {
-        return w.repair.empty() ? make_recording(w) : repair_file(w);
+        return do_as_wished(w);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-record: %s\n", e.what());
         std::fflush(nullptr);

@@ -41,7 +41,6 @@ struct RecorderOutcome {
     bool began = false;  // there was a controller
 };
 
-inline constexpr Duration kTurn = std::chrono::milliseconds(5);
 inline constexpr Duration kFlushEvery = std::chrono::milliseconds(250);
 
 // say: what it waits for, once each; progress: after each flush.

@@ -12,7 +12,8 @@ void add_dock(CLI::App& app, int& exit_code);
 void add_drill(CLI::App& app, int& exit_code);
 void add_touch(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
-void add_record(CLI::App& app);  // and replay
+void add_record(CLI::App& app);
+void add_replay(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     add_touch(app, exit_code);
     add_run(app, exit_code);
     add_record(app);
+    add_replay(app, exit_code);
     add_status(app, exit_code);
     add_doctor(app, exit_code);
     add_probe(app, exit_code);

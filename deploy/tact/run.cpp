@@ -86,6 +86,12 @@ private:
             record.grace = options_.grace;
             record_.emplace("tact-record", find_program("tact-record", options_.programs), record);
         }
+        if (!options_.flight.empty()) {
+            ChildSettings flight;
+            flight.arguments = {"--flight", options_.flight.string(), "--session", options_.session};
+            flight.grace = options_.grace;
+            flight_.emplace("tact-record", find_program("tact-record", options_.programs), flight);
+        }
         rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
         if (options_.gui) {
             ChildSettings gui;
@@ -152,6 +158,8 @@ private:
         core_due_ = now + kLeaveCoreEvery;
         keep_off_core(getpid(), *core);
         if (gui_ && !gui_->poll()) keep_off_core(gui_->pid(), *core);
+        if (record_ && !record_->poll()) keep_off_core(record_->pid(), *core);
+        if (flight_ && !flight_->poll()) keep_off_core(flight_->pid(), *core);
         if (x_ && !x_->child().poll()) keep_off_core(x_->child().pid(), *core);
     }
 
@@ -209,9 +217,11 @@ private:
     [[nodiscard]] bool over() { return ending_ && rt_->poll() && (!gui_ || gui_->poll()); }
 
     int finish() {
-        if (record_) {  // ends by itself when the controller has
-            if (!record_->wait(std::chrono::seconds(10))) record_->stop();
-            if (const auto& ending = record_->wait(options_.grace + std::chrono::seconds(1)))
+        for (std::optional<Child>* const recorder :
+             {&record_, &flight_}) {  // end by themselves when the controller has
+            if (!*recorder) continue;
+            if (!(*recorder)->wait(std::chrono::seconds(10))) (*recorder)->stop();
+            if (const auto& ending = (*recorder)->wait(options_.grace + std::chrono::seconds(1)))
                 note("tact-record", *ending);
         }
         if (x_) {
@@ -281,7 +291,7 @@ private:
     std::optional<ScratchFolder> scratch_;  // outlives the X server that uses it
     std::optional<XServer> x_;
     std::vector<std::pair<std::string, std::string>> display_;
-    std::optional<Child> rt_, gui_, record_;
+    std::optional<Child> rt_, gui_, record_, flight_;
     bool ending_ = false;
     int lines_ = 0;
     Instant started_{}, sample_due_{}, line_due_{}, core_due_{};

@@ -80,6 +80,7 @@ void RunOptions::settle() {
                            "--screenshot needs the visual process, and --no-gui leaves it out",
                            "leave one of the two away; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
+    if (!flight.empty()) flight = std::filesystem::absolute(flight);
     if (!record.empty()) record = std::filesystem::absolute(record);
     if (!record.empty() && std::filesystem::exists(record))
         throw StartupError("recording to " + record.string(), "the file is there already",
@@ -114,6 +115,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     app.add_option("--record", options.record,
                    "new file for every cycle of the run; see tact record, tact replay")
         ->type_name("FILE.h5");
+    app.add_option("--flight", options.flight,
+                   "folder for the last 30 s, saved at an overrun, a fault or the window's key M")
+        ->type_name("DIR");
     app.add_option("--session", options.session, "name under which the processes find each other")
         ->type_name("NAME")
         ->capture_default_str();

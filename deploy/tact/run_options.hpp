@@ -19,6 +19,7 @@ struct RunOptions {
     std::filesystem::path out;     // folder for run.json, run.csv and run.png
     std::filesystem::path save;    // folder for the placed structures
     std::filesystem::path record;  // every cycle of the run, HDF5
+    std::filesystem::path flight;  // folder for its last seconds, when something happens
     std::string session = "default";
     std::string size = "1280x800";   // of the window
     std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: beside tact

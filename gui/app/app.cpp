@@ -275,6 +275,7 @@ private:
             if (key == Key::style) state_.toggles.style = (state_.toggles.style + 1) % 3;
             if (key == Key::picture) picture_wanted_ = true;
             if (key == Key::swap_eyes && stage_) stage_->swap_eyes();
+            if (key == Key::mark) state_.wishes.push_back({CommandKind::mark, 0.0, {}});
             if (key == Key::raise && content_) nudge_contour(state_.contours, content_->scale, 1.0);
             if (key == Key::lower && content_) nudge_contour(state_.contours, content_->scale, -1.0);
             if (key == Key::help) state_.show_keys = !state_.show_keys;

@@ -43,6 +43,7 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
                                       {GLFW_KEY_X, Key::swap_eyes},
                                       {GLFW_KEY_P, Key::picture},
                                       {GLFW_KEY_R, Key::refine},
+                                      {GLFW_KEY_M, Key::mark},
                                       {GLFW_KEY_ENTER, Key::accept},
                                       {GLFW_KEY_KP_ENTER, Key::accept},
                                       {GLFW_KEY_ESCAPE, Key::escape}})

@@ -27,6 +27,7 @@ enum class Key {
     undo,
     redo,
     refine,
+    mark,
     raise,
     lower,
     body_0,

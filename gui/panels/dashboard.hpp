@@ -266,6 +266,7 @@ inline constexpr KeyHelp kKeyHelp[] = {
     {"Enter", "accept: undo goes back no farther"},
     {"Esc", "back to the last accepted places"},
     {"P", "save a picture"},
+    {"M", "mark this moment: a flight recorder saves it"},
     {"?", "this table"},
 };
 

@@ -81,6 +81,7 @@ void RecordingWriter::make(const RecordingHead& head) {
     hdf5::put_number(f, "/", "version", kRecordingVersion);
     hdf5::put_text(f, "/", "program", head.program);
     hdf5::put_text(f, "/", "session", head.session);
+    if (!head.cause.empty()) hdf5::put_text(f, "/", "cause", head.cause);
     hdf5::put_text(f, "/", "scene_path", head.scene_path);
     hdf5::put_number(f, "/", "scene_checksum", head.scene_checksum);
     hdf5::put_number(f, "/", "generation", head.generation);

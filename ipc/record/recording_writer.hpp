@@ -25,6 +25,7 @@ struct RecordingHead {
     RunText text{};
     LevelsTopic levels{};                      // names of the paths
     std::string scene_path, session, program;  // program: with its version
+    std::string cause;                         // of a flight recording; empty: it is no such
     std::uint64_t scene_checksum = 0, generation = 0, first_step = 1;
     std::int64_t created_utc_ns = 0, created_ns = 0;  // the same instant on both clocks
 };

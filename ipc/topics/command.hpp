@@ -30,8 +30,9 @@ enum class CommandKind : std::uint16_t {
     // Of a surface kept fine around the tool. body: DetailShape, value: width, pos_model_m[0]: error far away, both in
     // radii of full detail (TouchTopic)
     set_detail_filter,
+    mark,  // nothing but the event that it is done: a flight recorder keeps what led here
 };
-inline constexpr CommandKind kLastCommand = CommandKind::set_detail_filter;
+inline constexpr CommandKind kLastCommand = CommandKind::mark;
 
 enum class CommandResult : std::uint16_t {
     none,

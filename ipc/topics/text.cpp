@@ -222,6 +222,8 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "filter of the detail";
         case CommandKind::set_laplacian:
             return "Laplacian";
+        case CommandKind::mark:
+            return "mark";
     }
     return kUnknown;
 }

@@ -119,6 +119,8 @@ void Servo::obey(CycleState& c, const ServoOrder& order) noexcept {
         case CommandKind::set_fidelity_auto:
             governor_.set_law(settings_.governor.law == Law::fixed ? kDefaultLaw : settings_.governor.law);
             return answer(true);
+        case CommandKind::mark:
+            return acknowledge(order, CommandResult::done);
         case CommandKind::none:  // refused by the house thread, which says why in the index
             return acknowledge(order, static_cast<CommandResult>(order.index));
         case CommandKind::select_body:

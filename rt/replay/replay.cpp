@@ -241,7 +241,15 @@ void Replay::do_step() {
     last_step_ = step_.cycle.step;
     if (!dry && !started_) {
         started_ = true;
-        servo_->start(instant_from_ns(reader_.about().start.started_at_ns) + shift_);
+        const bool late = reader_.about().first_step != 1;
+        servo_->start(late ? instant_from_ns(step_.cycle.now_ns) + shift_
+                           : instant_from_ns(reader_.about().start.started_at_ns) + shift_);
+        // Of a run that is begun in its middle: as near as it can be, the force ramps in.
+        if (late && step_.cycle.run_state >= static_cast<std::uint8_t>(RunState::armed))
+            mail_.orders.push({.sequence = 0,
+                               .value = 0.0,
+                               .kind = static_cast<std::uint32_t>(CommandKind::arm),
+                               .index = 0});
     }
     give_step();
     if (dry)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "deploy/record/drain.hpp"
+#include "deploy/record/flight.hpp"
 #include "tests/scenario/lockstep.hpp"
 
 namespace tact {
@@ -114,6 +115,48 @@ TEST(RecordScenario, who_comes_late_begins_with_the_oldest_and_has_dropped_nothi
     EXPECT_TRUE(batch.drops.empty());
     ASSERT_GT(batch.cycles.size(), 16000U);
     EXPECT_EQ(batch.cycles.front().step, batch.hand[0].front().step);
+}
+
+TEST(FlightTape, keeps_the_last_seconds_and_no_more_bytes_than_it_may) {
+    Lockstep loop;
+    Drain drain(*loop.region_);
+    record::FlightTape tape(std::chrono::seconds(2), std::size_t{64} << 20U);
+    record::FlightTape small(std::chrono::seconds(2), 200'000);
+    for (int i = 0; i < 40; ++i) {
+        loop.cycles(250);
+        Batch batch;
+        drain.take(batch, 0);
+        small.add(Batch(batch));
+        tape.add(std::move(batch));
+        EXPECT_LE(small.bytes(), 200'000U);
+        EXPECT_LE(tape.length_s(), 2.3);
+    }
+    EXPECT_GE(tape.length_s(), 1.9);
+    EXPECT_EQ(tape.batches().back().cycles.back().step, 40U * 250U + 20U);
+    EXPECT_EQ(tape.first_step(), tape.batches().front().cycles.front().step);
+    EXPECT_LT(small.length_s(), 0.6);
+    EXPECT_GT(small.first_step(), tape.first_step());
+}
+
+TEST(FlightTape, a_fault_an_overrun_and_a_mark_are_causes_and_nothing_else) {
+    Lockstep loop({}, wandering());
+    Drain drain(*loop.region_);
+    const auto cause_of = [&] {
+        Batch batch;
+        drain.take(batch, 0);
+        return record::cause_in(batch);
+    };
+    loop.active();
+    loop.order(CommandKind::set_goal_hz, 900.0);
+    loop.cycles(300);
+    EXPECT_EQ(cause_of(), "");
+    loop.order(CommandKind::mark);
+    loop.cycles(2);
+    EXPECT_EQ(cause_of(), "mark");
+    loop.device_.inject(SimFault::unplugged);
+    loop.cycles(50);
+    EXPECT_EQ(loop.state(), RunState::fault);
+    EXPECT_NE(cause_of(), "");
 }
 
 }  // namespace

@@ -151,6 +151,55 @@ class Campaign:
             return ["after a full disk: " + err]
         return look_at(path, 0, json.loads(out))[2]
 
+    def flight(self):
+        """The last seconds, when asked for; bounded in length and number, and as a table."""
+        folder = os.path.join(self.dir, "flights")
+        child = self.recorder("--flight", folder, "--length", "1", "--keep", "1", "--json", "--wait", str(PATIENCE_S))
+        files = lambda: sorted(os.listdir(folder)) if os.path.isdir(folder) else []
+        end, asked = time.monotonic() + PATIENCE_S, 0
+        said = []
+        while len(said) < 2 and child.poll() is None and time.monotonic() < end:
+            child.send_signal(signal.SIGUSR1) if os.path.isdir(folder) else None
+            asked += 1
+            time.sleep(0.5)
+            said = sorted(set(said) | {f for f in files() if f.endswith(".h5")})
+        child.send_signal(signal.SIGINT)
+        out, err = child.communicate(timeout=PATIENCE_S)
+        if child.returncode != 0 or len(said) < 2:
+            return ["%d flights after %d wishes: %s %s" % (len(said), asked, out, err)]
+        left = files()
+        if len(left) != 1 or left[0] != said[-1] and left[0] < said[-1]:
+            return ["not the newest one was kept: %s of %s" % (left, said)]
+        path = os.path.join(folder, left[0])
+        cycles, _, wrong = look_at(path, 0, {"damaged": False})
+        with h5py.File(path, "r") as f:
+            length_s = (int(f["cycles/now_ns"][-1]) - int(f["cycles/now_ns"][0])) * 1e-9
+            if not f.attrs["cause"] or not 0.1 < length_s < 2.0:
+                wrong.append("cause %r, %.1f s" % (f.attrs["cause"], length_s))
+        return wrong + self.table(path, cycles)
+
+    def table(self, path, cycles):
+        table = path + ".csv"
+        code, out, err = self.to_end("--csv", path, "-o", table, "--json")
+        if code != 0:
+            return ["no table: " + err]
+        with open(table, encoding="utf-8") as lines:
+            names = lines.readline().rstrip().split(",")
+            rows = [line.rstrip().split(",") for line in lines]
+        with h5py.File(path, "r") as f:
+            dry = int((f["cycles/flags"][:] & 1).sum())
+            force = f["hand0/wrench_world"][dry:, 0]
+            pose = f["hand0/pose_world"][dry:, 6]
+        wrong = []
+        if len(rows) != cycles - dry or json.loads(out)["rows"] != len(rows) or {len(r) for r in rows} != {len(names)}:
+            wrong.append("the table has %d rows of %d cycles" % (len(rows), cycles))
+        elif any(float(r[names.index("hand0_fx_n")]) != x or float(r[names.index("hand0_qw")]) != q for r, x, q in zip(rows, force, pose)):
+            wrong.append("a number of the table is not the recording's")
+        code, _, err = self.to_end("--csv", path, "-o", table)
+        if code != 1 or "there already" not in err:
+            wrong.append("a table was overwritten")
+        return wrong
+
     def close(self):
         self.controller.terminate()
         self.controller.wait(timeout=PATIENCE_S)
@@ -168,7 +217,7 @@ def main():
     campaign = Campaign(wish.programs, wish.writer)
     failed = False
     try:
-        for name, test in (("ended in order", campaign.in_order), ("disk full", campaign.disk_full)):
+        for name, test in (("ended in order", campaign.in_order), ("disk full", campaign.disk_full), ("flight and table", campaign.flight)):
             wrong = test()
             failed = failed or bool(wrong)
             print("%s: %s" % (name, "; ".join(wrong) or "good"))

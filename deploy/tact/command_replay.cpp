@@ -1,0 +1,109 @@
+// tact replay: a recorded run again, compared with the recording; with --show in a window, at the recorded pace.
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include "deploy/tact/become.hpp"
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/signals.hpp"
+#include "deploy/tact/x_server.hpp"
+
+namespace tact::launch {
+namespace {
+
+struct ReplayOptions {
+    std::string file, scene, session = "replay", size = "1280x800", screenshot;
+    bool show = false, json = false, headless = false;
+    double from_s = 0.0, speed = 1.0, seconds = 0.0;
+};
+
+std::vector<std::string> words_of(const ReplayOptions& o) {
+    std::vector<std::string> words{o.file};
+    if (!o.scene.empty()) words.insert(words.end(), {"--scene", o.scene});
+    if (o.json) words.emplace_back("--json");
+    if (o.show)
+        words.insert(words.end(), {"--show", "--session", o.session, "--from", std::to_string(o.from_s),
+                                   "--speed", std::to_string(o.speed)});
+    return words;
+}
+
+std::optional<XServer> screen_of(const ReplayOptions& o, const ScratchFolder& scratch) {
+    if (!o.headless) {
+        if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
+            throw StartupError("opening a window", "neither DISPLAY nor WAYLAND_DISPLAY is set",
+                               "add --headless to draw without a screen, or leave --show away");
+        return std::nullopt;
+    }
+    int width = 0, height = 0;
+    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 64 || height < 64 ||
+        width > 16384 || height > 16384)
+        throw StartupError("reading --size " + o.size, "it is not WIDTHxHEIGHT in 64..16384",
+                           "--size 1280x800");
+    return std::make_optional<XServer>(scratch.path(), width, height);
+}
+
+// Until window and replay have ended: the one that ends first takes the other along.
+int show(const ReplayOptions& o) {
+    const ScratchFolder scratch;
+    Signals signals;
+    std::optional<XServer> screen = screen_of(o, scratch);
+    ChildSettings replaying, drawing;
+    replaying.arguments = words_of(o);
+    drawing.arguments = {"--session", o.session, "--size", o.size};
+    if (!o.screenshot.empty())
+        drawing.arguments.insert(drawing.arguments.end(), {"--screenshot", o.screenshot});
+    if (o.seconds > 0.0)
+        drawing.arguments.insert(drawing.arguments.end(), {"--seconds", std::to_string(o.seconds)});
+    if (screen) drawing.environment = screen->environment();
+    drawing.grace = std::chrono::seconds(10);
+    Child replay("tact-replay", find_program("tact-replay"), replaying);
+    Child window("tact-gui", find_program("tact-gui"), drawing);
+    while (!replay.poll() || !window.poll()) {
+        if (signals.wait(20) != 0 || window.poll()) replay.stop();
+        if (replay.poll()) window.stop();
+    }
+    const Ending& drawn = *window.poll();
+    if (!drawn.clean() && !(drawn.asked && !drawn.forced)) {
+        std::fprintf(stderr, "tact-gui %s\n  mend: see what it said above\n", drawn.text().c_str());
+        return 1;
+    }
+    const Ending& done = *replay.poll();
+    return done.by_signal ? 1 : done.number;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit_code) {
+    auto* const command =
+        app.add_subcommand("replay",
+                           "a recorded run again, by the same code in simulated time; compares every force. "
+                           "Exit code 0: the same to the bit; 3: not");
+    const auto o = std::make_shared<ReplayOptions>();
+    command->add_option("FILE", o->file, "recording of tact record, or of a run with --record")->required();
+    command->add_option("--scene", o->scene, "where the recorded scene is now")->type_name("SCENE");
+    command->add_flag("--json", o->json, "the outcome for programs");
+    auto* const shown = command->add_flag("--show", o->show, "in a window, at the recorded pace");
+    const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
+        command->add_option(name, value, help)->type_name("X")->check(CLI::Range(low, high))->needs(shown);
+    };
+    number("--from", o->from_s, 0.0, 1e7, "second of the recording at which showing begins");
+    number("--speed", o->speed, 0.01, 100.0, "times the recorded pace");
+    number("--seconds", o->seconds, 0.0, 1e7, "close the window after so long");
+    command->add_flag("--headless", o->headless, "draw without a screen, on an X server of its own (Xvfb)")
+        ->needs(shown);
+    command->add_option("--size", o->size, "of the window in pixels")->type_name("WxH")->needs(shown);
+    command->add_option("--screenshot", o->screenshot, "picture of the window at the end")
+        ->type_name("FILE.png")
+        ->needs(shown);
+    command->add_option("--session", o->session, "in which window and replay find each other")
+        ->type_name("NAME")
+        ->needs(shown);
+    command->callback([o, &exit_code] {
+        if (!o->show) become("tact-replay", words_of(*o));
+        exit_code = show(*o);
+    });
+}
+
+}  // namespace tact::launch
