@@ -14,6 +14,7 @@ void add_touch(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app);
 void add_replay(CLI::App& app, int& exit_code);
+void add_metrics(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
     add_record(app);
     add_replay(app, exit_code);
     add_status(app, exit_code);
+    add_metrics(app, exit_code);
     add_doctor(app, exit_code);
     add_probe(app, exit_code);
     add_info(app, exit_code);

@@ -1,0 +1,83 @@
+// tact metrics: the figures of the running controller for Prometheus.
+#include <cstdio>
+#include <memory>
+
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/metrics.hpp"
+#include "deploy/tact/signals.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr int kEveryMs = 200;
+constexpr auto kAttachWithin = std::chrono::seconds(2);
+
+struct MetricsOptions {
+    std::string session = "default", address = "127.0.0.1", textfile;
+    int port = 9464;
+    double every_s = 5.0;
+    bool once = false;
+};
+
+int metrics(const MetricsOptions& o) {
+    Signals signals;
+    Observer observer(o.session);
+    Metrics figures(o.session);
+    std::unique_ptr<MetricsServer> server;
+    if (!o.once && o.textfile.empty()) {
+        server = std::make_unique<MetricsServer>(o.address, o.port);
+        std::fprintf(stderr, "http://%s:%d/metrics, until Ctrl-C\n", o.address.c_str(), server->port());
+    }
+    const Instant began = Monotonic::now();
+    Instant due{};
+    do {
+        const bool arrived = observer.poll() == Observer::News::arrived;
+        const bool there = observer.attached() && observer.seen();
+        if (there) figures.follow(observer.region(), arrived);
+        const std::string text = figures.text(there ? &observer.region() : nullptr);
+        if (o.once) {
+            const bool told = there && newest(observer.region().health);
+            if (!told && Monotonic::now() - began < kAttachWithin) continue;
+            std::fputs(text.c_str(), stdout);
+            return told ? 0 : 1;
+        }
+        if (server) {
+            server->offer(text);
+        } else if (Monotonic::now() >= due) {
+            write_textfile(o.textfile, text);
+            due = Monotonic::now() +
+                  std::chrono::duration_cast<Duration>(std::chrono::duration<double>(o.every_s));
+        }
+    } while (signals.wait(o.once ? 20 : kEveryMs) == 0);
+    return 0;
+}
+
+}  // namespace
+
+void add_metrics(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand("metrics",
+                                             "rate, lateness, faults and levels of the controller for "
+                                             "Prometheus, until Ctrl-C, also across restarts");
+    const auto o = std::make_shared<MetricsOptions>();
+    command->add_option("--session", o->session, "name of the session")
+        ->type_name("NAME")
+        ->capture_default_str();
+    command
+        ->add_option("--listen", o->address, "address that is answered at; anybody who reaches it may read")
+        ->type_name("ADDRESS")
+        ->capture_default_str();
+    command->add_option("--port", o->port, "0: one that is free")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    command->add_option("--textfile", o->textfile, "write this file in place of answering, for node_exporter")
+        ->type_name("FILE.prom");
+    command->add_option("--every", o->every_s, "between two files")
+        ->type_name("S")
+        ->check(CLI::Range(0.2, 3600.0))
+        ->capture_default_str();
+    command->add_flag("--once", o->once, "print them and end; exit code 1: no controller runs");
+    command->callback([o, &exit_code] { exit_code = metrics(*o); });
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,171 @@
+#include "deploy/tact/metrics.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "ipc/base/histogram.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr double kNs = 1e-9;
+// Of the lateness: from what a quiet machine has to what a hand feels.
+constexpr double kEdgesS[] = {1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2};
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '\\' || c == '"') out += '\\';
+        out += c == '\n' ? ' ' : c;
+    }
+    return out;
+}
+
+std::string number(double value) {
+    char text[40];
+    static_cast<void>(std::snprintf(text, sizeof text, "%.9g", value));
+    return text;
+}
+
+class Page {
+public:
+    explicit Page(const std::string& session) : session_("session=\"" + escaped(session) + "\"") {}
+    void about(const char* name, const char* type, const char* help) {
+        name_ = name;
+        text_ += std::string("# HELP ") + name + " " + help + "\n# TYPE " + name + " " + type + "\n";
+    }
+    void value(double v, const std::string& labels = "", const char* suffix = "") {
+        if (!std::isfinite(v)) return;
+        text_ +=
+            name_ + suffix + "{" + session_ + (labels.empty() ? "" : "," + labels) + "} " + number(v) + "\n";
+    }
+    void one(const char* name, const char* type, const char* help, double v) {
+        about(name, type, help);
+        value(v);
+    }
+    [[nodiscard]] std::string take() { return std::move(text_); }
+
+private:
+    std::string session_, name_, text_;
+};
+
+std::string label(const char* name, const std::string& value) {
+    return std::string(name) + "=\"" + escaped(value) + "\"";
+}
+
+void lateness(Page& page, const LatenessTopic& l) {
+    page.about("tact_servo_lateness_seconds", "histogram",
+               "how late a servo cycle began, since the controller started");
+    std::uint64_t seen = 0;
+    std::size_t bucket = 0;
+    double sum_s = 0.0;
+    const auto upper_s = [](std::size_t b) {
+        return kNs * static_cast<double>(DurationHistogram::upper_ns(b));
+    };
+    const auto take_up_to = [&](double edge_s) {
+        for (; bucket < DurationHistogram::kBuckets && upper_s(bucket) <= edge_s; ++bucket) {
+            seen += l.counts[bucket];
+            sum_s += static_cast<double>(l.counts[bucket]) * upper_s(bucket);
+        }
+    };
+    for (const double edge_s : kEdgesS) {
+        take_up_to(edge_s);
+        page.value(static_cast<double>(seen), label("le", number(edge_s)), "_bucket");
+    }
+    take_up_to(INFINITY);
+    page.value(static_cast<double>(seen), label("le", "+Inf"), "_bucket");
+    page.value(sum_s, "", "_sum");
+    page.value(static_cast<double>(seen), "", "_count");
+}
+
+void health(Page& page, const HealthTopic& h) {
+    const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+    page.one("tact_force_rate_hertz", "gauge", "force updates in the last second", h.force_rate_hz);
+    page.one("tact_force_rate_goal_hertz", "gauge", "force rate that the governor holds", h.goal_hz);
+    page.one("tact_servo_cycles_total", "counter", "servo cycles", count(h.cycle));
+    page.one("tact_servo_overruns_total", "counter", "cycles that ended after the next one was due",
+             count(h.overruns));
+    page.one("tact_servo_skipped_periods_total", "counter", "periods left out because of overruns",
+             count(h.skipped));
+    page.one("tact_servo_allocations_total", "counter", "heap calls on the servo thread inside cycles",
+             count(h.allocations));
+    page.one("tact_servo_locks_total", "counter", "locks on the servo thread inside cycles", count(h.locks));
+    page.one("tact_servo_page_faults_total", "counter", "page faults of the servo thread",
+             count(h.page_faults));
+    page.one("tact_refused_records_total", "counter", "records of the visual process that made no sense",
+             count(h.bad_input));
+    page.one("tact_servo_work_max_seconds", "gauge", "longest work of a cycle in the last second",
+             kNs * static_cast<double>(h.cycle_cost_max_ns));
+    if (h.delay_p99_ns > 0)
+        page.one("tact_device_delay_seconds", "gauge",
+                 "from the encoders to the motors, p99 of the last second",
+                 kNs * static_cast<double>(h.delay_p99_ns));
+    page.about("tact_state", "gauge", "1 for the state that the controller is in");
+    for (int s = 0; s <= static_cast<int>(RunState::fault); ++s)
+        page.value(h.state == s ? 1.0 : 0.0, label("state", run_state_text(static_cast<RunState>(s))));
+    page.one("tact_picture_attached", "gauge", "1 where a visual process is attached",
+             h.gui_attached != 0 ? 1.0 : 0.0);
+    page.one("tact_picture_rate_hertz", "gauge", "pictures in the last second", h.gui_fps);
+    if (h.gui_fps > 0.0)
+        page.one("tact_frame_time_seconds", "gauge", "mean time of a picture in the last second",
+                 1.0 / h.gui_fps);
+    page.about("tact_device_bus_errors_total", "counter", "what was wrong on the bus of a hand's device");
+    for (std::size_t hand = 0; hand < kHandsMax; ++hand) {
+        const BusCounts& b = h.device_bus[hand];
+        for (const auto& [kind, n] : {std::pair{"checksum", b.checksum},
+                                      {"refused", b.refused},
+                                      {"repeated", b.repeated},
+                                      {"lost", b.lost},
+                                      {"transfer", b.transfers_failed},
+                                      {"stall", b.stalls},
+                                      {"reconnect", b.reconnects}})
+            page.value(n, label("hand", std::to_string(hand + 1)) + "," + label("kind", kind));
+    }
+}
+
+void levels(Page& page, const LevelsTopic& l) {
+    const std::size_t count = std::min<std::size_t>(l.count, kPathsMax);
+    const auto each = [&](const char* name, const char* help, const auto& of) {
+        page.about(name, "gauge", help);
+        for (std::size_t i = 0; i < count; ++i)
+            page.value(of(l.path[i]), label("path", field_text(l.path[i].path, kPathNameMax)));
+    };
+    each("tact_level", "fidelity of a path, 0 to 1",
+         [](const PathLevel& p) { return static_cast<double>(p.level); });
+    each("tact_level_items", "what the level means: points, vertices, rays",
+         [](const PathLevel& p) { return static_cast<double>(p.items); });
+    each("tact_level_cost_seconds", "measured time of a path's step",
+         [](const PathLevel& p) { return p.cost_s; });
+}
+
+}  // namespace
+
+void Metrics::follow(const RtRegion& region, bool arrived) {
+    if (arrived) {
+        cursor_ = {};
+        ++controllers_;
+    }
+    EventTopic event{};
+    while (region.events.next(cursor_, event)) {
+        if (event.code != static_cast<std::uint16_t>(EventCode::fault_latched)) continue;
+        const bool known = event.a >= 0.0 && event.a < 256.0;
+        ++faults_[run_reason_text(static_cast<RunReason>(known ? static_cast<int>(event.a) : 255))];
+    }
+}
+
+std::string Metrics::text(const RtRegion* region) const {
+    Page page(session_);
+    page.one("tact_up", "gauge", "1 where a controller runs", region != nullptr ? 1.0 : 0.0);
+    page.one("tact_controllers_seen_total", "counter",
+             "controllers that were attached to, one after the other", static_cast<double>(controllers_));
+    page.about("tact_faults_total", "counter", "faults that stopped the force, by cause");
+    for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
+    if (region == nullptr) return page.take();
+    if (const auto h = newest(region->health)) health(page, *h);
+    if (const auto l = newest(region->lateness)) lateness(page, *l);
+    if (const auto l = newest(region->levels)) levels(page, *l);
+    return page.take();
+}
+
+}  // namespace tact::launch

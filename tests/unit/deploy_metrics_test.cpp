@@ -1,0 +1,178 @@
+// The figures for Prometheus: what they say of a region, of none, of a hostile one; over HTTP and as a file.
+#include "deploy/tact/metrics.hpp"
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/histogram.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact::launch {
+namespace {
+
+std::unique_ptr<RtRegion> a_region() {
+    auto region = std::make_unique<RtRegion>();
+    HealthTopic h{};
+    h.force_rate_hz = 998.5;
+    h.goal_hz = 1000.0;
+    h.overruns = 3;
+    h.state = static_cast<std::uint8_t>(RunState::active);
+    h.gui_fps = 50.0;
+    h.gui_attached = 1;
+    h.device_bus[0].lost = 7;
+    region->health.publish(h);
+    LatenessTopic l{};
+    for (const std::uint64_t ns : {300U, 400U, 1500U, 30'000U, 40'000'000U}) {
+        ++l.counts[DurationHistogram::bucket_of(ns)];
+        ++l.total;
+    }
+    region->lateness.publish(l);
+    LevelsTopic levels{};
+    levels.count = 1;
+    std::strcpy(levels.path[0].path, "docking.force");
+    levels.path[0].level = 0.25F;
+    region->levels.publish(levels);
+    return region;
+}
+
+void fault(RtRegion& region, RunReason reason) {
+    EventTopic e{};
+    e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
+    e.a = static_cast<double>(reason);
+    region.events.push(e);
+}
+
+// The value of a line that begins with this and a space; NaN: there is none.
+double value_of(const std::string& text, const std::string& line) {
+    const std::size_t at = text.find("\n" + line + " ");
+    return at == std::string::npos ? NAN : std::stod(text.substr(at + line.size() + 2));
+}
+
+TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
+    const auto region = a_region();
+    Metrics metrics("lab");
+    fault(*region, RunReason::device_lost);
+    metrics.follow(*region, true);
+    fault(*region, RunReason::device_lost);
+    fault(*region, RunReason::force_not_finite);
+    metrics.follow(*region, false);
+    const std::string text = metrics.text(region.get());
+    EXPECT_EQ(value_of(text, "tact_up{session=\"lab\"}"), 1.0);
+    EXPECT_EQ(value_of(text, "tact_force_rate_hertz{session=\"lab\"}"), 998.5);
+    EXPECT_EQ(value_of(text, "tact_servo_overruns_total{session=\"lab\"}"), 3.0);
+    EXPECT_EQ(value_of(text, "tact_state{session=\"lab\",state=\"active\"}"), 1.0);
+    EXPECT_EQ(value_of(text, "tact_state{session=\"lab\",state=\"fault\"}"), 0.0);
+    EXPECT_EQ(value_of(text, "tact_level{session=\"lab\",path=\"docking.force\"}"), 0.25);
+    EXPECT_EQ(value_of(text, "tact_frame_time_seconds{session=\"lab\"}"), 0.02);
+    EXPECT_EQ(value_of(text, "tact_device_bus_errors_total{session=\"lab\",hand=\"1\",kind=\"lost\"}"), 7.0);
+    const auto cause = [&](RunReason reason) {
+        return value_of(text, std::string("tact_faults_total{session=\"lab\",cause=\"") +
+                                  run_reason_text(reason) + "\"}");
+    };
+    EXPECT_EQ(cause(RunReason::device_lost), 2.0);
+    EXPECT_EQ(cause(RunReason::force_not_finite), 1.0);
+    const auto below = [&](const char* edge) {
+        return value_of(
+            text, std::string("tact_servo_lateness_seconds_bucket{session=\"lab\",le=\"") + edge + "\"}");
+    };
+    EXPECT_EQ(below("1e-06"), 2.0);
+    EXPECT_EQ(below("2e-06"), 3.0);
+    EXPECT_EQ(below("5e-05"), 4.0);
+    EXPECT_EQ(below("0.01"), 4.0);
+    EXPECT_EQ(below("+Inf"), 5.0);
+    EXPECT_EQ(value_of(text, "tact_servo_lateness_seconds_count{session=\"lab\"}"), 5.0);
+    EXPECT_NEAR(value_of(text, "tact_servo_lateness_seconds_sum{session=\"lab\"}"), 0.04, 0.003);
+}
+
+TEST(Metrics, AControllerThatIsGoneIsDownAndItsFiguresAreNotTold) {
+    const auto region = a_region();
+    Metrics metrics("lab");
+    fault(*region, RunReason::device_lost);
+    metrics.follow(*region, true);
+    const std::string text = metrics.text(nullptr);
+    EXPECT_EQ(value_of(text, "tact_up{session=\"lab\"}"), 0.0);
+    EXPECT_EQ(text.find("tact_force_rate_hertz"), std::string::npos);
+    EXPECT_NE(text.find("tact_faults_total{"), std::string::npos);  // a counter does not go back
+}
+
+TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
+    const auto region = std::make_unique<RtRegion>();
+    HealthTopic h{};
+    std::memset(static_cast<void*>(&h), 0xFF, sizeof h);
+    region->health.publish(h);
+    LevelsTopic l{};
+    std::memset(static_cast<void*>(&l), 0xFF, sizeof l);
+    std::memcpy(l.path[0].path, "a\"b\\c\nd", 8);
+    l.path[0].level = 1.0F;
+    region->levels.publish(l);
+    EventTopic e{};
+    e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
+    e.a = NAN;
+    region->events.push(e);
+    Metrics metrics("a\"b");
+    metrics.follow(*region, true);
+    std::istringstream lines(metrics.text(region.get()));
+    for (std::string line; std::getline(lines, line);) {
+        ASSERT_FALSE(line.empty());
+        EXPECT_EQ(line.find("nan"), std::string::npos) << line;
+        EXPECT_EQ(line.rfind(line[0] == '#' ? "# " : "tact_", 0), 0U) << line;
+    }
+}
+
+TEST(Metrics, AreAnsweredOverHttpOnTheLoopback) {
+    MetricsServer server("127.0.0.1", 0);
+    ASSERT_GT(server.port(), 0);
+    httplib::Client client("127.0.0.1", server.port());
+    for (const char* const text : {"tact_up 1\n", "tact_up 0\n"}) {
+        server.offer(text);
+        const auto answer = client.Get("/metrics");
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->status, 200);
+        EXPECT_EQ(answer->body, text);
+        EXPECT_NE(answer->get_header_value("Content-Type").find("version=0.0.4"), std::string::npos);
+    }
+    EXPECT_EQ(client.Get("/../etc/passwd")->status, 404);
+    EXPECT_THROW(MetricsServer("127.0.0.1", server.port()), StartupError);
+    EXPECT_THROW(MetricsServer("203.0.113.7", 0), StartupError);
+}
+
+TEST(Metrics, AFileIsReplacedWhole) {
+    const ScratchFolder folder;
+    const auto path = folder.path() / "tact.prom";
+    for (const char* const text : {"long text\n", "short\n"}) {
+        write_textfile(path, text);
+        std::ifstream in(path);
+        EXPECT_EQ((std::string{std::istreambuf_iterator<char>(in), {}}), text);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path.string() + ".partial"));
+    EXPECT_THROW(write_textfile(folder.path() / "none" / "tact.prom", "x"), StartupError);
+}
+
+TEST(Metrics, PromtoolTakesThePageAndTheRules) {
+    const std::filesystem::path promtool = find_in_path("promtool");
+    if (promtool.empty()) GTEST_SKIP() << "promtool is not installed (package prometheus)";
+    const ScratchFolder folder;
+    const auto region = a_region();
+    Metrics metrics("lab");
+    fault(*region, RunReason::device_lost);
+    metrics.follow(*region, true);
+    write_textfile(folder.path() / "page", metrics.text(region.get()));
+    const auto runs = [&](const std::string& words) {
+        return std::system(("cd deploy/monitoring && '" + promtool.string() + "' " + words).c_str());
+    };
+    EXPECT_EQ(runs("check metrics < '" + (folder.path() / "page").string() + "'"), 0);
+    EXPECT_EQ(runs("check config prometheus.yml"), 0);
+    EXPECT_EQ(runs("test rules tact_rules_test.yml"), 0);
+}
+
+}  // namespace
+}  // namespace tact::launch
