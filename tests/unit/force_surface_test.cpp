@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -282,6 +283,31 @@ TEST(Surface, OnASmoothSphereTheShadedForceHasTheSpheresDirection) {
             for (int i = 0; i < 2000; ++i) most = std::max(most, between(hand.step(place(i)), hand.place));
             EXPECT_LT(most, vertex + facet * (radius_m + depth_m) / kRoughSphereM);
         }
+    }
+}
+
+// Facets 8.7 degrees apart, four a tenth of a second: the turn by shading has to change as fast as facets do.
+TEST(Surface, OnACoarseSphereTheDirectionHoldsForAFastHandAndTheForceMakesNoSteps) {
+    static const auto coarse = scene(smooth_sphere(10));
+    for (const double radius_m : {0.0, 0.001, 0.003}) {
+        SurfaceSettings settings = plain(radius_m);
+        settings.shading = true;
+        const auto place = [&](int i) {
+            const Vec3 p = slide(4e-3 * i, 0.0);
+            return Vec3((kRoughSphereM + radius_m - 0.0015) * p.normalized());
+        };
+        Hand hand(*coarse, settings, 1.2 * place(0));
+        Vec3 before = hand.lead(place(0));
+        std::vector<double> off;
+        for (int i = 0; i < 3000; ++i) {
+            const Vec3 last = hand.place, force = hand.step(place(i));
+            off.push_back(std::atan2(force.cross(hand.place).norm(), force.dot(hand.place)));
+            ASSERT_LT((force - before).norm(),
+                      2.5 * kStiffness * (hand.place - last).norm() + 2.0 * SurfaceModel::kGlideN + 1e-3);
+            before = force;
+        }
+        std::sort(off.begin(), off.end());
+        EXPECT_LT(off[off.size() * 99 / 100] * 180.0 / std::numbers::pi, 1.5) << radius_m;
     }
 }
 

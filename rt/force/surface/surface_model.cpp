@@ -11,17 +11,10 @@ namespace {
 
 constexpr double kFarM = 1e3;         // no hand is there
 constexpr double kTurnLearns = 0.05;  // of each turn of tend(): half of a tenth of a second
-// Cosines between the normal of a triangle and the interpolated one: shaded wholly from the first (20 degrees),
-// not at all below the second (40 degrees).
-constexpr double kShadedFrom = 0.940, kShadedTo = 0.766;
 
 bool tool_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
     return pose.finite() && pose.p_m.cwiseAbs().maxCoeff() < kFarM && turn > 0.25 && turn < 4.0;
-}
-
-double shaded_share(double cosine) noexcept {
-    return std::clamp((cosine - kShadedTo) / (kShadedFrom - kShadedTo), 0.0, 1.0);
 }
 
 ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s) {
@@ -122,7 +115,7 @@ void SurfaceModel::reset(const ToolState& tool) noexcept {
     asked_ = true;
     fade_.cut();
     contact_ = {};
-    turn_m_.setZero();
+    turn_.reset();
     ++grips_;
     seated_ = tool_is_there(tool.T_world_tool);
     use_full_surface();
@@ -179,29 +172,16 @@ ModelTouch SurfaceModel::touch() const noexcept {
     return t;
 }
 
-// What shading adds to the way from the tool to the proxy, model.
-Vec3 SurfaceModel::shaded_turn_m(const ContactPlane& plane) const noexcept {
-    const SurfaceMesh& mesh = solver_.mesh();
-    Vec3 smooth = mesh.normal_at(mesh.point_of(plane.triangle, solver_.proxy_m()));
-    Vec3 facet = mesh.facet_normal(plane.triangle);
-    if (facet.dot(plane.normal) < 0.0) {  // felt from behind
-        smooth = -smooth;
-        facet = -facet;
-    }
-    const double share = shaded_share(smooth.dot(facet)) * shaded_share(smooth.dot(plane.normal));
-    return plane.weight_m * share * (smooth - plane.normal);
-}
-
-Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept {
+Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m, double gone_m) noexcept {
     Vec3 turn_m = Vec3::Zero();
-    if (settings_.shading) {
-        for (std::uint32_t i = 0; i < contact_.planes; ++i) turn_m += shaded_turn_m(contact_.plane[i]);
+    for (std::uint32_t i = 0; settings_.shading && i < contact_.planes; ++i) {
+        const ContactPlane& plane = contact_.plane[i];
+        turn_m +=
+            shaded_turn_m(solver_.mesh(), plane.triangle, contact_.proxy_m, plane.normal, plane.weight_m);
     }
-    // Other triangles may be touched in the next step: no step in the force there either.
-    const Vec3 change_m = turn_m - turn_m_;
-    const double change = change_m.norm(), most = solver_.settings().glide_m;
-    turn_m_ += (change > most ? most / change : 1.0) * change_m;
-    const Vec3 way_m = meta_.world_per_model * (contact_.proxy_m - goal_model_m + turn_m_);
+    const Vec3 pull_m = contact_.proxy_m - goal_model_m;
+    const Vec3 way_m =
+        meta_.world_per_model * (pull_m + turn_.follow(turn_m, pull_m, gone_m, solver_.settings().glide_m));
     const double depth_m = way_m.norm();
     if (!(depth_m > 0.0)) return Vec3::Zero();
     const Vec3 normal = way_m / depth_m;
@@ -230,7 +210,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             use_full_surface();
             solver_.seat(goal_m);
             seated_ = true;
-            turn_m_.setZero();
+            turn_.reset();
             ++grips_;
         }
         if (seated_) {
@@ -240,6 +220,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
                 fade_.rise();
             choose_surface(goal_m, budget.fidelity);
             const bool hurried = budget.deadline.passed();
+            const double gone_m = (goal_m - solver_.goal_m()).norm();
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
             if (on_time && contact_.state == ContactState::lagging) ++lagging_;
@@ -249,12 +230,12 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             result.load.error = contact_.state == ContactState::settled
                                     ? 2.0 * newton * solver_.settings().margin_m
                                     : 2.0 * std::min(pulled_n, settings_.force_n_max);
-            result.wrench_world = fade_.show({fade_.gain() * felt_n(tool, goal_m), Vec3::Zero()});
+            result.wrench_world = fade_.show({fade_.gain() * felt_n(tool, goal_m, gone_m), Vec3::Zero()});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
                 use_full_surface();
                 solver_.seat(goal_m);
-                turn_m_.setZero();
+                turn_.reset();
                 ++grips_;
                 ++released_;
             }

@@ -35,6 +35,7 @@
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_surface.hpp"
 #include "rt/force/surface/contact.hpp"
+#include "rt/force/surface/shading.hpp"
 
 namespace tact {
 
@@ -102,8 +103,9 @@ public:
 
 private:
     [[nodiscard]] ModelDetail detail() const noexcept TACT_RT;
-    [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m) noexcept TACT_RT;
-    [[nodiscard]] Vec3 shaded_turn_m(const ContactPlane& plane) const noexcept TACT_RT;
+    // gone_m: by the tool since the last step, in the model.
+    [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m,
+                              double gone_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
     void use_full_surface() noexcept TACT_RT;
 
@@ -112,9 +114,9 @@ private:
     SurfaceContact solver_;
     Contact contact_;
     ForceFade fade_;
-    Vec3 turn_m_ = Vec3::Zero();  // by shading, of the way from the tool to the proxy; model
-    bool asked_ = false;          // reset() was called
-    bool seated_ = false;         // the proxy is where a tool was
+    PacedTurn<Vec3> turn_;  // by shading
+    bool asked_ = false;    // reset() was called
+    bool seated_ = false;   // the proxy is where a tool was
     std::uint64_t grips_ = 0;
     std::uint64_t lagging_ = 0, released_ = 0;
 
