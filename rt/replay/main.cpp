@@ -65,6 +65,11 @@ public:
         return there_;
     }
 
+    // What was last stays in the window until it is closed.
+    void hold() {
+        while (there_ && stop_asked == 0) attend(50);
+    }
+
 private:
     void attend(int timeout_ms) {
         const LinkServer::News news = link_.poll(timeout_ms);
@@ -100,6 +105,10 @@ void print_json(const Wishes& w, const Replay& replay) {
 void print_words(const Replay& replay) {
     const ReplayResult& r = replay.result();
     if (!replay.obstacle().empty()) std::printf("not exact: %s\n", replay.obstacle().c_str());
+    const std::uint64_t all = replay.recording().about().cycles;
+    if (r.steps < all)
+        std::printf("stopped after %llu of %llu steps\n", static_cast<unsigned long long>(r.steps),
+                    static_cast<unsigned long long>(all));
     if (!r.first) {
         std::printf("%llu steps, up to %.3f N: every force is the same to the bit\n",
                     static_cast<unsigned long long>(r.steps), r.force_n_most);
@@ -136,6 +145,7 @@ int run(const Wishes& w) {
         }
     }
     if (terminal) std::fprintf(stderr, "\r");
+    if (stage) stage->hold();
     if (w.json)
         print_json(w, replay);
     else
