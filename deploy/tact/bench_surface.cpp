@@ -64,7 +64,7 @@ json bench_surface() {
         for (const auto& [name, tool] :
              {std::pair<std::string, const TouchTool*>{"tool1000", &block}, {"scaler1000", &scaler}})
             count(name,
-                  touch_tool_along(surface, *tool, tool_path(path, *tool), measured(0.0, false), kPasses));
+                  touch_tool_along(surface, *tool, tool_path(path, *tool), measured(0.0, true), kPasses));
     }
     all["jammed_cycles"] = jammed;
     all["unsettled_cycles"] = unsettled;

@@ -1,8 +1,10 @@
 // Tools given as meshes: sampling, section, contact, force and torque.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
@@ -472,6 +474,103 @@ TEST(Tool, AToolThatIsPutIntoTheSurfaceComesToRestOnItAndIsFeltWithoutAStep) {
         EXPECT_EQ(model->contact().points().awake(), model->contact().points().size());
         EXPECT_NEAR(before.force_n.y(), kStiffness * std::max(0.0, 0.005 - y), 0.01) << y;
     }
+}
+
+// A pin that stands on a sphere of 2 000 triangles, whose facets are 8.7 degrees apart, and slides over it.
+struct OnFacets {
+    double off_rad = 0.0;         // 99 % of the steps: the force, from the sphere's normal
+    double beyond_n = 0.0;        // the most that a step changed the force by beyond what the hand did
+    double twist_beyond_n = 0.0;  // the same of torque over the radius of gyration
+};
+const World& pin_on_facets() {
+    static const auto made = world(smooth_sphere(10), box_mesh({5e-5, 0.004, 5e-5}), {.points = 200});
+    return *made;
+}
+Pose on_facets(int step, double depth_m) {
+    const double around = 1.1e-3 * step, up = 0.9 * std::sin(0.61e-3 * step);
+    const Vec3 d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
+    return Pose{(kRoughSphereM + 0.004 - depth_m) * d, Quat::FromTwoVectors(Vec3::UnitY(), d)};
+}
+OnFacets slide_on_facets(bool shading) {
+    constexpr double kDepth = 0.0012;
+    SurfaceSettings settings = plain();
+    settings.shading = shading;
+    Hand hand(pin_on_facets(), settings, on_facets(0, -0.01));
+    Wrench before = hand.lead(on_facets(0, kDepth));
+    const double gyration = kWorldPerModel * hand.model->contact().points().gyration_m();
+    OnFacets felt;
+    std::vector<double> off;
+    for (int i = 0; i < 1500; ++i) {
+        const Pose last = hand.place;
+        const Wrench now = hand.step(on_facets(i, kDepth));
+        const double moved =
+            std::hypot((hand.place.p_m - last.p_m).norm(), gyration * last.q.angularDistance(hand.place.q));
+        const Vec3 out = hand.place.p_m;
+        off.push_back(std::atan2(now.force_n.cross(out).norm(), now.force_n.dot(out)));
+        const double allowed = 2.5 * kStiffness * moved;
+        felt.beyond_n = std::max(felt.beyond_n, (now.force_n - before.force_n).norm() - allowed);
+        felt.twist_beyond_n =
+            std::max(felt.twist_beyond_n, (now.torque_n_m - before.torque_n_m).norm() / gyration - allowed);
+        before = now;
+    }
+    std::sort(off.begin(), off.end());
+    felt.off_rad = off[off.size() * 99 / 100];
+    return felt;
+}
+
+TEST(Tool, ShadingTurnsForceAndTorqueToTheSmoothNormalWithoutSteps) {
+    const OnFacets flat = slide_on_facets(false), shaded = slide_on_facets(true);
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    EXPECT_GT(flat.off_rad, 3.5 * kDegree);
+    EXPECT_LT(shaded.off_rad, 2.0 * kDegree);
+    EXPECT_LT(shaded.beyond_n, 2.0 * SurfaceModel::kGlideN + 1e-3);
+    EXPECT_LT(shaded.twist_beyond_n, 2.0 * SurfaceModel::kGlideN + 1e-3);
+}
+
+// At rest each place pushes along the smooth normal there, as hard as it did, and where it did.
+TEST(Tool, TheShadedTorqueIsThatOfThePushesWhereTheyAre) {
+    const World& w = pin_on_facets();
+    SurfaceSettings settings = plain();
+    settings.shading = true;
+    Hand hand(w, settings, on_facets(0, -0.01));
+    double flat_n = 0.0, torque_n_m = 0.0;
+    for (int i = 0; i < 12; ++i) {
+        (void)hand.lead(on_facets(60 * i, 0.0012));
+        const ToolTouch& touch = hand.model->tool_touch();
+        ASSERT_GT(touch.places, 0U);
+        Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), flat = Vec3::Zero();
+        for (std::uint32_t k = 0; k < touch.places; ++k) {
+            const TouchedPlace& p = touch.place[k];
+            const double newton = kStiffness * kWorldPerModel * p.weight_m;
+            const Vec3 smooth =
+                w.mesh.normal_at(w.mesh.point_of(p.triangle, touch.T_model_proxy.p_m + p.lever_m));
+            force += newton * smooth;
+            torque += kWorldPerModel * p.lever_m.cross(newton * smooth);
+            flat += newton * p.normal;
+        }
+        EXPECT_LT((hand.felt.force_n - force).norm(), 0.01) << i;
+        EXPECT_LT((hand.felt.torque_n_m - torque).norm(), 4e-5) << i;
+        flat_n = std::max(flat_n, (hand.felt.force_n - flat).norm());
+        torque_n_m = std::max(torque_n_m, torque.norm());
+    }
+    EXPECT_GT(flat_n, 0.02);
+    EXPECT_GT(torque_n_m, 1e-4);
+}
+
+TEST(Tool, ShadingLeavesAPlaneAndAnEdgeAsTheyAre) {
+    SurfaceSettings settings = plain();
+    settings.shading = true;
+    Hand hand(box_on_plane(), settings, pose({0.003, 0.02, -0.002}));
+    const Wrench& w = hand.lead(pose({0.013, 0.004, 0.004}));
+    EXPECT_LT((w.force_n - Vec3(0.0, kStiffness * 0.001, 0.0)).norm(), 0.01);
+    EXPECT_LT(w.torque_n_m.norm(), 3e-5);
+    // The blocks' normals at their corners are 45 degrees and more from the faces'.
+    Hand over(bar_on_blocks(), settings, pose({-0.022, 0.01, 0.0})),
+        plainly(bar_on_blocks(), plain(), pose({-0.022, 0.01, 0.0}));
+    const Wrench a = over.lead(pose({-0.022, 0.0, 0.0})), b = plainly.lead(pose({-0.022, 0.0, 0.0}));
+    EXPECT_GT(b.force_n.norm(), 0.02);
+    EXPECT_LT((a.force_n - b.force_n).norm(), 1e-9);
+    EXPECT_LT((a.torque_n_m - b.torque_n_m).norm(), 1e-9);
 }
 
 TEST(Tool, WithoutTimeItGoesNoFartherThanWhatIsKnownToBeFree) {

@@ -63,6 +63,7 @@ public:
     [[nodiscard]] const ToolContactSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] const ToolPoints& points() const noexcept TACT_RT { return points_; }
     [[nodiscard]] const Pose& proxy() const noexcept TACT_RT { return proxy_; }
+    [[nodiscard]] const SurfaceMesh& mesh() const noexcept TACT_RT { return mesh_; }
     [[nodiscard]] const Pose& goal() const noexcept TACT_RT { return goal_; }
     // From a pose to another: (way, radius of gyration times turn).
     [[nodiscard]] Vec6 way_m(const Pose& from, const Pose& to) const noexcept TACT_RT;

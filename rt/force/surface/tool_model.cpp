@@ -70,7 +70,10 @@ void ToolModel::reset(const ToolState& tool) noexcept {
         there && seated_ &&
         settings_.stiffness_n_m * meta_.world_per_model * solver_.way_m(goal(tool), solver_.proxy()).norm() <
             settings_.force_n_max;
-    if (there && !keeps) solver_.seat(goal(tool));
+    if (there && !keeps) {
+        solver_.seat(goal(tool));
+        turn_.reset();
+    }
     seated_ = there;
 }
 
@@ -108,6 +111,19 @@ Pose ToolModel::goal(const ToolState& tool) const noexcept {
     return {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
 }
 
+// What shading adds to the way from the hand to the proxy.
+Vec6 ToolModel::shaded_m() const noexcept {
+    Vec6 sum = Vec6::Zero();
+    for (std::uint32_t i = 0; settings_.shading && i < touch_.places; ++i) {
+        const TouchedPlace& p = touch_.place[i];
+        const Vec3 turn_m = shaded_turn_m(solver_.mesh(), p.triangle, touch_.T_model_proxy.p_m + p.lever_m,
+                                          p.normal, p.weight_m);
+        sum.head<3>() += turn_m;
+        sum.tail<3>() += p.lever_m.cross(turn_m) / solver_.points().gyration_m();
+    }
+    return sum;
+}
+
 Wrench ToolModel::felt(const ToolState& tool, const Vec6& way_m) const noexcept {
     const Vec6 way_world_m = meta_.world_per_model * way_m;
     const double depth_m = way_world_m.norm();
@@ -138,6 +154,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
         if (clutch && fade_.gain() <= 0.0) seated_ = false;
         if (!seated_ && !clutch) {
             solver_.seat(to);
+            turn_.reset();
             seated_ = true;
             ++grips_;
         }
@@ -149,6 +166,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             else
                 fade_.rise();
             const bool hurried = budget.deadline.passed();
+            const double gone_m = solver_.way_m(solver_.goal(), to).norm();
             touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline);
             const bool on_time = !hurried && !touch_.late;
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;
@@ -158,11 +176,13 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             if (touch_.state != ContactState::settled || !on_time)
                 result.load.error =
                     std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));
-            const Wrench w = felt(tool, way_m);
+            const Wrench w =
+                felt(tool, way_m + turn_.follow(shaded_m(), way_m, gone_m, solver_.settings().glide_m));
             result.wrench_world = fade_.show({fade_.gain() * w.force_n, fade_.gain() * w.torque_n_m});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
                 solver_.seat(to);
+                turn_.reset();
                 ++grips_;
                 ++released_;
             }

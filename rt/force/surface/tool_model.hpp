@@ -12,7 +12,8 @@
 //          brings while the surface pokes between the others wait until they are free (tool_points.hpp).
 // Error    of feeling n points: k times their cover, as deep as a surface may poke between them whose slope
 //          against the tool's own stays below 45 degrees. While it glides or lags twice the force instead.
-// Shading  none: facets of the surface are felt by many points.
+// Shading  as surface_model.hpp at each touched place: the turn of its push acts there, so it has its torque. Its pace
+//          is that of (force, torque / g).
 // Seat     after a reset or the clutch the proxy comes from away from the surface to the hand, or to rest on it,
 //          within some 60 steps; then the force fades in. At a reset a proxy that is within the limit is kept.
 // Else     bodies, clutch, frames, thread as surface_model.hpp.
@@ -21,6 +22,7 @@
 #include <memory>
 
 #include "ipc/assets/touch_tool.hpp"
+#include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_contact.hpp"
 
@@ -56,12 +58,14 @@ public:
 
 private:
     [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
+    [[nodiscard]] Vec6 shaded_m() const noexcept TACT_RT;
     [[nodiscard]] Wrench felt(const ToolState& tool, const Vec6& way_m) const noexcept TACT_RT;
 
     SceneMeta meta_;
     SurfaceSettings settings_;
     ToolContact solver_;
     ToolTouch touch_;
+    PacedTurn<Vec6> turn_;  // by shading
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;
