@@ -406,7 +406,7 @@ private:
         else
             view_->draw(camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px)),
                         view_options_, view);
-        drilling_.drawn(*view_);
+        drilling_.drawn(*view_, state_);
         if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
             left_out_ = left_out;
             if (left_out > 0)

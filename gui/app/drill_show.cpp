@@ -7,6 +7,11 @@
 #include <string_view>
 
 namespace tact {
+namespace {
+
+constexpr double kFillS = 12e-3;  // of a picture, for bone that goes into graphics memory
+
+}  // namespace
 
 void DrillShow::use(const std::shared_ptr<const SceneContent>& content, const Controller& controller,
                     SceneView& view, std::uint32_t particles) {
@@ -59,6 +64,7 @@ std::uint32_t DrillShow::rays_most(const Controller& controller, const ViewFrame
 void DrillShow::prepare(const Controller& controller, SceneView& view, bool sharp, ViewFrame& frame) {
     if (!site_) return;
     frame.bone_rays = rays_most(controller, frame, sharp);
+    if (!sharp) frame.bone_fill_s = kFillS;
     if (BoneView* const bone = view.bone())
         for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
     if (controller.attached() && controller.have_drill)
@@ -67,7 +73,8 @@ void DrillShow::prepare(const Controller& controller, SceneView& view, bool shar
     frame.time_particles = software_;
 }
 
-void DrillShow::drawn(const SceneView& view) {
+void DrillShow::drawn(SceneView& view, DashboardState& state) {
+    state.scene.bone_shown = view.bone() != nullptr ? view.bone()->filled() : 1.0F;
     if (site_ && software_) particle_pace_.took(site_->particles().all().size(), view.particles_draw_s());
 }
 

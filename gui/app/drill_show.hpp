@@ -3,6 +3,7 @@
 //
 // Frame     use() when a scene came, meet() when a controller came, leave() when it went; each frame follow(), move(),
 //           prepare() before the view is drawn, drawn() after it and ended() at the end
+// Start     a large volume goes into graphics memory over many pictures; a share of it is seen meanwhile, and said
 // Levels    "gui.volume" and "gui.particles" stay as the controller last told. Where the processor draws, no more than fit
 //           a picture by the clock; of particles not where a person fixed the level.
 // Thread    frame thread
@@ -37,7 +38,7 @@ public:
     void move(const Controller& controller, double frame_s, const Vec3& eye_model_m);
     // sharp: all rays, whatever they cost.
     void prepare(const Controller& controller, SceneView& view, bool sharp, ViewFrame& frame);
-    void drawn(const SceneView& view);
+    void drawn(SceneView& view, DashboardState& state);
     void ended(SceneView& view, double work_s);
     void add_to(LoadTopic& load, SceneView& view) const;
     // Empty path, or a scene without bone: no report. Throws StartupError.

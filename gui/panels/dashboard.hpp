@@ -81,6 +81,7 @@ struct SceneFacts {
     std::string warning;                                             // the controller runs another scene, ...
     bool surface = false;                                            // to touch: no map, no bodies
     bool bone = false;                                               // to drill: likewise
+    float bone_shown = 1.0F;                                         // share of it that is in graphics memory
     [[nodiscard]] bool placed() const { return !surface && !bone; }  // there are bodies to place and to fit
 };
 

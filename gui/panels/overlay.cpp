@@ -82,7 +82,7 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
             pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText, text);
             y += pen.theme.px(18.0F);
         };
-        if (state.toggles.force && state.attached && !state.scene.bone)
+        if (state.toggles.force && state.attached)
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
         if (state.second_hand)
@@ -94,6 +94,8 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
     // Of bone, only what changed is seen through again.
     const bool still = state.scene.bone && state.load.vertices_drawn <= 1;
     std::string fps = format("%.0f fps   ", state.load.fps);
+    if (state.scene.bone && state.scene.bone_shown < 1.0F)
+        fps += format("loading bone, %.0f %%   ", 100.0 * static_cast<double>(state.scene.bone_shown));
     fps += still ? std::string("sharp")
                  : format("%s %s", grouped(state.load.vertices_drawn).c_str(),
                           state.scene.bone ? "rays" : "vertices");

@@ -35,6 +35,7 @@ public:
     BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now);
 
     [[nodiscard]] const BoneBricks& bricks() const { return now_.bricks; }
+    [[nodiscard]] bool labelled() const { return !labels_.label.empty(); }
     [[nodiscard]] std::uint8_t label(std::size_t voxel) const {
         return labels_.label.empty() ? std::uint8_t{0} : labels_.label[voxel];
     }

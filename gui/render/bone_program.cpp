@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {
@@ -26,6 +27,7 @@ constexpr char kRayFragment[] = R"(
 uniform sampler3D u_bone;
 uniform sampler3D u_free;
 uniform sampler3D u_label;
+uniform vec3 u_label_size;
 uniform sampler2D u_palette;
 uniform vec3 u_size;
 uniform vec3 u_cells;
@@ -38,7 +40,7 @@ out vec4 colour;
 uniform float u_surface;
 float bone(vec3 p) { return texture(u_bone, (p + 0.5) / u_size).r; }
 float label_at(vec3 p) {
-    return floor(texelFetch(u_label, ivec3(clamp(floor(p + 0.5), vec3(0.0), u_size - 1.0)), 0).r * 255.0 + 0.5);
+    return floor(texelFetch(u_label, ivec3(clamp(floor(p + 0.5), vec3(0.0), u_label_size - 1.0)), 0).r * 255.0 + 0.5);
 }
 void main() {
     colour = vec4(0.0);
@@ -163,49 +165,50 @@ void volume_texture(GLuint name, GLint filter, GLenum wrap, const std::array<std
                  static_cast<GLsizei>(size[2]), 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
 }
 
-// Slab by slab, so that no second copy of the volume is needed.
+// The bricks at one height, put together, into a texture of the volume's size.
 template <class Value>
-void fill_volume(const BoneBricks& bricks, const Value& value) {
+void fill_slab(const BoneBricks& bricks, std::uint32_t bz, std::vector<std::uint8_t>& slab,
+               const Value& value) {
     const auto n = bricks.bricks();
     const std::size_t wide = bricks.size[0], high = bricks.size[1];
-    std::vector<std::uint8_t> slab(wide * high * kEdge);
+    const std::uint32_t deep = std::min<std::uint32_t>(kEdge, bricks.size[2] - bz * kEdge);
+    slab.resize(wide * high * kEdge);
     std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
-    for (std::uint32_t bz = 0; bz < n[2]; ++bz) {
-        const std::uint32_t deep = std::min<std::uint32_t>(kEdge, bricks.size[2] - bz * kEdge);
-        for (std::uint32_t by = 0; by < n[1]; ++by)
-            for (std::uint32_t bx = 0; bx < n[0]; ++bx) {
-                value((bz * n[1] + by) * n[0] + bx, voxels);
-                const std::size_t row = std::min<std::size_t>(kEdge, wide - std::size_t{bx} * kEdge);
-                for (std::uint32_t z = 0; z < deep; ++z)
-                    for (std::uint32_t y = 0; y < kEdge && by * kEdge + y < high; ++y)
-                        std::copy_n(
-                            voxels.data() + (z * kEdge + y) * kEdge, row,
-                            slab.data() + (z * high + by * kEdge + y) * wide + std::size_t{bx} * kEdge);
-            }
-        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, static_cast<GLint>(bz * kEdge), static_cast<GLsizei>(wide),
-                        static_cast<GLsizei>(high), static_cast<GLsizei>(deep), GL_RED, GL_UNSIGNED_BYTE,
-                        slab.data());
-    }
+    for (std::uint32_t by = 0; by < n[1]; ++by)
+        for (std::uint32_t bx = 0; bx < n[0]; ++bx) {
+            value((bz * n[1] + by) * n[0] + bx, voxels);
+            const std::size_t row = std::min<std::size_t>(kEdge, wide - std::size_t{bx} * kEdge);
+            for (std::uint32_t z = 0; z < deep; ++z)
+                for (std::uint32_t y = 0; y < kEdge && by * kEdge + y < high; ++y)
+                    std::copy_n(voxels.data() + (z * kEdge + y) * kEdge, row,
+                                slab.data() + (z * high + by * kEdge + y) * wide + std::size_t{bx} * kEdge);
+        }
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, static_cast<GLint>(bz * kEdge), static_cast<GLsizei>(wide),
+                    static_cast<GLsizei>(high), static_cast<GLsizei>(deep), GL_RED, GL_UNSIGNED_BYTE,
+                    slab.data());
 }
 
 }  // namespace
 
-BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure> structures) {
+BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure> structures)
+    : unsent_(field.bricks().bricks()[2]) {
     while (glGetError() != GL_NO_ERROR) {
     }
     const BoneBricks& bricks = field.bricks();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     volume_texture(solid_.get(), GL_LINEAR, GL_CLAMP_TO_BORDER, bricks.size);
-    fill_volume(bricks, [&](std::uint32_t b, std::span<std::uint8_t, BoneBricks::kVoxels> out) {
-        field.solids(b, out);
-    });
-    // Without structures one voxel says so.
-    volume_texture(label_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, bricks.size);
-    fill_volume(bricks, [&](std::uint32_t b, std::span<std::uint8_t, BoneBricks::kVoxels> out) {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = field.label(std::size_t{b} * out.size() + i);
-    });
-    volume_texture(cells_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, field.cells());
-    send_cells(field);
+    label_size_ = field.labelled() ? bricks.size : std::array<std::uint32_t, 3>{1, 1, 1};
+    volume_texture(label_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, label_size_);
+    if (!field.labelled()) {  // one voxel says so
+        const std::uint8_t none = 0;
+        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_RED, GL_UNSIGNED_BYTE, &none);
+    }
+    const auto& cells = field.cells();
+    volume_texture(cells_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, cells);
+    // Empty, and left one by one: nothing that was sent is leapt over.
+    const std::vector<std::uint8_t> empty(std::size_t{cells[0]} * cells[1] * cells[2], std::uint8_t{1});
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, static_cast<GLsizei>(cells[0]), static_cast<GLsizei>(cells[1]),
+                    static_cast<GLsizei>(cells[2]), GL_RED, GL_UNSIGNED_BYTE, empty.data());
     std::vector<std::uint8_t> rgba(std::size_t{4} * 256, 255);
     for (std::size_t i = 0; i < std::min<std::size_t>(structures.size(), 255); ++i)
         std::copy(structures[i].rgba.begin(), structures[i].rgba.end(), rgba.begin() + 4 * (i + 1));
@@ -222,10 +225,40 @@ BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure
                            "bake a part of it with --crop, or larger voxels with --voxel-mm");
 }
 
+void BoneTextures::fill(const BoneField& field, double seconds) {
+    const Instant begin = Monotonic::now();
+    const BoneBricks& bricks = field.bricks();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    std::vector<std::uint8_t> slab;
+    while (unsent_ > 0) {
+        const std::uint32_t bz = --unsent_;
+        glBindTexture(GL_TEXTURE_3D, solid_.get());
+        fill_slab(bricks, bz, slab, [&](std::uint32_t b, std::span<std::uint8_t, BoneBricks::kVoxels> out) {
+            field.solids(b, out);
+        });
+        if (field.labelled()) {
+            glBindTexture(GL_TEXTURE_3D, label_.get());
+            fill_slab(bricks, bz, slab,
+                      [&](std::uint32_t b, std::span<std::uint8_t, BoneBricks::kVoxels> out) {
+                          for (std::size_t i = 0; i < out.size(); ++i)
+                              out[i] = field.label(std::size_t{b} * out.size() + i);
+                      });
+        }
+        send_cells(field, bz, 1);
+        if (to_s(Monotonic::now() - begin) >= seconds) break;
+    }
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
+float BoneTextures::filled(const BoneField& field) const {
+    return 1.0F - static_cast<float>(unsent_) / static_cast<float>(field.bricks().bricks()[2]);
+}
+
 void BoneTextures::send(const BoneField& field, std::uint32_t brick) {
     const BoneBricks& bricks = field.bricks();
     const auto n = bricks.bricks();
     const std::array<std::uint32_t, 3> at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
+    if (at[2] < unsent_) return;  // it will be sent as it is then
     std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
     field.solids(brick, voxels);
     std::array<GLint, 3> first{};
@@ -258,11 +291,17 @@ void BoneTextures::send(const BoneField& field, std::uint32_t brick) {
 }
 
 void BoneTextures::send_cells(const BoneField& field) {
+    send_cells(field, unsent_, field.bricks().bricks()[2] - unsent_);
+}
+
+void BoneTextures::send_cells(const BoneField& field, std::uint32_t first, std::uint32_t count) {
+    constexpr std::uint32_t kCells = BoneBricks::kEdge / BoneField::kCell;
+    const auto& n = field.cells();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glBindTexture(GL_TEXTURE_3D, cells_.get());
-    const auto& n = field.cells();
-    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, static_cast<GLsizei>(n[0]), static_cast<GLsizei>(n[1]),
-                    static_cast<GLsizei>(n[2]), GL_RED, GL_UNSIGNED_BYTE, field.free_cells().data());
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, static_cast<GLint>(first * kCells), static_cast<GLsizei>(n[0]),
+                    static_cast<GLsizei>(n[1]), static_cast<GLsizei>(count * kCells), GL_RED,
+                    GL_UNSIGNED_BYTE, field.free_cells().data() + std::size_t{first} * kCells * n[0] * n[1]);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
@@ -281,6 +320,7 @@ BoneProgram::BoneProgram()
     : program_("bone", shader(kRayVertex).c_str(), shader(kRayFragment).c_str()),
       view_(program_),
       size_(program_.uniform("u_size")),
+      label_size_(program_.uniform("u_label_size")),
       cells_(program_.uniform("u_cells")),
       origin_(program_.uniform("u_origin")),
       from_eye_(program_.uniform("u_from_eye")),
@@ -308,6 +348,9 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
     const auto& size = field.bricks().size;
     const auto& cells = field.cells();
     glUniform3f(size_, static_cast<float>(size[0]), static_cast<float>(size[1]), static_cast<float>(size[2]));
+    const auto& labels = textures.label_size();
+    glUniform3f(label_size_, static_cast<float>(labels[0]), static_cast<float>(labels[1]),
+                static_cast<float>(labels[2]));
     glUniform3f(cells_, static_cast<float>(cells[0]), static_cast<float>(cells[1]),
                 static_cast<float>(cells[2]));
     glUniform3fv(origin_, 1, origin.data());

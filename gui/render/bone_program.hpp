@@ -13,17 +13,29 @@
 
 namespace tact {
 
-// The volume in graphics memory.
+// The volume in graphics memory. It is empty at first and filled from its front, the largest z, slab by slab; what was
+// not sent yet is not seen.
 class BoneTextures {
 public:
     // Throws StartupError where the graphics driver has no room for it.
     BoneTextures(const BoneField& field, std::span<const BoneStructure> structures);
+    // Goes on for so long, and for one slab at least.
+    void fill(const BoneField& field, double seconds);
+    [[nodiscard]] bool full() const { return unsent_ == 0; }
+    [[nodiscard]] float filled(const BoneField& field) const;  // share
+    // Of what was sent already:
     void send(const BoneField& field, std::uint32_t brick);  // its voxels and cells
     void send_cells(const BoneField& field);                 // all of them
     void bind();
+    [[nodiscard]] const std::array<std::uint32_t, 3>& label_size() const { return label_size_; }
 
 private:
+    void send_cells(const BoneField& field, std::uint32_t first,
+                    std::uint32_t count);  // of these layers of bricks
+
     GlTexture solid_, cells_, label_, palette_;
+    std::array<std::uint32_t, 3> label_size_{};  // 1 x 1 x 1 where nothing is labelled
+    std::uint32_t unsent_;                       // layers of bricks, from z = 0 on
 };
 
 class BoneProgram {
@@ -36,7 +48,7 @@ public:
 private:
     GlProgram program_;
     ViewUniforms view_;
-    GLint size_, cells_, origin_, from_eye_, tan_, step_, lamp_;
+    GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_;
 };
 
 // Draws a part of an image with its depths over what is there, where they are nearer.

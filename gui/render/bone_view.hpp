@@ -24,6 +24,7 @@ struct BoneFrame {
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport
     std::uint32_t rays_most = 0;
     std::size_t eye = 0;  // which of two: each keeps a picture
+    double fill_s = 1e9;  // at most, for what is not in graphics memory yet
 };
 
 class BoneView {
@@ -40,8 +41,10 @@ public:
     // Of a ball about the scene's centre that holds the bone as it is, ångström.
     [[nodiscard]] float reach_a() const;
     [[nodiscard]] bool sharp() const {  // nothing is left to draw
-        return eye_[0].tiles.all_good() && eye_[1].tiles.all_good();
+        return textures_.full() && eye_[0].tiles.all_good() && eye_[1].tiles.all_good();
     }
+    // Share of the bone that can be seen yet.
+    [[nodiscard]] float filled() const { return textures_.filled(field_); }
 
 private:
     struct Picture {
@@ -58,6 +61,7 @@ private:
         std::vector<std::uint32_t> changed;  // bricks, since its last draw()
         float coarse_share_x = 0.0F,
               coarse_share_y = 0.0F;  // of the coarse picture that is in use; 0: none yet
+        float filled = -1.0F;         // of the bone, at its last draw()
         std::uint32_t rays = 0;
         [[nodiscard]] std::uint32_t pixels() const {
             return static_cast<std::uint32_t>(sharp.width_px) * static_cast<std::uint32_t>(sharp.height_px);

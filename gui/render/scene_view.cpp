@@ -169,13 +169,16 @@ void SceneView::draw_codebook(const Pass& pass) {
 }
 
 void SceneView::draw_force(const Pass& pass) {
-    if (pass.frame.active >= pass.frame.bodies.size()) return;
-    const Pose& body = pass.frame.bodies[pass.frame.active].T_model_body;
-    const Eigen::Vector3f from = ((body.p_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    const ViewFrame& f = pass.frame;
+    if (f.active >= f.bodies.size() && f.drill_tools.empty()) return;
+    const Vec3& held_m =
+        f.drill_tools.empty() ? f.bodies[f.active].T_model_body.p_m : f.drill_tools.front().T_model_tool.p_m;
+    const Eigen::Vector3f from = ((held_m - content_->centre_model_m) / kAngstromM).cast<float>();
     Eigen::Vector3f along = pass.frame.force_world_n.cast<float>() * arrow_a_per_n();
     const float most = 3.0F * radius_a();
     if (along.norm() > most) along *= most / along.norm();
-    const TubeMesh mesh = build_arrow(from, along, 0.02F * radius_a(), kForceColour);
+    const TubeMesh mesh =
+        build_arrow(from, along, (f.drill_tools.empty() ? 0.02F : 0.012F) * radius_a(), kForceColour);
     if (mesh.index.empty()) return;
     arrow_.fill(mesh, GL_STREAM_DRAW);
     programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
@@ -194,7 +197,7 @@ void SceneView::draw_bone(const Pass& pass) {
     if (!bone_) return;
     const ViewFrame& f = pass.frame;
     bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
-                 f.bone_rays, f.eye});
+                 f.bone_rays, f.eye, f.bone_fill_s});
 }
 
 void SceneView::draw_drill_tools(const Pass& pass) {

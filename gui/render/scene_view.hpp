@@ -46,10 +46,11 @@ struct ViewFrame {
     std::optional<DrawnTouch> touch;
     std::optional<Pose> T_model_tool;  // of the tool that touches a surface
     const Particles* particles = nullptr;
-    bool time_particles = false;  // waits for the renderer, see particles_draw_s()
-    std::uint32_t bone_rays = 0;  // through the bone, at most
-    std::size_t eye = 0;          // which of two
-    std::span<const DrawnDrillTool> drill_tools;
+    bool time_particles = false;                  // waits for the renderer, see particles_draw_s()
+    std::uint32_t bone_rays = 0;                  // through the bone, at most
+    double bone_fill_s = 1e9;                     // at most, for bone that is not in graphics memory yet
+    std::size_t eye = 0;                          // which of two
+    std::span<const DrawnDrillTool> drill_tools;  // the force is felt at the first one
 };
 
 class SceneView {

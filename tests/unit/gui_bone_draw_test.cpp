@@ -210,6 +210,34 @@ TEST_F(BoneDraw, ASoftStructureIsSeenInItsColourOnceTheBoneOverItIsGone) {
     EXPECT_LT(depth_a(kWidth / 2, kHeight / 2), 0.0);
 }
 
+TEST_F(BoneDraw, ALargeVolumeComesFromItsFrontPictureByPictureAndIsTheSameAtTheEnd) {
+    BoneView at_once(*content_, now_), slowly(*content_, now_);
+    draw(at_once);
+    EXPECT_EQ(at_once.filled(), 1.0F);
+    const Image whole = read_pixels(kWidth, kHeight);
+    const auto slabs = block_->bricks.bricks()[2];
+    BoneFrame frame_of_no_time = frame(kAllRays);
+    frame_of_no_time.fill_s = 0.0;
+    std::size_t seen = 0;
+    for (std::uint32_t i = 1; i <= slabs; ++i) {
+        EXPECT_FALSE(slowly.sharp());
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        slowly.draw(frame_of_no_time);
+        EXPECT_FLOAT_EQ(slowly.filled(), static_cast<float>(i) / static_cast<float>(slabs));
+        const std::size_t now = covered(read_pixels(kWidth, kHeight));
+        EXPECT_GE(now + now / 50, seen);
+        seen = now;
+        if (i == slabs / 2) {
+            EXPECT_GT(seen, 100U);
+        }
+        slowly.changed(0);  // is not there yet: nothing of it is sent before its turn
+    }
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    slowly.draw(frame_of_no_time);
+    EXPECT_TRUE(slowly.sharp());
+    EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, whole.rgb);
+}
+
 TEST_F(BoneDraw, TheFrameBufferThatWasBoundIsBoundAgain) {
     BoneView view(*content_, now_);
     GLint before = 0, after = 0;
