@@ -4,13 +4,17 @@
 
 namespace tact {
 
-BoneField::BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now)
+BoneField::BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now,
+                     std::span<const std::uint8_t> free_cells)
     : baked_(baked), labels_(labels), now_(now) {
     const auto n = now.bricks.bricks();
     constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
     for (std::size_t i = 0; i < 3; ++i) cells_[i] = n[i] * kCellsOfBrick;
     free_.resize(std::size_t{cells_[0]} * cells_[1] * cells_[2]);
-    measure();
+    if (free_cells.size() == free_.size())
+        std::copy(free_cells.begin(), free_cells.end(), free_.begin());
+    else
+        measure();
 }
 
 std::uint8_t BoneField::solid(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {

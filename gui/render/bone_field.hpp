@@ -31,8 +31,10 @@ public:
     static constexpr std::uint32_t kCell = 4;
     static constexpr std::uint8_t kSurface = 77;
 
-    // All must outlive it; `now` changes brick by brick, told by changed().
-    BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now);
+    // All must outlive it; `now` changes brick by brick, told by changed(). free_cells: of one made before for the same
+    // `now`, as measuring a large volume takes a good part of a second; of another size, or none: they are measured.
+    BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now,
+              std::span<const std::uint8_t> free_cells = {});
 
     [[nodiscard]] const BoneBricks& bricks() const { return now_.bricks; }
     [[nodiscard]] bool labelled() const { return !labels_.label.empty(); }

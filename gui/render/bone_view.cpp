@@ -34,7 +34,7 @@ std::array<float, 12> quad(const BoneFrame& of, const PixelBox& b) {
 }  // namespace
 
 BoneView::BoneView(const SceneContent& content, const BoneVolumeView& now)
-    : field_(content.bone->volume, content.bone->labels, now),
+    : field_(content.bone->volume, content.bone->labels, now, content.bone->free_cells),
       textures_(field_, content.bone->labels.structure),
       scene_from_voxels_(Eigen::Matrix4f::Identity()) {
     const BoneBricks& b = now.bricks;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "gui/render/bone_field.hpp"
+
 namespace tact {
 namespace {
 
@@ -86,6 +88,9 @@ std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path
         std::vector<DistanceField> distances = read_distance_fields(file, labels.structure.size());
         content->bone.reset(
             new SceneBoneContent{std::move(file), *bone, std::move(labels), std::move(distances)});
+        SceneBoneContent& b = *content->bone;
+        const BoneField field(b.volume, b.labels, b.volume);
+        b.free_cells.assign(field.free_cells().begin(), field.free_cells().end());
         return content;
     }
     if (content->meta.kind == SceneKind::surface && file.count({'F', 'R', 'S', 'T'}) > 0) {

@@ -35,8 +35,9 @@ struct SurfaceDetail {
 struct SceneBoneContent {
     SceneFile file;
     BoneVolumeView volume;
-    BoneLabelsView labels;                 // none: no structures
-    std::vector<DistanceField> distances;  // to the critical ones
+    BoneLabelsView labels;                   // none: no structures
+    std::vector<DistanceField> distances;    // to the critical ones
+    std::vector<std::uint8_t> free_cells{};  // as baked (BoneField); none: measured when it is shown
 };
 
 struct SceneContent {
