@@ -22,12 +22,22 @@ struct DrillCase {
     const char* key;
     double radius_m, voxel_m;
     std::array<std::uint32_t, 3> voxels;
+    bool finest = false;  // else the default level
+    BurrShape shape = BurrShape::sphere;
 };
-constexpr DrillCase kDrillCases[] = {{"r1_h0.3", 1e-3, 3e-4, {256, 128, 128}},
-                                     {"r3_h0.3", 3e-3, 3e-4, {256, 128, 128}},
-                                     {"r5_h0.3", 5e-3, 3e-4, {256, 128, 128}},
-                                     {"r20_h0.3", 20e-3, 3e-4, {256, 256, 256}},
-                                     {"r3_h0.1", 3e-3, 1e-4, {512, 512, 512}}};
+constexpr DrillCase kDrillCases[] = {
+    {"r1_h0.3", 1e-3, 3e-4, {256, 128, 128}},
+    {"r3_h0.3", 3e-3, 3e-4, {256, 128, 128}},
+    {"r5_h0.3", 5e-3, 3e-4, {256, 128, 128}},
+    {"r20_h0.3", 20e-3, 3e-4, {256, 256, 256}},
+    {"r3_h0.1", 3e-3, 1e-4, {512, 512, 512}},
+    {"r3_h0.3_finest", 3e-3, 3e-4, {256, 128, 128}, true},
+    {"r20_h0.3_finest", 20e-3, 3e-4, {256, 256, 256}, true},
+    {"r3_h0.1_finest", 3e-3, 1e-4, {512, 512, 512}, true},
+    {"r3_h0.3_cylinder", 3e-3, 3e-4, {256, 128, 128}, false, BurrShape::cylinder},
+    {"r3_h0.3_cone", 3e-3, 3e-4, {256, 128, 128}, false, BurrShape::cone},
+    {"r3_h0.3_cylinder_finest", 3e-3, 3e-4, {256, 128, 128}, true, BurrShape::cylinder},
+    {"r3_h0.3_cone_finest", 3e-3, 3e-4, {256, 128, 128}, true, BurrShape::cone}};
 
 struct ForceError {
     double sum = 0.0, most = 0.0;
@@ -90,7 +100,7 @@ double eroded_levels(const BoneSample& bone, const Vec3& from_m, const Vec3& to_
     return sum;
 }
 
-double removed_volume_error_max() {
+void add_removed_volume_errors(json& all) {
     double most = 0.0;
     const double radius_m = 2e-3, length_m = 10e-3;
     for (const double speed_m_s : {0.005, 0.02, 0.08, 0.2}) {
@@ -113,10 +123,15 @@ double removed_volume_error_max() {
             for (const DrillStep& s :
                  drill_along(fresh, path, {.radius_m = radius_m, .step_s = 1.0 / rate_hz}))
                 removed += s.removed_levels;
-            most = std::max(most, std::abs(static_cast<double>(removed) / truth - 1.0));
+            const double error = static_cast<double>(removed) / truth - 1.0;
+            char key[64];
+            std::snprintf(key, sizeof key, "removed_volume_error_%.0f_hz_%.0f_mm_s", rate_hz,
+                          1e3 * speed_m_s);
+            all[key] = error;
+            most = std::max(most, std::abs(error));
         }
     }
-    return most;
+    all["removed_volume_error_max"] = most;
 }
 
 }  // namespace
@@ -127,7 +142,11 @@ json bench_drilling() {
     for (const DrillCase& c : kDrillCases) {
         BoneSample bone = bone_block(c.voxels, c.voxel_m);
         const std::vector<Vec3> path = drill_stroke_m(bone, c.radius_m, kDrillSteps);
-        const auto steps = drill_along(bone, path, {.radius_m = c.radius_m, .passes = kDrillPasses});
+        const auto steps = drill_along(bone, path,
+                                       {.fidelity = c.finest ? 1.0F : default_fidelity(),
+                                        .radius_m = c.radius_m,
+                                        .shape = c.shape,
+                                        .passes = kDrillPasses});
         std::uint64_t removed = 0;
         for (const DrillStep& s : steps) removed += s.removed_levels;
         const std::string key = c.key;
@@ -135,12 +154,13 @@ json bench_drilling() {
         all["cycle_us_p99_" + key] = percentile_us(steps, 0.99);
         all["cycle_us_max_" + key] = percentile_us(steps, 1.0);
         all["removed_mm3_" + key] = static_cast<double>(removed) / 255.0 * std::pow(1e3 * c.voxel_m, 3);
-        if (c.radius_m < 10e-3) add_force_errors(bone, path, c.radius_m, error);
+        if (c.radius_m < 10e-3 && c.shape == BurrShape::sphere && !c.finest)
+            add_force_errors(bone, path, c.radius_m, error);
     }
     all["force_error_mean"] = error.count > 0 ? error.sum / error.count : 0.0;
     all["force_error_max"] = error.most;
     all["force_error_places"] = error.count;
-    all["removed_volume_error_max"] = removed_volume_error_max();
+    add_removed_volume_errors(all);
     return all;
 }
 

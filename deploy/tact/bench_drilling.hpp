@@ -1,10 +1,11 @@
 // What drilling costs on this machine, and how right it is: for `tact bench drilling`.
 //
 // Work     strokes through a block of bone (drill_run.hpp), 4000 steps, shell and air cells; force and erosion together
-// Keys     cycle_us_p50/p99/max_rR_hH: burr of R mm, voxels of H mm (256 x 128 x 128; 256^3 for R = 20; 512^3 at 0.1 mm)
+// Keys     cycle_us_p50/p99/max_rR_hH: burr of R mm, voxels of H mm (256 x 128 x 128; 256^3 for R = 20; 512^3 at 0.1 mm);
+//          _finest: at the finest level instead of the default; _cylinder, _cone: heads of 8 mm
 //          force_error_mean/max: of the elastic force at the default level against voxel by voxel, over the force
 //          removed_volume_error_max: removed mass against the integral of equation 12, over servo rates of 500
-//          Hz to 4 kHz and strokes of 5 to 200 mm/s
+//          Hz to 4 kHz and strokes of 5 to 200 mm/s; removed_volume_error_N_hz_V_mm_s: each, with its sign
 // Memory   some 400 MB for the largest
 #pragma once
 

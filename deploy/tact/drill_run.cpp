@@ -131,7 +131,10 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
     const std::vector<std::uint8_t> fresh = way.passes > 1 ? bone.density : std::vector<std::uint8_t>{};
     std::vector<DrillStep> steps(path_m.size());
     DrillSettings settings;
+    settings.tool.shape = way.shape;
     settings.tool.radius_m = way.radius_m;
+    settings.tool.length_m = way.length_m;
+    settings.tool.tip_radius_m = way.tip_radius_m;
     settings.tool.shaft_radius_m = 0.0;
     settings.force_n_max = 100.0;
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());

@@ -47,6 +47,8 @@ struct DrillStep {
 struct DrillWay {
     float fidelity = default_fidelity();
     double radius_m = 3e-3;
+    BurrShape shape = BurrShape::sphere;
+    double length_m = 8e-3, tip_radius_m = 1e-3;  // of a cylinder's or cone's head; of a cone
     double step_s = kDrillStepS;
     double burr_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     int passes = 1;
