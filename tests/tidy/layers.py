@@ -40,7 +40,7 @@ WRAPPED = [
     (r"libusb", ["hal/phantom", "hal/falcon"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
-    (r"gdcm", ["prep/volume/dicom_files"]),
+    (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
     (r"png\.h|pngconf", ["gui", "deploy/tact/plot_canvas", "prep/volume/png_stack", "tests"]),
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),

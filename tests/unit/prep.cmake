@@ -25,3 +25,6 @@ set_tests_properties(save_pairs_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETU
 tact_test(unit/prep_volume_test.cpp USES prep_volume prep_synthetic assets)
 find_package(PNG REQUIRED)
 tact_test(unit/prep_scan_test.cpp USES prep_volume SYSTEM PNG::PNG ZLIB::ZLIB)
+tact_test(unit/prep_dicom_packed_test.cpp USES prep_volume base)
+target_link_libraries(prep_dicom_packed_test PRIVATE ${TACT_GDCM_MSFF} ${TACT_GDCM_DSED} ${TACT_GDCM_Common})
+target_include_directories(prep_dicom_packed_test SYSTEM PRIVATE ${TACT_GDCM_INCLUDE})

@@ -1,0 +1,102 @@
+// Packed DICOM as scanners and archives send it: the same bone out of JPEG, JPEG-LS and run lengths that lose nothing.
+// Not JPEG 2000: GDCM 3.0's encoder crashes on pictures as small as these.
+#include <gdcmImageChangeTransferSyntax.h>
+#include <gdcmImageReader.h>
+#include <gdcmImageWriter.h>
+#include <gdcmTrace.h>
+#include <gtest/gtest.h>
+
+#include "ipc/base/error.hpp"
+#include "prep/volume/import_bone.hpp"
+#include "tests/support/says.hpp"
+#include "tests/unit/prep_scan_samples.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+using gdcm::TransferSyntax;
+
+// GDCM's own encoder, from a plain file. False: it cannot.
+bool pack(const fs::path& from, const fs::path& to, TransferSyntax::TSType syntax) {
+    gdcm::Trace::WarningOff();
+    gdcm::Trace::ErrorOff();
+    gdcm::ImageReader reader;
+    reader.SetFileName(from.c_str());
+    if (!reader.Read()) return false;
+    gdcm::ImageChangeTransferSyntax change;
+    change.SetTransferSyntax(TransferSyntax(syntax));
+    change.SetInput(reader.GetImage());
+    if (!change.Change()) return false;
+    gdcm::ImageWriter writer;
+    writer.SetFileName(to.c_str());
+    writer.SetFile(reader.GetFile());
+    writer.SetImage(change.GetOutput());
+    return writer.Write();
+}
+
+class PackedDicom : public testing::TestWithParam<TransferSyntax::TSType> {
+protected:
+    void SetUp() override {
+        for (int u = 0; u < sample::kUp; ++u) {
+            sample::DicomSample slice = sample::bone_slice(u);
+            for (std::uint16_t& p : slice.pixels) p &= 0x0FFF;  // no overlay beside what is packed
+            plain_.write("s", sample::dicom_bytes(slice));
+            std::string name = "s";
+            name += std::to_string(u);
+            ASSERT_TRUE(pack(plain_.path / "s", packed_.path / (name + ".dcm"), GetParam())) << u;
+        }
+    }
+    [[nodiscard]] std::string refusal() const {
+        BoneImport o;
+        o.scan = packed_.path;
+        try {
+            (void)import_bone(o);
+        } catch (const StartupError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    sample::ScanFolder plain_, packed_;
+};
+
+TEST_P(PackedDicom, IsTheSameBone) {
+    BoneImport o;
+    o.scan = packed_.path;
+    const BoneData bone = import_bone(o).bone;
+    ASSERT_EQ(bone.bricks.size, (std::array<std::uint32_t, 3>{sample::kLeft, sample::kUp, sample::kBack}));
+    for (int l = 0; l < sample::kLeft; ++l)
+        for (int b = 0; b < sample::kBack; ++b)
+            for (int u = 0; u < sample::kUp; ++u)
+                ASSERT_EQ(bone.density[bone.bricks.voxel(static_cast<std::uint32_t>(l),
+                                                         static_cast<std::uint32_t>(u),
+                                                         static_cast<std::uint32_t>(sample::kBack - 1 - b))],
+                          sample::bone_density(l, b, u))
+                    << l << ' ' << b << ' ' << u;
+}
+
+TEST_P(PackedDicom, ASliceThatIsCutShortIsNamed) {
+    const fs::path cut = packed_.path / "s2.dcm";
+    const auto bytes = fs::file_size(cut);
+    fs::resize_file(cut, bytes - 40);
+    EXPECT_TRUE(says(refusal(), {"s2.dcm", "mend:"}));
+}
+
+std::string name_of(const testing::TestParamInfo<TransferSyntax::TSType>& info) {
+    switch (info.param) {
+        case TransferSyntax::JPEGLosslessProcess14_1:
+            return "JpegLossless";
+        case TransferSyntax::JPEGLSLossless:
+            return "JpegLs";
+        default:
+            return "Rle";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lossless, PackedDicom,
+                         testing::Values(TransferSyntax::JPEGLosslessProcess14_1,
+                                         TransferSyntax::JPEGLSLossless, TransferSyntax::RLELossless),
+                         name_of);
+
+}  // namespace
+}  // namespace tact
