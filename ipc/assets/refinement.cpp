@@ -30,6 +30,7 @@ Refinement::Refinement(const VertexForest& forest, const RefinementSettings& set
     ask_full_.node.resize(settings_.splits_max);
     ask_rest_.node.resize(settings_.splits_max);
     ask_merge_.node.resize(settings_.merges_max);
+    batch_.node.resize(settings_.splits_max);
     stack_.resize(kCascadeMax);
     begin();
 }
@@ -117,7 +118,7 @@ std::size_t Refinement::memory_bytes() const {
     return state_.capacity() * sizeof(State) + active_leaf_.capacity() * 8 + frontier_.bytes() +
            mergeable_.bytes() +
            4 * (ask_full_.node.capacity() + ask_rest_.node.capacity() + ask_merge_.node.capacity() +
-                stack_.capacity()) +
+                batch_.node.capacity() + stack_.capacity()) +
            sizeof(*this);
 }
 

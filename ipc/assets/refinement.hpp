@@ -3,9 +3,9 @@
 //
 // A step    takes the box that the probe is about to pass through, splits what is coarser than the filter asks
 //           for there and merges what is finer, what is within the filter's radius first. Splits and merges
-//           have a budget each; splits that others force count, and a cascade stops in the middle when the
-//           budget is out. Every state between two of them is a whole surface; what is left is done in the next
-//           step.
+//           have a budget each; splits that others force count. Where the budget holds all of them they are
+//           made at once, else one after the other, and a cascade stops in the middle when the budget is out.
+//           Every step ends with a whole surface; what is left is done in the next.
 // Same      where the filter and the box are the same and the budget is not out, the cut is the same, wherever
 //           the probe came from: what is asked for, and what that needs.
 // Cost      follows the number of changes, and a look at the nodes at the cut; no triangle is looked at.
@@ -16,6 +16,7 @@
 //           they can, and say so.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -77,6 +78,7 @@ public:
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
     static constexpr std::uint32_t kSplit = 1U << 31;
+    static constexpr std::uint32_t kWanted = 1U << 30;  // within gather() alone
 
     struct State {           // of each node
         std::uint32_t word;  // kSplit, and how many split nodes are its children or need it
@@ -88,9 +90,10 @@ private:
         HugeVector<std::uint32_t> node;
         std::uint32_t count = 0;
         bool full = false;
-        void put(std::uint32_t n) noexcept {
+        bool put(std::uint32_t n) noexcept {
             full = full || count == node.size();
             if (!full) node[count++] = n;
+            return !full;
         }
     };
     struct Level {
@@ -118,6 +121,10 @@ private:
 
     void split(std::uint32_t n, const RefineBox& box) noexcept;
     Done split_with_forced(std::uint32_t n, const RefineBox& box, std::uint32_t& budget) noexcept;
+    bool want(std::uint32_t n, std::uint32_t most) noexcept;
+    void fetch_batch(std::uint32_t i) const noexcept;
+    bool gather(const Queue& asked, const RefineBox& box, std::uint32_t most) noexcept;
+    bool split_at_once(const Queue& asked, const RefineBox& box, std::uint32_t& budget) noexcept;
     Done split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept;
     void merge(std::uint32_t n, const RefineBox& box) noexcept;
     std::uint32_t merge_all(const RefineBox& box) noexcept;
@@ -132,6 +139,7 @@ private:
     CutList mergeable_;                      // split nodes that nobody needs
     std::uint32_t vertices_ = 0, triangles_ = 0;
     Queue ask_full_, ask_rest_, ask_merge_;  // within the radius; elsewhere
+    Queue batch_;                            // what is split at once
     HugeVector<std::uint32_t> stack_;
 };
 

@@ -48,14 +48,15 @@ void Refinement::ask(std::uint32_t place, const RefineBox& box) noexcept {
 }
 
 void Refinement::hold(std::uint32_t n) noexcept {
-    if (state_[n].word == kSplit) unlist(mergeable_, n);
+    if (state_[n].word == kSplit && state_[n].place != kNone) unlist(mergeable_, n);
     ++state_[n].word;
 }
 
 void Refinement::let_go(std::uint32_t n, const RefineBox& box) noexcept {
     if (--state_[n].word != kSplit) return;
-    list(mergeable_, n);
-    if (!mergeable_.within(state_[n].place, box)) ask_merge_.put(n);
+    const ForestNode& node = forest_.node(n);
+    const bool within = box.distance_m(node.position_m) < limit_m(node);
+    if (within || !ask_merge_.put(n)) list(mergeable_, n);
 }
 
 void Refinement::split(std::uint32_t n, const RefineBox& box) noexcept {
@@ -114,6 +115,7 @@ Refinement::Done Refinement::split_with_forced(std::uint32_t n, const RefineBox&
 
 // Children that are wanted too come to its end meanwhile.
 Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept {
+    if (split_at_once(queue, box, budget)) return Done::yes;
     Done all = Done::yes;
     for (std::uint32_t i = 0; i < queue.count; ++i) {
         fetch_ahead(queue, i);
@@ -126,19 +128,22 @@ Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std
     return queue.full ? Done::out_of_budget : all;
 }
 
+// Where it is in the lists afterwards is left to merge_all().
 void Refinement::merge(std::uint32_t n, const RefineBox& box) noexcept {
     const ForestNode& node = forest_.node(n);
+    const auto take_away = [&](std::uint32_t child) {
+        if (state_[child].place != kNone) unlist(frontier_, child);
+    };
     if (node.first_is_leaf())
         set_active(node.first, false);
     else
-        unlist(frontier_, n + 1);
+        take_away(n + 1);
     if (node.second_is_leaf())
         set_active(node.middle, false);
     else
-        unlist(frontier_, node.second_of(n));
-    unlist(mergeable_, n);
+        take_away(node.second_of(n));
+    if (state_[n].place != kNone) unlist(mergeable_, n);
     state_[n].word = 0;
-    list(frontier_, n);
     if (node.parent != kNoForestNode) let_go(node.parent, box);
     for (const std::uint32_t need : forest_.needs_of(n)) let_go(need, box);
     --vertices_;
@@ -147,15 +152,19 @@ void Refinement::merge(std::uint32_t n, const RefineBox& box) noexcept {
 
 // What nobody needs and the filter does not ask for; then what only that needed.
 std::uint32_t Refinement::merge_all(const RefineBox& box) noexcept {
-    std::uint32_t merges = 0;
     ask_merge_.count = 0;
     ask_merge_.full = false;
     mergeable_.each(box, false, [&](std::uint32_t i) { ask_merge_.put(mergeable_.node(i)); });
-    for (; merges < ask_merge_.count; ++merges) {
-        fetch_ahead(ask_merge_, merges);
-        merge(ask_merge_.node[merges], box);
+    for (std::uint32_t i = 0; i < ask_merge_.count; ++i) {
+        fetch_ahead(ask_merge_, i);
+        merge(ask_merge_.node[i], box);
     }
-    return merges;
+    // Most of them went with their parents meanwhile.
+    for (std::uint32_t i = 0; i < ask_merge_.count; ++i) {
+        const std::uint32_t n = ask_merge_.node[i], parent = forest_.node(n).parent;
+        if (parent == kNoForestNode || is_split(parent)) list(frontier_, n);
+    }
+    return ask_merge_.count;
 }
 
 }  // namespace tact
