@@ -1,0 +1,91 @@
+// The visual process in one object; app.hpp says what a frame is.
+//
+// app.cpp      the frame, the controller, panels, the load that is reported
+// app_scene    what is shown: the scene, its levels, its bodies
+// app_draw     the three-dimensional view, for one eye or two
+// app_input    mouse and keys
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gui/app/body_list.hpp"
+#include "gui/app/command_sender.hpp"
+#include "gui/app/controller.hpp"
+#include "gui/app/detail_desk.hpp"
+#include "gui/app/drill_show.hpp"
+#include "gui/app/fit_desk.hpp"
+#include "gui/app/frame_clock.hpp"
+#include "gui/app/options.hpp"
+#include "gui/app/picture_files.hpp"
+#include "gui/app/scene_loader.hpp"
+#include "gui/app/second_hand.hpp"
+#include "gui/app/window.hpp"
+#include "gui/render/camera.hpp"
+#include "gui/render/scene_view.hpp"
+#include "gui/stage/stage.hpp"
+namespace tact {
+
+class GuiApp {
+public:
+    explicit GuiApp(const GuiOptions& options);
+    int run();
+
+private:
+    void frame(Instant now, bool take_picture);
+    void follow_controller(std::int64_t now_ns);
+    void start_loading(const std::string& path);
+    void follow_scene();
+    void use_scene();
+    void home_view();
+    void look_at_burr();
+    void show_bone();
+    void handle_input();
+    void fitting_key(Key key);
+    void obey_level();
+    void follow_detail();
+    void follow_bodies(std::int64_t now_ns);
+    void draw_scene(std::int64_t now_ns);
+    void begin_view(const ViewFrame& view);
+    void draw_stage(ViewFrame view, std::int64_t now_ns);
+    void draw_panels();
+    void publish_load();
+
+    const GuiOptions options_;
+    OwnedRegion<GuiRegion> region_;
+    Controller controller_;
+    CommandSender commands_;
+    Window window_;
+    Theme theme_;
+    FrameClock clock_;
+    DashboardState state_;
+    const std::int64_t first_ns_ = to_ns(Monotonic::now());
+    double fps_max_ = 60.0;
+    // OpenGL objects go before the window: members are destroyed from below.
+    std::unique_ptr<Stage> stage_;  // of a stereo picture
+    std::unique_ptr<Programs> programs_;
+    std::shared_ptr<const SceneContent> content_;
+    std::unique_ptr<SceneView> view_;
+    double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
+    FitDesk desk_;
+    DetailDesk detail_;
+    DrillShow drilling_{window_.software()};
+    float bone_reach_a_ = 0.0F;
+    bool near_burr_wanted_ = options_.near_burr;
+    BodyList list_;
+    SecondHand second_hand_;
+    std::vector<DrawnBody> shown_;
+    ViewOptions view_options_;
+    Camera camera_;
+    SceneLoader loader_;
+    std::string next_scene_;  // asked for while another was being read
+    std::size_t left_out_ = 0;
+    PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
+    PictureFiles::View drawn_view_;
+    bool picture_wanted_ = false;
+    bool sharp_ = false;  // this frame is kept: all its rays
+};
+
+}  // namespace tact

@@ -1,0 +1,149 @@
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <utility>
+
+#include "gui/app/app_parts.hpp"
+#include "gui/app/contour_child.hpp"
+#include "gui/app/contour_rows.hpp"
+#include "gui/app/describe.hpp"
+#include "gui/app/mesh_level.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+// Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
+// (tests/bench/draw_bench.cpp).
+constexpr std::size_t kShapesMaxInSoftware = 8000;
+// A volume's ball is wider than the bone in it, and one works on a part of that.
+constexpr float kBoneShown = 0.8F;
+constexpr float kBurrsShown = 4.0F;  // radii about a burr that is looked at
+
+}  // namespace
+
+void GuiApp::start_loading(const std::string& path) {
+    if (loader_.start(path))
+        state_.scene.status = "Loading " + path + " ...";
+    else
+        next_scene_ = path;
+}
+
+void GuiApp::follow_scene() {
+    if (auto loaded = loader_.poll()) {
+        if (loaded->content) {
+            content_ = std::move(loaded->content);
+            use_scene();
+        } else {
+            spdlog::error("{}", loaded->error);
+            const SceneFacts before = state_.scene;
+            state_.scene = content_ ? before : SceneFacts{};
+            state_.scene.status = loaded->error;
+        }
+    }
+    if (!next_scene_.empty() && !loader_.running()) start_loading(std::exchange(next_scene_, {}));
+    if (!content_ || !controller_.attached()) {
+        state_.scene.warning.clear();
+        return;
+    }
+    const std::uint64_t running = controller_.scene_checksum();
+    state_.scene.warning = running != 0 && running != content_->checksum && !loader_.running()
+                               ? "The controller runs another scene: " + controller_.scene_path()
+                               : std::string();
+}
+
+void GuiApp::use_scene() {
+    if (!programs_) programs_ = std::make_unique<Programs>();
+    view_ = std::make_unique<SceneView>(content_, *programs_, refine_by_child(content_));
+    if (!options_.contours.empty()) view_->contours().set(contours_of(options_.contours, content_->scale));
+    view_->approach_vertices(view_->vertices_max(), 1e9);  // at once: nothing is drawn yet
+    vertices_share_ = 1.0;
+    // What is touched is hard: only a contour lets one see what is inside.
+    if (content_->meta.kind == SceneKind::surface)
+        state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
+    if (window_.software()) view_->molecules().set_shapes_max(kShapesMaxInSoftware);
+    state_.toggles.molecule = static_cast<int>(options_.look.style);
+    state_.toggles.colouring = static_cast<int>(options_.look.colouring);
+    begin_contours(view_->contours(), content_->scale, state_.contours);
+    camera_.frame(view_->radius_a());
+    bone_reach_a_ = 0.0F;
+    home_view();
+    std::vector<Pose> homes;
+    for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
+    list_.start(homes);
+    if (controller_.have_bodies) list_.follow(controller_.bodies);
+    desk_.use(content_);
+    detail_.use(content_, state_.detail);
+    state_.scene = describe(*content_);
+    show_bone();
+    window_.set_title(std::string("Tact: ") + state_.scene.title);
+    spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
+                 view_->vertices_max(), state_.scene.bodies, state_.scene.atoms);
+}
+
+void GuiApp::home_view() {
+    camera_.home();
+    if (content_ && content_->bone && bone_reach_a_ > 0.0F)
+        camera_.approach(Eigen::Vector3f::Zero(), kBoneShown * bone_reach_a_);
+    camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
+}
+
+void GuiApp::look_at_burr() {
+    if (!content_ || !controller_.attached() || !controller_.have_drill) return;
+    const DrillHand& hand = controller_.drill.hand[0];
+    if (hand.kind == DrillKind::none) return;
+    const Vec3 at(hand.pos_model_m[0], hand.pos_model_m[1], hand.pos_model_m[2]);
+    const double radius_m = static_cast<double>(hand.radius_m) / content_->meta.world_per_model;
+    camera_.approach(((at - content_->centre_model_m) / kAngstromM).cast<float>(),
+                     kBurrsShown * static_cast<float>(radius_m / kAngstromM));
+}
+
+void GuiApp::show_bone() {
+    try {
+        drilling_.use(content_, controller_, *view_, options_.particles);
+    } catch (const StartupError& e) {
+        spdlog::error("{}", e.what());
+        state_.scene.warning = e.what();
+    }
+    if (view_->bone() == nullptr) return;
+    bone_reach_a_ = view_->bone()->reach_a();
+    home_view();
+}
+
+void GuiApp::obey_level() {
+    if (!view_) return;
+    const PathLevel* const path = controller_.level(kMeshPath);
+    // Without a controller the surface stays as it was last told; at first that is all of it.
+    const std::uint32_t most = view_->vertices_max();
+    if (path != nullptr && most > 0)
+        vertices_share_ =
+            vertices_for(*path, fewest_shown(view_->vertices_min(), most), most) / static_cast<double>(most);
+    view_->approach_vertices(static_cast<std::uint32_t>(std::lround(vertices_share_ * most)),
+                             adapt_budget_s(clock_.frame_s()));
+    state_.scene.mesh_error_m = view_->error_m();
+}
+
+void GuiApp::follow_detail() {
+    const bool touched = controller_.attached() && controller_.have_touch;
+    if (const auto made = detail_.follow(touched ? &controller_.touch : nullptr, state_.toggles.detail,
+                                         state_.detail, state_.wishes))
+        view_->show_detail(*made);
+}
+
+void GuiApp::follow_bodies(std::int64_t now_ns) {
+    list_.predict(now_ns);
+    const BodiesTopic* const topic =
+        controller_.attached() && controller_.have_bodies ? &controller_.bodies : nullptr;
+    std::vector<Command> commands;
+    for (const auto& [id, hidden] : state_.hide_wishes) list_.set_hidden(id, hidden);
+    for (const FitWish& wish : state_.fit_wishes) desk_.act(wish, list_, commands);
+    state_.hide_wishes.clear();
+    state_.fit_wishes.clear();
+    desk_.follow(list_, topic, commands);
+    if (topic != nullptr)
+        for (const Command& command : commands) commands_.send(command, now_ns);
+    desk_.describe(list_, topic, state_.fitting, state_.fit);
+}
+
+}  // namespace tact
