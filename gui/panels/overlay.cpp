@@ -137,6 +137,27 @@ void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& 
     }
 }
 
+// Over everything, as nothing else matters then.
+void stop_banner(const Pen& pen, const DashboardState& state, const PixelRect& v) {
+    if (!state.attached || !state.have_health) return;
+    const StopNotice notice = stop_notice(state.health);
+    if (notice.why.empty()) return;
+    ImFont* const large = pen.theme.large;
+    ImFont* const text = pen.theme.text;
+    const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
+    const std::string title = "No force: " + notice.why;
+    const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, title.c_str()),
+                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, notice.mend.c_str());
+    const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
+    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
+    pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kBad, pen.theme.px(8.0F), 0, pen.theme.px(2.0F));
+    pen.draw->AddText(large, large->FontSize, {at.x + pad, at.y + pad}, IM_COL32(255, 235, 232, 255),
+                      title.c_str(), nullptr, most);
+    pen.draw->AddText(text, text->FontSize, {at.x + pad, at.y + 1.5F * pad + head.y}, colour::kText,
+                      notice.mend.c_str(), nullptr, most);
+}
+
 void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
     const std::string text = !state.scene.loaded ? state.scene.status
                              : !state.attached   ? state.link_text
@@ -180,6 +201,7 @@ void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& vi
     scale_bar(pen, state, view);
     detail_scale(pen, state, view);
     message(pen, state, view);
+    stop_banner(pen, state, view);
     if (state.show_keys) keys(pen, view);
     pen.draw->PopClipRect();
 }

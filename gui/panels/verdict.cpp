@@ -93,6 +93,55 @@ Verdict state_verdict(RunState state, RunReason reason) {
     return {grade, words};
 }
 
+namespace {
+
+// What a person does before Reset; it reads on with "Then press Reset."
+const char* mend_of(RunReason reason) {
+    switch (reason) {
+        case RunReason::emergency_stop:
+            return "See that the arm is clear, then turn the button free.";
+        case RunReason::stop_channels:
+            return "Press the button once more and turn it free. Where it stays so, its wiring has to be "
+                   "looked at.";
+        case RunReason::dead_man:
+            return "Hold the switch.";
+        case RunReason::amplifier_readback:
+            return "Look at the amplifier's switch, fuse and cable.";
+        case RunReason::lines_lost:
+            return "Plug the adapter of the safety lines in; tact probe tells what is seen.";
+        case RunReason::device_lost:
+        case RunReason::sample_stale:
+            return "Look at the device's cable and power; tact probe tells what is seen.";
+        case RunReason::device_fault:
+            return "Look at the device's own lights; switch it off and on.";
+        case RunReason::overruns:
+        case RunReason::too_late:
+        case RunReason::supervisor:
+            return "Something takes the processor from the servo; tact doctor names it.";
+        case RunReason::force_not_finite:
+        case RunReason::model_failed:
+            return "The scene's model broke down. Where it does so again, keep a recording: tact record.";
+        case RunReason::gui_silent:
+            return "The picture stood still for too long. Leave it less to draw.";
+        default:
+            return "See the events for what happened.";
+    }
+}
+
+}  // namespace
+
+StopNotice stop_notice(const HealthTopic& h) {
+    const auto state = static_cast<RunState>(h.state);
+    const auto lines = static_cast<LinesShown>(h.lines);
+    const bool stopped = lines == LinesShown::stopped;
+    if (!stopped && state != RunState::fault) return {};
+    const auto reason = static_cast<RunReason>(stopped ? h.lines_reason : h.reason);
+    StopNotice notice{Grade::bad, run_reason_text(reason), mend_of(reason)};
+    if (notice.why.empty()) notice.why = "the force is stopped";
+    notice.mend += state == RunState::fault ? " Then press Reset, and Arm." : " Then press Arm.";
+    return notice;
+}
+
 Verdict memory_verdict(const HealthTopic& health) {
     if (health.allocations + health.locks + health.page_faults == 0)
         return {Grade::good, "no allocation, lock, fault"};

@@ -29,6 +29,12 @@ struct Verdict {
 [[nodiscard]] Verdict fresh_verdict(float mean);
 [[nodiscard]] Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles);
 [[nodiscard]] Verdict state_verdict(RunState state, RunReason reason);
+// What stands over the picture while something stops the force: why, and what a person is to do. No words: nothing stops it.
+struct StopNotice {
+    Grade grade = Grade::unknown;
+    std::string why, mend;
+};
+[[nodiscard]] StopNotice stop_notice(const HealthTopic& health);
 // Allocations, locks and page faults inside servo cycles: there should be none.
 [[nodiscard]] Verdict memory_verdict(const HealthTopic& health);
 // From a burr to a structure to keep away from: 1 mm is bad, 2 mm is worth a look, and so is being at 1 mm within a second.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 
 #include "gui/app/body_list.hpp"
 #include "gui/app/command_sender.hpp"
@@ -372,6 +373,34 @@ TEST(BodyList, LeavesOutBodiesOfStructuresThatTheSceneDoesNotHave) {
     ASSERT_EQ(list.bodies().size(), 1U);
     EXPECT_EQ(list.bodies()[0].id, 2U);
     EXPECT_EQ(list.active(), 0U);  // its place among those that are shown
+}
+
+TEST(Verdicts, WhatStopsTheForceIsToldWithWhatAPersonIsToDo) {
+    HealthTopic h{};
+    for (const auto state : {RunState::off, RunState::ready, RunState::armed, RunState::active}) {
+        h.state = static_cast<std::uint8_t>(state);
+        EXPECT_TRUE(stop_notice(h).why.empty());
+    }
+    h.state = static_cast<std::uint8_t>(RunState::fault);
+    std::set<std::string> mends;
+    for (int reason = 0; reason < 256; ++reason) {
+        h.reason = static_cast<std::uint8_t>(reason);
+        const StopNotice notice = stop_notice(h);
+        EXPECT_FALSE(notice.why.empty());
+        EXPECT_NE(notice.mend.find("Reset"), std::string::npos) << notice.mend;
+        EXPECT_EQ(notice.grade, Grade::bad);
+        mends.insert(notice.mend);
+    }
+    EXPECT_GE(mends.size(), 10U);
+    // The lines' own reason comes first: it is what a hand can change.
+    h.lines = static_cast<std::uint8_t>(LinesShown::stopped);
+    h.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
+    EXPECT_NE(stop_notice(h).why.find("emergency stop"), std::string::npos);
+    h.state = static_cast<std::uint8_t>(RunState::ready);
+    EXPECT_NE(stop_notice(h).mend.find("turn the button free"), std::string::npos);
+    EXPECT_EQ(stop_notice(h).mend.find("Reset"), std::string::npos);
+    h.lines = static_cast<std::uint8_t>(LinesShown::permitted);
+    EXPECT_TRUE(stop_notice(h).why.empty());
 }
 
 TEST(Verdicts, OfADistanceAreRedBelowOneMillimetreAmberBelowTwoAndLookAhead) {

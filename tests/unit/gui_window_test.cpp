@@ -279,6 +279,46 @@ TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
     EXPECT_GT(violet(pictures[1]), 5);
 }
 
+TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
+    fake::Controller controller("t", scene(), checksum_);
+    const std::string folder =
+        std::getenv("TACT_TEST_PICTURES") != nullptr ? std::getenv("TACT_TEST_PICTURES") : folder_;
+    std::vector<std::set<std::uint32_t>> pictures;
+    for (const bool pressed : {false, true}) {
+        const std::string picture = folder + "/stop_" + std::to_string(pressed) + ".png";
+        const auto process = gui({"--screenshot", picture, "--hidden"});
+        ASSERT_TRUE(drawing(controller)) << log();
+        HealthTopic health{};
+        health.period_ns = 1'000'000;
+        health.goal_hz = health.force_rate_hz = 1000.0;
+        health.state = static_cast<std::uint8_t>(pressed ? RunState::fault : RunState::active);
+        health.lines = static_cast<std::uint8_t>(pressed ? LinesShown::stopped : LinesShown::permitted);
+        health.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
+        LoadTopic load{};
+        ASSERT_TRUE(controller.gui()->load.read(load));
+        const std::uint64_t before = load.frame;
+        ASSERT_TRUE(wait_for([&] {
+            health.taken_at_ns = to_ns(Monotonic::now());
+            controller.region().health.publish(health);
+            controller.serve(1);
+            return controller.gui()->load.read(load) && load.frame > before + 5;
+        })) << log();
+        process->signal(SIGTERM);
+        EXPECT_EQ(process->wait(), 0) << log();
+        pictures.push_back(colours(picture, 640, 480));
+    }
+    // The ground of the banner.
+    const auto dark_red = [](const std::set<std::uint32_t>& seen) {
+        return std::count_if(seen.begin(), seen.end(), [](std::uint32_t c) {
+            const auto r = static_cast<int>(c & 255U), g = static_cast<int>(c >> 8 & 255U),
+                       b = static_cast<int>(c >> 16 & 255U);
+            return r > 80 && r < 110 && g < 40 && b < 40;
+        });
+    };
+    EXPECT_EQ(dark_red(pictures[0]), 0);
+    EXPECT_GT(dark_red(pictures[1]), 0);
+}
+
 TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {
     const std::string path = scene();
     auto controller = std::make_unique<fake::Controller>("t", path, checksum_);
