@@ -281,11 +281,9 @@ TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
 
 TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
     fake::Controller controller("t", scene(), checksum_);
-    const std::string folder =
-        std::getenv("TACT_TEST_PICTURES") != nullptr ? std::getenv("TACT_TEST_PICTURES") : folder_;
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool pressed : {false, true}) {
-        const std::string picture = folder + "/stop_" + std::to_string(pressed) + ".png";
+        const std::string picture = folder_ + "/stop_" + std::to_string(pressed) + ".png";
         const auto process = gui({"--screenshot", picture, "--hidden"});
         ASSERT_TRUE(drawing(controller)) << log();
         HealthTopic health{};
