@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/record/recording_writer.hpp"
 #include "ipc/record/repair.hpp"
+#include "tests/support/library_leaks.hpp"
 
 namespace tact {
 namespace {

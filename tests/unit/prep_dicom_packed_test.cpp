@@ -7,6 +7,7 @@
 
 #include "ipc/base/error.hpp"
 #include "prep/volume/import_bone.hpp"
+#include "tests/support/library_leaks.hpp"
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
 

@@ -42,10 +42,11 @@ struct NearSurface::Builder {
     [[nodiscard]] unsigned reaching(const SurfaceNode& node) const noexcept {
         unsigned mask = 0;
         for (std::size_t k = 0; k < 4; ++k) {
-            bool in = true;  // a child that is not there has an empty box
+            unsigned in = 1;  // a child that is not there has an empty box
             for (std::size_t axis = 0; axis < 3; ++axis)
-                in = in & (node.low_m[axis][k] <= high_m[axis]) & (node.high_m[axis][k] >= low_m[axis]);
-            mask |= in ? 1U << k : 0U;
+                in &= static_cast<unsigned>(node.low_m[axis][k] <= high_m[axis]) &
+                      static_cast<unsigned>(node.high_m[axis][k] >= low_m[axis]);
+            mask |= in << k;
         }
         return mask;
     }
