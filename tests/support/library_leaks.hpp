@@ -4,7 +4,8 @@
 // GDCM      80 bytes for a picture in JPEG-LS that is cut short.
 #pragma once
 
-extern "C" const char* __lsan_default_suppressions();          // NOLINT(bugprone-reserved-identifier)
-extern "C" inline const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+extern "C" [[gnu::used]] inline const char*
+__lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
     return "leak:libhdf5\nleak:libgdcmMSFF\n";
 }
