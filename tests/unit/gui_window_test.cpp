@@ -8,6 +8,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <thread>
 
@@ -124,6 +125,24 @@ protected:
         std::vector<std::uint32_t> pixels(std::size_t{image.width} * image.height);
         if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return {};
         return {pixels.begin(), pixels.end()};
+    }
+
+    // Of a window that has drawn a few frames of what is published meanwhile.
+    std::set<std::uint32_t> shown(fake::Controller& controller, const std::function<void()>& publish) {
+        const std::string picture = folder_ + "/shown.png";
+        const auto process = gui({"--screenshot", picture, "--hidden"});
+        EXPECT_TRUE(drawing(controller)) << log();
+        LoadTopic load{};
+        if (controller.gui().empty() || !controller.gui()->load.read(load)) return {};
+        const std::uint64_t before = load.frame;
+        EXPECT_TRUE(wait_for([&] {
+            publish();
+            controller.serve(1);
+            return controller.gui()->load.read(load) && load.frame > before + 5;
+        })) << log();
+        process->signal(SIGTERM);
+        EXPECT_EQ(process->wait(), 0) << log();
+        return colours(picture, 640, 480);
     }
 
     std::string folder_;
@@ -246,26 +265,15 @@ TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool there : {false, true}) {
-        const std::string picture = folder_ + "/second_" + std::to_string(there) + ".png";
-        const auto process = gui({"--screenshot", picture, "--hidden"});
-        ASSERT_TRUE(drawing(controller)) << log();
         ToolTopic tool{};
         tool.quat_world_tool_xyzw[3] = 1.0;
         tool.pos_world_m[0] = 0.02;
         tool.force_world_n[0] = -0.5;
         tool.at_wall = 1;
-        LoadTopic load{};
-        ASSERT_TRUE(controller.gui()->load.read(load));
-        const std::uint64_t before = load.frame;
-        ASSERT_TRUE(wait_for([&] {
+        pictures.push_back(shown(controller, [&] {
             tool.taken_at_ns = to_ns(Monotonic::now());
             if (there) controller.region().tool[1].publish(tool);
-            controller.serve(1);
-            return controller.gui()->load.read(load) && load.frame > before + 5;
-        })) << log();
-        process->signal(SIGTERM);
-        EXPECT_EQ(process->wait(), 0) << log();
-        pictures.push_back(colours(picture, 640, 480));
+        }));
     }
     // Violet, whatever the light: nothing else in the picture is.
     const auto violet = [](const std::set<std::uint32_t>& seen) {
@@ -275,6 +283,7 @@ TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
             return b > r + 25 && r > g + 15;
         });
     };
+    EXPECT_GT(pictures[0].size(), 100U);
     EXPECT_EQ(violet(pictures[0]), 0);
     EXPECT_GT(violet(pictures[1]), 5);
 }
@@ -283,27 +292,16 @@ TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool pressed : {false, true}) {
-        const std::string picture = folder_ + "/stop_" + std::to_string(pressed) + ".png";
-        const auto process = gui({"--screenshot", picture, "--hidden"});
-        ASSERT_TRUE(drawing(controller)) << log();
         HealthTopic health{};
         health.period_ns = 1'000'000;
         health.goal_hz = health.force_rate_hz = 1000.0;
         health.state = static_cast<std::uint8_t>(pressed ? RunState::fault : RunState::active);
         health.lines = static_cast<std::uint8_t>(pressed ? LinesShown::stopped : LinesShown::permitted);
         health.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
-        LoadTopic load{};
-        ASSERT_TRUE(controller.gui()->load.read(load));
-        const std::uint64_t before = load.frame;
-        ASSERT_TRUE(wait_for([&] {
+        pictures.push_back(shown(controller, [&] {
             health.taken_at_ns = to_ns(Monotonic::now());
             controller.region().health.publish(health);
-            controller.serve(1);
-            return controller.gui()->load.read(load) && load.frame > before + 5;
-        })) << log();
-        process->signal(SIGTERM);
-        EXPECT_EQ(process->wait(), 0) << log();
-        pictures.push_back(colours(picture, 640, 480));
+        }));
     }
     // The ground of the banner.
     const auto dark_red = [](const std::set<std::uint32_t>& seen) {
@@ -313,6 +311,7 @@ TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
             return r > 80 && r < 110 && g < 40 && b < 40;
         });
     };
+    EXPECT_GT(pictures[0].size(), 100U);
     EXPECT_EQ(dark_red(pictures[0]), 0);
     EXPECT_GT(dark_red(pictures[1]), 0);
 }
