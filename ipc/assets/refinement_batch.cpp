@@ -6,7 +6,7 @@ namespace tact {
 namespace {
 
 // Turns ahead for which memory is called: what a node names; what it needs.
-constexpr std::uint32_t kNamed = 12, kNeeded = 6;
+constexpr std::uint32_t kNamed = 8, kNeeded = 4;
 
 }  // namespace
 

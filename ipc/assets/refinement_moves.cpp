@@ -6,7 +6,7 @@ namespace tact {
 namespace {
 
 // Turns ahead for which memory is called: a node and its state; what it names; what it needs.
-constexpr std::uint32_t kFirst = 18, kSecond = 12, kThird = 6;
+constexpr std::uint32_t kFirst = 12, kSecond = 8, kThird = 4;
 
 }  // namespace
 

@@ -24,7 +24,7 @@
 //           the full surface than the largest deviation of its three corners, and no point of a full triangle
 //           farther from the active surface than the largest of those that its corners lie below.
 // Section FRST; read as views on the mapped file, nothing is copied: 64 bytes a node, one line of the cache, some
-// 4 for each need, and 16 a triangle: about 56 bytes a triangle of a closed mesh. Corners lie here once more,
+// 4 for each need, and 16 a triangle: about 52 bytes a triangle of a closed mesh. Corners lie here once more,
 // in the order in which splits ask for them.
 //
 // Frame     model, metres.  Thread  immutable. The mesh and the section outlive it.

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/huge_pages.hpp"
 #include "prep/mesh/simplify.hpp"
+#include "prep/surface/forest_needs.hpp"
+#include "prep/surface/range_max.hpp"
 
 namespace tact {
 namespace {
@@ -16,41 +19,6 @@ constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kWider = 1.000001F;  // against rounding, at each step up
 
 float distance(const float* a, const float* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
-
-// The largest of any run of numbers: a table of powers of two over blocks, and a look through two blocks.
-class RangeMax {
-public:
-    explicit RangeMax(const HugeVector<std::uint32_t>& value) : value_(value) {
-        table_.emplace_back((value.size() + kBlock - 1) / kBlock, 0);
-        for (std::size_t i = 0; i < value.size(); ++i)
-            table_[0][i / kBlock] = std::max(table_[0][i / kBlock], value[i]);
-        for (std::size_t step = 1; 2 * step <= table_[0].size(); step *= 2) {
-            const std::vector<std::uint32_t>& low = table_.back();
-            std::vector<std::uint32_t> high(low.size() - step);
-            for (std::size_t i = 0; i < high.size(); ++i) high[i] = std::max(low[i], low[i + step]);
-            table_.push_back(std::move(high));
-        }
-    }
-    [[nodiscard]] std::uint32_t of(std::size_t first, std::size_t end) const {  // not empty
-        const std::size_t low = first / kBlock + 1, high = end / kBlock;
-        if (low >= high) return plain(first, end);
-        std::uint32_t most = std::max(plain(first, low * kBlock), plain(high * kBlock, end));
-        std::size_t level = 0;
-        while (std::size_t{2} << level <= high - low) ++level;
-        most = std::max({most, table_[level][low], table_[level][high - (std::size_t{1} << level)]});
-        return most;
-    }
-
-private:
-    static constexpr std::size_t kBlock = 64;
-    [[nodiscard]] std::uint32_t plain(std::size_t first, std::size_t end) const {
-        std::uint32_t most = 0;
-        for (; first < end; ++first) most = std::max(most, value_[first]);
-        return most;
-    }
-    const HugeVector<std::uint32_t>& value_;
-    std::vector<std::vector<std::uint32_t>> table_;
-};
 
 class ForestBuilder {
 public:
@@ -64,7 +32,7 @@ public:
         link();
         measure();
         order();
-        write_needs();
+        out_.data.need = forest_needs(mesh_.triangle, leaves_, *ancestors_, number_, out_.data.node);
         place_triangles();
         return std::move(out_);
     }
@@ -84,29 +52,10 @@ private:
             count_[made] = count_[child_[s][0]] + count_[child_[s][1]];
             now[steps_[s].kept] = made;
         }
-        find_jumps();
+        ancestors_.emplace(parent_);
     }
     // Of each place its parent, or an ancestor farther up (Myers 1983): any ancestor is then found in a number
     // of steps that grows with the logarithm of the depth, where a fan's tree is as deep as it is wide.
-    void find_jumps() {
-        std::vector<std::uint32_t> depth(parent_.size(), 0);
-        jump_.resize(parent_.size());
-        for (auto p = static_cast<std::uint32_t>(parent_.size()); p-- > 0;) {  // parents first
-            const std::uint32_t up = parent_[p];
-            if (up == kNoForestNode) {
-                jump_[p] = p;
-                continue;
-            }
-            depth[p] = depth[up] + 1;
-            const std::uint32_t far = jump_[up];
-            jump_[p] = depth[up] - depth[far] == depth[far] - depth[jump_[far]] ? jump_[far] : up;
-        }
-    }
-    // Places of nodes rise in the order of the merges, and above all leaves. The highest ancestor below `limit`.
-    [[nodiscard]] std::uint32_t highest(std::uint32_t p, std::uint32_t limit) const {
-        while (parent_[p] < limit) p = jump_[p] != p && jump_[p] < limit ? jump_[p] : parent_[p];
-        return p;
-    }
     [[nodiscard]] const float* at(std::uint32_t place) const {
         return place < leaves_ ? &mesh_.position_m[3 * std::size_t{place}]
                                : steps_[place - leaves_].position_m.data();
@@ -157,51 +106,6 @@ private:
             reach_[made] = box[made].farthest(at(made));
         }
     }
-    // What stands between the merges of the two ends of an edge: where a merge on one side is followed by one on
-    // the other, its star holds what the other one took away. Merges in a row on one side are parents and
-    // children, which needs no word.
-    void collect_needs() {
-        need_head_.assign(nodes_, kNoForestNode);
-        for (std::size_t t = 0; t < mesh_.triangle.size(); t += 3)
-            for (std::size_t i = 0; i < 3; ++i)
-                walk_up(mesh_.triangle[t + i], mesh_.triangle[t + (i + 1) % 3]);
-    }
-    void walk_up(std::uint32_t a, std::uint32_t b) {
-        while (parent_[a] != parent_[b]) {
-            if (parent_[a] > parent_[b]) std::swap(a, b);  // the next merge is on the side of a
-            const std::uint32_t other = parent_[b];
-            a = highest(a, other);
-            if (other != kNoForestNode && parent_[a] != other) add_need(a - leaves_, other - leaves_);
-        }
-    }
-    void add_need(std::uint32_t of, std::uint32_t need) {
-        for (std::uint32_t e = need_head_[of]; e != kNoForestNode; e = need_[e][1])
-            if (need_[e][0] == need) return;
-        need_.push_back({need, need_head_[of]});
-        need_head_[of] = static_cast<std::uint32_t>(need_.size() - 1);
-    }
-    // In their order, without those that another one brings as its ancestor.
-    void write_needs() {
-        collect_needs();
-        std::vector<ForestNode>& node = out_.data.node;
-        std::vector<std::uint32_t> place(nodes_);
-        for (std::uint32_t s = 0; s < nodes_; ++s) place[number_[leaves_ + s]] = s;
-        std::vector<std::uint32_t> few;
-        for (std::uint32_t n = 0; n < nodes_; ++n) {
-            node[n].first_need = static_cast<std::uint32_t>(out_.data.need.size());
-            few.clear();
-            for (std::uint32_t e = need_head_[place[n]]; e != kNoForestNode; e = need_[e][1])
-                few.push_back(number_[leaves_ + need_[e][0]]);
-            // Nodes are numbered in the order of a walk: what lies below one follows it.
-            std::sort(few.begin(), few.end());
-            for (std::size_t i = 0; i < few.size(); ++i) {
-                const bool brought = i + 1 < few.size() && node[few[i + 1]].first >= node[few[i]].first &&
-                                     node[few[i + 1]].end <= node[few[i]].end;
-                if (!brought) out_.data.need.push_back(few[i]);
-            }
-        }
-        need_ = {};
-    }
     // Spans: a triangle has each of its corners at any of the places that stand for it in turn until the triangle
     // goes; then of what lies below.
     void measure_spans(const std::vector<std::uint32_t>& node_of_triangle) {
@@ -221,7 +125,7 @@ private:
                     now = parent_[now];
                 }
                 if (now < of) {
-                    const std::uint32_t top = highest(now, of);
+                    const std::uint32_t top = ancestors_->highest(now, of);
                     const float reach = reach_of_places(top);
                     const float* const p = at(top);
                     for (const float side : {-reach, reach})
@@ -355,10 +259,9 @@ private:
     const std::vector<Contraction> steps_;
     const std::uint32_t leaves_, nodes_;
     std::vector<std::array<std::uint32_t, 2>> child_;
-    std::vector<std::uint32_t> parent_, count_, number_, jump_;
+    std::vector<std::uint32_t> parent_, count_, number_;
+    std::optional<Ancestors> ancestors_;
     std::vector<float> reach_, error_, deviation_;
-    std::vector<std::uint32_t> need_head_;            // of each node, in need_
-    std::vector<std::array<std::uint32_t, 2>> need_;  // node, and the next one of the list
     BuiltForest out_;
 };
 

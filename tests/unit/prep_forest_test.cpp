@@ -57,6 +57,61 @@ TEST(VertexForest, EveryTriangleAppearsOnceAndNodesReachOverTheirTriangles) {
     }
 }
 
+// Whether `to` has to be split before `from` is.
+bool brings(const VertexForest& forest, std::uint32_t from, std::uint32_t to) {
+    std::vector<bool> seen(forest.nodes());
+    std::vector<std::uint32_t> stack{from};
+    const auto look_at = [&](std::uint32_t n) {
+        if (n == kNoForestNode || seen[n]) return;
+        seen[n] = true;
+        stack.push_back(n);
+    };
+    while (!stack.empty() && !seen[to]) {
+        const std::uint32_t n = stack.back();
+        stack.pop_back();
+        look_at(forest.node(n).parent);
+        for (const std::uint32_t need : forest.needs_of(n)) look_at(need);
+    }
+    return seen[to];
+}
+
+TEST(VertexForest, NeedsAreThoseOfTheNumbersAndNoneIsWrittenThatAnotherBrings) {
+    TriangleMesh mesh = two_spheres_and_a_sheet();
+    const BuiltForest built = build_forest(mesh);
+    const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);
+    std::vector<std::uint32_t> parent(forest.leaves(), kNoForestNode);
+    for (std::uint32_t n = 0; n < forest.nodes(); ++n) {
+        if (forest.node(n).first_is_leaf()) parent[forest.node(n).first] = n;
+        if (forest.node(n).second_is_leaf()) parent[forest.node(n).middle] = n;
+    }
+    // Up both sides of each edge of the mesh: a merge was made beside what the one before it left.
+    const auto number = [&](std::uint32_t n) {
+        return n == kNoForestNode ? UINT32_MAX : forest.node(n).number;
+    };
+    std::size_t needed = 0;
+    for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
+        std::uint32_t a = parent[mesh.triangle[i]], b = parent[mesh.triangle[i - i % 3 + (i + 1) % 3]];
+        while (a != b) {
+            if (number(a) > number(b)) std::swap(a, b);
+            if (b != kNoForestNode) {
+                EXPECT_TRUE(brings(forest, a, b)) << a << " without " << b;
+                ++needed;
+            }
+            a = forest.node(a).parent;
+        }
+    }
+    EXPECT_GT(needed, 1000U);
+    for (std::uint32_t n = 0; n < forest.nodes(); ++n) {
+        for (const std::uint32_t need : forest.needs_of(n)) {
+            const std::uint32_t up = forest.node(n).parent;
+            EXPECT_FALSE(up != kNoForestNode && brings(forest, up, need));
+            for (const std::uint32_t other : forest.needs_of(n)) {
+                EXPECT_FALSE(other != need && brings(forest, other, need)) << n << ": " << need;
+            }
+        }
+    }
+}
+
 TEST(VertexForest, AFlatFanOfManyTrianglesIsBuilt) {  // one vertex that would take part in every merge
     TriangleMesh fan{{0, 0, 0}, {}};
     constexpr std::uint32_t kBlades = 2000;

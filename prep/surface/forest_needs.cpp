@@ -1,0 +1,120 @@
+#include "prep/surface/forest_needs.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tact {
+namespace {
+
+// All that stand between the merges at the ends of some edge, by nodes' order of merging.
+class NeedCollector {
+public:
+    NeedCollector(std::span<const std::uint32_t> corner, std::uint32_t leaves, std::size_t nodes,
+                  const Ancestors& ancestors)
+        : ancestors_(ancestors), leaves_(leaves), head_(nodes, kNoForestNode) {
+        for (std::size_t t = 0; t < corner.size(); t += 3)
+            for (std::size_t i = 0; i < 3; ++i) walk_up(corner[t + i], corner[t + (i + 1) % 3]);
+    }
+    template <class Visit>
+    void each(std::uint32_t of, Visit&& visit) const {
+        for (std::uint32_t e = head_[of]; e != kNoForestNode; e = need_[e][1]) visit(need_[e][0]);
+    }
+
+private:
+    // Where a merge on one side is followed by one on the other, its star holds what the other one took away. Merges
+    // in a row on one side are parents and children, which needs no word.
+    void walk_up(std::uint32_t a, std::uint32_t b) {
+        while (ancestors_.parent(a) != ancestors_.parent(b)) {
+            if (ancestors_.parent(a) > ancestors_.parent(b))
+                std::swap(a, b);  // the next merge is on the side of a
+            const std::uint32_t other = ancestors_.parent(b);
+            a = ancestors_.highest(a, other);
+            if (other != kNoForestNode && ancestors_.parent(a) != other) add(a - leaves_, other - leaves_);
+        }
+    }
+    void add(std::uint32_t of, std::uint32_t need) {
+        for (std::uint32_t e = head_[of]; e != kNoForestNode; e = need_[e][1])
+            if (need_[e][0] == need) return;
+        need_.push_back({need, head_[of]});
+        head_[of] = static_cast<std::uint32_t>(need_.size() - 1);
+    }
+    const Ancestors& ancestors_;
+    std::uint32_t leaves_;
+    std::vector<std::uint32_t> head_;                 // of each node, in need_
+    std::vector<std::array<std::uint32_t, 2>> need_;  // node, and the next one of the list
+};
+
+std::span<const std::uint32_t> needs_of(std::uint32_t n, std::span<const ForestNode> node,
+                                        const std::vector<std::uint32_t>& need) {
+    const std::size_t end = n + 1 < node.size() ? node[n + 1].first_need : need.size();
+    return std::span(need).subspan(node[n].first_need, end - node[n].first_need);
+}
+
+// Without those that another one brings by its own needs, so that every step has fewer to look at. The cut is the
+// same: what may be split and what may merge follows from whole chains. What a longer look would find stays.
+std::vector<std::uint32_t> without_brought(std::span<ForestNode> node,
+                                           const std::vector<std::uint32_t>& need) {
+    constexpr std::size_t kLooksMax = 64;
+    std::vector<std::uint32_t> kept, first(node.size()), brought;
+    std::uint32_t last = 0;  // number of the needs
+    const auto bring = [&](std::uint32_t n) {
+        if (n == kNoForestNode || node[n].number > last || brought.size() == kLooksMax) return;
+        if (std::find(brought.begin(), brought.end(), n) == brought.end()) brought.push_back(n);
+    };
+    const auto look_past = [&](std::uint32_t n) {
+        bring(node[n].parent);
+        for (const std::uint32_t m : needs_of(n, node, need)) bring(m);
+    };
+    for (std::uint32_t n = 0; n < node.size(); ++n) {
+        const auto own = needs_of(n, node, need);
+        first[n] = static_cast<std::uint32_t>(kept.size());
+        last = 0;
+        for (const std::uint32_t m : own) last = std::max(last, node[m].number);
+        brought.clear();
+        if (node[n].parent != kNoForestNode) look_past(node[n].parent);
+        for (const std::uint32_t m : own) look_past(m);
+        for (std::size_t i = 0; i < brought.size(); ++i) look_past(brought[i]);
+        for (const std::uint32_t m : own)
+            if (std::find(brought.begin(), brought.end(), m) == brought.end()) kept.push_back(m);
+    }
+    for (std::uint32_t n = 0; n < node.size(); ++n) node[n].first_need = first[n];
+    return kept;
+}
+
+}  // namespace
+
+Ancestors::Ancestors(std::span<const std::uint32_t> parent) : parent_(parent), jump_(parent.size()) {
+    std::vector<std::uint32_t> depth(parent.size(), 0);
+    for (auto p = static_cast<std::uint32_t>(parent.size()); p-- > 0;) {  // parents first
+        const std::uint32_t up = parent[p];
+        if (up == kNoForestNode) {
+            jump_[p] = p;
+            continue;
+        }
+        depth[p] = depth[up] + 1;
+        const std::uint32_t far = jump_[up];
+        jump_[p] = depth[up] - depth[far] == depth[far] - depth[jump_[far]] ? jump_[far] : up;
+    }
+}
+
+std::vector<std::uint32_t> forest_needs(std::span<const std::uint32_t> corner, std::uint32_t leaves,
+                                        const Ancestors& ancestors, std::span<const std::uint32_t> number,
+                                        std::span<ForestNode> node) {
+    std::vector<std::uint32_t> need;
+    {
+        const NeedCollector collected(corner, leaves, node.size(), ancestors);
+        std::vector<std::uint32_t> merge(node.size());  // of each node of the forest
+        for (std::uint32_t s = 0; s < node.size(); ++s) merge[number[leaves + s]] = s;
+        std::vector<std::uint32_t> own;
+        for (std::uint32_t n = 0; n < node.size(); ++n) {
+            node[n].first_need = static_cast<std::uint32_t>(need.size());
+            own.clear();
+            collected.each(merge[n], [&](std::uint32_t s) { own.push_back(number[leaves + s]); });
+            std::sort(own.begin(), own.end());  // it will be read in order of memory
+            need.insert(need.end(), own.begin(), own.end());
+        }
+    }
+    return without_brought(node, need);
+}
+
+}  // namespace tact
