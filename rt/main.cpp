@@ -182,7 +182,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const std::string hands_on = info.name + (two_hands ? " and " + info2.name : "");
     std::optional<HeadFeed> head;
     if (std::unique_ptr<Tracker> tracker = make_tracker(tracker_settings_from(config)))
-        head.emplace(head_settings_from(config), std::move(tracker), region->head);
+        head.emplace(head_settings_from(config), std::move(tracker), region->head, region->tracker);
     const std::string head_on = head ? head->open().name : "no head tracker";
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
     const std::string lines_on = lines ? lines->open().name : "no safety lines";

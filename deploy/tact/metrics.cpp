@@ -124,6 +124,48 @@ void health(Page& page, const HealthTopic& h) {
     }
 }
 
+void devices(Page& page, const DevicesTopic& d) {
+    const auto each = [&](const char* name, const char* type, const char* help, const auto& of,
+                          const auto& has) {
+        page.about(name, type, help);
+        for (std::size_t hand = 0; hand < kHandsMax; ++hand)
+            if (d.hand[hand].there != 0 && has(d.hand[hand]))
+                page.value(of(d.hand[hand]), label("hand", std::to_string(hand + 1)));
+    };
+    const auto always = [](const DeviceHand&) { return true; };
+    each(
+        "tact_device_samples_total", "counter", "samples that a hand's device gave",
+        [](const DeviceHand& h) { return static_cast<double>(h.samples); }, always);
+    each(
+        "tact_device_sample_age_seconds", "gauge",
+        "oldest sample that a cycle of the last tenth of a second used",
+        [](const DeviceHand& h) { return kNs * static_cast<double>(h.age_ns_most); },
+        [](const DeviceHand& h) { return h.age_ns_most >= 0; });
+    each(
+        "tact_motor_heat_ratio", "gauge", "heat of the motors; 1: only the continuous force is left",
+        [](const DeviceHand& h) { return static_cast<double>(h.heat); },
+        [](const DeviceHand& h) { return h.force_n_continuous > 0.0F; });
+    each(
+        "tact_motor_winding_celsius", "gauge", "hottest winding of a hand's device, as its driver counts it",
+        [](const DeviceHand& h) { return static_cast<double>(h.winding_c); },
+        [](const DeviceHand& h) { return h.winding_c_max > 0.0F; });
+}
+
+void tracker(Page& page, const TrackerTopic& t) {
+    page.one("tact_tracker_fresh", "gauge", "1 where the head is seen", t.state == 2 ? 1.0 : 0.0);
+    page.one("tact_tracker_samples_total", "counter", "good poses of the head tracker",
+             static_cast<double>(t.samples));
+    page.about("tact_tracker_errors_total", "counter",
+               "what was wrong of the head tracker's frames and link");
+    for (const auto& [kind, n] : {std::pair{"missed", t.missed},
+                                  {"refused", t.refused},
+                                  {"dropped", t.dropped},
+                                  {"flood", t.floods},
+                                  {"bus", t.bus_errors},
+                                  {"link", t.link_losses}})
+        page.value(static_cast<double>(n), label("kind", kind));
+}
+
 void levels(Page& page, const LevelsTopic& l) {
     const std::size_t count = std::min<std::size_t>(l.count, kPathsMax);
     const auto each = [&](const char* name, const char* help, const auto& of) {
@@ -163,6 +205,8 @@ std::string Metrics::text(const RtRegion* region) const {
     for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
     if (region == nullptr) return page.take();
     if (const auto h = newest(region->health)) health(page, *h);
+    if (const auto d = newest(region->devices)) devices(page, *d);
+    if (const auto t = newest(region->tracker)) tracker(page, *t);
     if (const auto l = newest(region->lateness)) lateness(page, *l);
     if (const auto l = newest(region->levels)) levels(page, *l);
     return page.take();

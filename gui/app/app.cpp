@@ -35,6 +35,7 @@ GuiApp::GuiApp(const GuiOptions& options)
       window_(options.width_px, options.height_px, options.hidden) {
     region_.mark_ready();
     state_.session = options.session;
+    state_.history.first_ns = first_ns_;
     state_.renderer = window_.renderer();
     if (options.plain) {
         view_options_.gradient = false;
@@ -121,6 +122,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
         list_.forget_motion();
         second_hand_.forget();
         commands_.forget();
+        forget_rates(state_);
         std::string path = controller_.scene_path();
         if (options_.scene.empty() && !path.empty() &&
             (!content_ || content_->checksum != controller_.scene_checksum()))
@@ -130,6 +132,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     if (fresh.bodies) list_.follow(controller_.bodies);
     if (fresh.second) second_hand_.follow(controller_.second);
     if (fresh.health) add_health(controller_.health, state_.history);
+    add_rates(controller_, fresh, state_);
     if (controller_.have_health) commands_.update(controller_.health, now_ns);
     show_controller(controller_, commands_, state_);
 }

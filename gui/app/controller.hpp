@@ -25,7 +25,7 @@ public:
     // Reads every topic; true in the flags for what is new.
     struct Fresh {
         bool tool = false, second = false, bodies = false, touch = false, drill = false, head = false,
-             health = false, levels = false;
+             tracker = false, devices = false, health = false, lateness = false, levels = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
@@ -53,13 +53,17 @@ public:
     }
 
     bool have_tool = false, have_second = false, have_bodies = false, have_touch = false, have_drill = false,
-         have_head = false, have_health = false, have_levels = false;
+         have_head = false, have_tracker = false, have_devices = false, have_health = false,
+         have_lateness = false, have_levels = false;
     ToolTopic tool{}, second{};  // of the first hand, and of another where there is one
     BodiesTopic bodies{};
     TouchTopic touch{};
     DrillTopic drill{};
     HeadTopic head{};
+    TrackerTopic tracker{};
+    DevicesTopic devices{};
     HealthTopic health{};
+    LatenessTopic lateness{};
     LevelsTopic levels{};
 
 private:
@@ -72,7 +76,8 @@ private:
     std::string refusal_, bone_refusal_;
     RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_drill_ = 0,
-                  seen_head_ = 0, seen_health_ = 0, seen_levels_ = 0;
+                  seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0, seen_lateness_ = 0,
+                  seen_levels_ = 0;
     std::uint64_t refused_ = 0;
 };
 

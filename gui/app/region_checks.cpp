@@ -83,6 +83,30 @@ bool sensible(const HeadTopic& h) noexcept {
            near(h.angular_screen_rad_s) && h.state <= 2 && h.quality >= 0.0 && h.quality <= 1.0;
 }
 
+bool sensible(const TrackerTopic& t) noexcept {
+    return duration(t.age_ns) && rate(t.rate_hz) && t.state <= 2 && t.link <= 4;
+}
+
+bool sensible(const DevicesTopic& t) noexcept {
+    return std::all_of(t.hand, t.hand + kDeviceHands, [](const DeviceHand& d) {
+        const auto within = [](float v, float most) { return v >= 0.0F && v <= most; };
+        return duration(d.age_ns) && duration(d.age_ns_most) && within(d.heat, 1e9F) &&
+               within(d.force_n_max, 1e6F) && within(d.force_n_continuous, 1e6F) &&
+               std::fabs(d.winding_c) <= 1e4F && within(d.winding_c_max, 1e4F) && d.there <= 1 && d.read <= 3;
+    });
+}
+
+// Whole, and less than a cycle a nanosecond for thirty years: sums cannot overflow.
+bool sensible(const LatenessTopic& l) noexcept {
+    constexpr std::uint64_t kMost = 1'000'000'000'000'000;
+    std::uint64_t sum = 0;
+    for (const std::uint64_t n : l.counts) {
+        if (n > kMost) return false;
+        sum += n;
+    }
+    return sum == l.total && l.max_ns <= kMost && l.taken_at_ns >= 0;
+}
+
 bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/device.hpp"
 #include "ipc/topics/drill.hpp"
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
@@ -18,7 +19,10 @@ namespace tact {
 [[nodiscard]] bool sensible(const TouchTopic& touch) noexcept;
 [[nodiscard]] bool sensible(const DrillTopic& drill) noexcept;
 [[nodiscard]] bool sensible(const HeadTopic& head) noexcept;
+[[nodiscard]] bool sensible(const TrackerTopic& tracker) noexcept;
+[[nodiscard]] bool sensible(const DevicesTopic& devices) noexcept;
 [[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
+[[nodiscard]] bool sensible(const LatenessTopic& lateness) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 
 // The level of a path, or null.

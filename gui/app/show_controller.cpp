@@ -13,6 +13,11 @@ constexpr std::size_t kEventsPerFrame = 64;
 void take_events(Controller& controller, DashboardState& state) {
     EventTopic event;
     for (std::size_t i = 0; i < kEventsPerFrame && controller.next_event(event); ++i) {
+        if (event.code == static_cast<std::uint16_t>(EventCode::level_changed) && event.a >= 0.0 &&
+            event.a < static_cast<double>(kPathsMax))
+            state.history.knobs.add(
+                state.history.at_s(event.taken_at_ns), static_cast<std::size_t>(event.a), event.b,
+                event.detail < 255 ? static_cast<LevelReason>(event.detail) : static_cast<LevelReason>(255));
         EventLine line = describe(event);
         // What repeats, such as a limit that is reached again and again, must not push the rest out.
         const bool repeats = !state.events.empty() && state.events.front().code == line.code;
@@ -37,6 +42,10 @@ void show_controller(Controller& controller, const CommandSender& commands, Dash
     state.have_levels = controller.have_levels;
     state.health = controller.health;
     state.levels = controller.levels;
+    state.have_devices = controller.have_devices;
+    state.devices = controller.devices;
+    state.have_tracker = controller.have_tracker;
+    state.tracker = controller.tracker;
     state.refused_records = controller.refused();
     state.events_missed = controller.events_missed();
     state.command_text = commands.text();
@@ -52,6 +61,21 @@ void add_health(const HealthTopic& h, History& to) {
     to.lateness_p99_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_p99_ns));
     to.lateness_max_s.add(to.now_s, 1e-9 * static_cast<double>(h.lateness_max_ns));
     to.cycle_cost_s.add(to.now_s, 1e-9 * static_cast<double>(h.cycle_cost_p50_ns));
+}
+
+void add_rates(const Controller& controller, const Controller::Fresh& fresh, DashboardState& to) {
+    if (fresh.lateness) to.lateness.add(controller.lateness);
+    if (fresh.tracker) to.tracker_rate.add(controller.tracker.taken_at_ns, controller.tracker.samples);
+    if (!fresh.devices) return;
+    for (std::size_t i = 0; i < kDeviceHands; ++i)
+        to.device_rate[i].add(controller.devices.taken_at_ns, controller.devices.hand[i].samples);
+}
+
+void forget_rates(DashboardState& state) {
+    state.lateness.clear();
+    state.tracker_rate.clear();
+    for (CounterRate& rate : state.device_rate) rate.clear();
+    state.history.knobs.clear();
 }
 
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to) {

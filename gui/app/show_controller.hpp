@@ -12,6 +12,9 @@ namespace tact {
 void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state);
 // One more sample of the plots.
 void add_health(const HealthTopic& health, History& to);
+// What is counted up over records: lateness, samples a second. Another controller begins anew.
+void add_rates(const Controller& controller, const Controller::Fresh& fresh, DashboardState& to);
+void forget_rates(DashboardState& state);
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to);
 
 }  // namespace tact

@@ -11,11 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "gui/panels/counter_rate.hpp"
+#include "gui/panels/knob_changes.hpp"
+#include "gui/panels/lateness_window.hpp"
 #include "gui/panels/plot_series.hpp"
 #include "gui/panels/theme.hpp"
 #include "ipc/assets/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
+#include "ipc/topics/device.hpp"
+#include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
@@ -178,7 +183,10 @@ struct History {
     PlotSeries rate_hz, lateness_p50_s, lateness_p99_s, lateness_max_s, cycle_cost_s;
     PlotSeries frame_s, busy_s;
     std::array<PlotSeries, kPathsMax> level;
+    KnobChanges knobs;
     double now_s = 0.0;
+    std::int64_t first_ns = 0;  // the monotonic clock where now_s is 0
+    [[nodiscard]] double at_s(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - first_ns); }
 };
 
 struct DashboardState {
@@ -188,6 +196,12 @@ struct DashboardState {
     bool have_health = false, have_levels = false;
     HealthTopic health{};
     LevelsTopic levels{};
+    bool have_devices = false, have_tracker = false;
+    DevicesTopic devices{};
+    TrackerTopic tracker{};
+    std::array<CounterRate, kDeviceHands> device_rate;  // samples a second
+    CounterRate tracker_rate;
+    LatenessWindow lateness;
     LoadTopic load{};
     std::uint64_t refused_records = 0;
     std::string command_text;  // what became of the last command
@@ -215,7 +229,8 @@ struct DashboardState {
     bool head_lost = false;
     // What a person chose.
     SceneToggles toggles;
-    int span_choice = 0;  // of the plots
+    int span_choice = 0;      // of the plots
+    int lateness_choice = 0;  // a minute, the whole run, over time
     bool show_keys = false;
     int tab = 0;  // of the scene card
     // Emptied by the application.

@@ -1,6 +1,8 @@
 // Health: how the controller is doing, in numbers, words and colour, and the buttons that a person needs
 // first.
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include "gui/panels/panels.hpp"
 #include "gui/panels/widgets.hpp"
@@ -32,28 +34,27 @@ void buttons(const Theme& theme, DashboardState& state) {
     (void)theme;
 }
 
-void lateness(const Theme& theme, const HealthTopic& h) {
-    const Verdict late = lateness_verdict(h.lateness_p99_ns, h.period_ns);
-    row(theme, "Lateness p50", duration_text(1e-9 * static_cast<double>(h.lateness_p50_ns)),
-        format("of %s", duration_text(1e-9 * static_cast<double>(h.period_ns)).c_str()));
-    row(theme, "p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)), late);
-    row(theme, "max", duration_text(1e-9 * static_cast<double>(h.lateness_max_ns)), "in the last second");
+std::string upper(std::string word) {
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return word;
 }
 
-// A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
-// step's work it still does anew.
-void free_running(const Theme& theme, const HealthTopic& h) {
-    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_mean)),
-        fresh_verdict(h.fresh_mean));
-    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_least)), "in the last 0.1 s");
-    row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
-}
-
-// How long the loop is from the encoders to the motors, and what that allows.
-void delay(const Theme& theme, const HealthTopic& h) {
-    if (h.delay_p99_ns <= 0) return row(theme, "Delay", "unknown", "sensor to motor");
-    row(theme, "Delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        format("stable to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+// The rate as a length, and the goal as a mark on it.
+void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = theme.px(5.0F);
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, {at.x + width, at.y + height}, colour::kGrid);
+    if (h.goal_hz > 0.0 && std::isfinite(h.force_rate_hz)) {
+        constexpr double kReach = 1.25;  // of the goal
+        const double share = std::clamp(h.force_rate_hz / (kReach * h.goal_hz), 0.0, 1.0);
+        draw->AddRectFilled(at, {at.x + static_cast<float>(share) * width, at.y + height}, c);
+        const float goal = at.x + width / static_cast<float>(kReach);
+        draw->AddRectFilled({goal - theme.px(1.0F), at.y - theme.px(2.0F)},
+                            {goal + theme.px(1.0F), at.y + height + theme.px(2.0F)}, colour::kText);
+    }
+    ImGui::Dummy({width, height + theme.px(2.0F)});
 }
 
 // What a device says comes in place of the state's own words: it knows more.
@@ -70,16 +71,63 @@ void words(const Theme& theme, const HealthTopic& h, const Verdict& state) {
     if (!said) text_small(theme, grade_colour(state.grade), state.words);
 }
 
-// What came over the devices' buses; of those that count.
-void buses(const Theme& theme, const HealthTopic& h) {
-    const char* name = "Bus packets";
-    for (const BusCounts& bus : h.device_bus) {
-        if (bus.packets > 0 || !bus.clean()) {
-            row(theme, name, grouped(bus.packets), bus_verdict(bus));
-            if (!bus.clean()) text_small(theme, colour::kDim, bus_text(bus));
-        }
-        name = "of hand 2";
+// What is read first: what the controller does and why, and its force rate against the goal.
+void hero(const Theme& theme, const DashboardState& state) {
+    const HealthTopic& h = state.health;
+    const auto run_state = static_cast<RunState>(h.state);
+    const Verdict v = state_verdict(run_state, static_cast<RunReason>(h.reason));
+    const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
+    badge(theme, upper(run_state_text(run_state)), grade_colour(v.grade), theme.large);
+    ImGui::SameLine();
+    ImGui::BeginGroup();  // beside it, as many lines as it takes
+    if (silent_s > 1.0) badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
+    words(theme, h, v);
+    ImGui::EndGroup();
+    const auto lines = static_cast<LinesShown>(h.lines);
+    if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
+        const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
+        text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
+                   std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
     }
+    const Verdict rate = rate_verdict(h.force_rate_hz, h.goal_hz);
+    ImGui::PushFont(theme.large);
+    text_coloured(grade_colour(rate.grade), rate_text(h.force_rate_hz));
+    const float beside = ImGui::GetItemRectSize().x;
+    const ImVec2 at = ImGui::GetItemRectMin();
+    ImGui::PopFont();
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y - theme.px(1.0F)});
+    ImGui::BeginGroup();
+    text_small(theme, colour::kDim, "force rate, goal " + rate_text(h.goal_hz), false);
+    ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y + theme.small->FontSize});
+    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.words,
+               false);
+    ImGui::EndGroup();
+    ImGui::SetCursorScreenPos(below);
+    rate_bar(theme, h, grade_colour(rate.grade));
+}
+
+void timing(const Theme& theme, const DashboardState& state) {
+    const HealthTopic& h = state.health;
+    row(theme, "Lateness p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)),
+        lateness_verdict(h.lateness_p99_ns, h.period_ns));
+    row(theme, "Overruns", grouped(h.overruns), overrun_verdict(h, state.now_ns));
+}
+
+// A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
+// step's work it still does anew.
+void free_running(const Theme& theme, const HealthTopic& h) {
+    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_mean)),
+        fresh_verdict(h.fresh_mean));
+    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_least)), "in the last 0.1 s");
+    row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
+}
+
+// How long the loop is from the encoders to the motors, and what that allows.
+void delay(const Theme& theme, const HealthTopic& h) {
+    if (h.delay_p99_ns <= 0) return;
+    row(theme, "Delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
+        format("stable to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {
@@ -126,41 +174,26 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         text_coloured(colour::kWatch, "attached; its health is not published yet");
     }
     if (known && state.attached) {
-        const auto run_state = static_cast<RunState>(h.state);
-        const Verdict v = state_verdict(run_state, static_cast<RunReason>(h.reason));
-        const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
-        ImGui::SameLine();
-        badge(theme, run_state_text(run_state), grade_colour(v.grade));
-        if (silent_s > 1.0) {
-            ImGui::SameLine();
-            badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
-        }
-        words(theme, h, v);
-        const auto lines = static_cast<LinesShown>(h.lines);
-        if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
-            const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
-            text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
-                       std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
-        }
-        row(theme, "Force rate", rate_text(h.force_rate_hz), rate_verdict(h.force_rate_hz, h.goal_hz));
+        hero(theme, state);
         if (h.period_ns > 0) {
-            lateness(theme, h);
+            timing(theme, state);
         } else {
             free_running(theme, h);
         }
-        row(theme, "Overruns", grouped(h.overruns), overrun_verdict(h.overruns, h.cycle));
-        const Verdict memory = memory_verdict(h);
-        row(theme, "Memory", memory.grade == Grade::good ? "clean" : "unclean", memory);
-        row(theme, "Device", device_state_text(h.device_state),
-            Verdict{device_grade(h.device_state), grade_text(device_grade(h.device_state))});
+        draw_device_rows(theme, state);
         delay(theme, h);
-        buses(theme, h);
+        row(theme, "Picture", format("%.0f /s", state.load.fps),
+            picture_verdict(state.load.fps,
+                            state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0));
+        const Verdict memory = memory_verdict(h);
+        if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
         law_and_goal(theme, state);
     }
     buttons(theme, state);
     if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {
-        text_small(theme, colour::kDim, schedule_text(h.schedule_flags));
+        const bool clean = memory_verdict(h).grade == Grade::good;
+        text_small(theme, colour::kDim, schedule_text(h.schedule_flags) + (clean ? "; memory clean" : ""));
         if (h.bad_input + state.refused_records > 0)
             text_small(theme, colour::kWatch,
                        format("records refused: %llu by the controller, %llu here",

@@ -1,21 +1,77 @@
-// Knobs: rate, lateness, the governor's levels and the loads over time.
+// Knobs: rate, lateness, the governor's levels with the reason of each change, and the picture's load over time.
 #include <algorithm>
 #include <array>
 
 #include "gui/panels/panels.hpp"
 #include "gui/panels/plot.hpp"
 #include "gui/panels/widgets.hpp"
+#include "ipc/topics/text.hpp"
 
 namespace tact {
 namespace {
 
 constexpr std::array<ImU32, 4> kPathColours{colour::kAccent, colour::kOrange, colour::kGreen, colour::kPink};
+constexpr std::array<const char*, 3> kLatenessViews{"last minute", "whole run", "over time"};
 
 void span_choice(const Theme& theme, DashboardState& state) {
     static constexpr std::array<const char*, kSpans_s.size()> kNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
     ImGui::PushFont(theme.small);
     choose(theme, kNames, state.span_choice);
     ImGui::PopFont();
+}
+
+// The part behind the dot tells paths apart: "mesh", "force".
+std::string path_name(const PathLevel& p) {
+    const std::string whole(p.path, std::find(p.path, p.path + kPathNameMax, '\0'));
+    const std::size_t dot = whole.find('.');
+    return dot == std::string::npos ? whole : whole.substr(dot + 1);
+}
+
+void lateness_over_time(const Theme& theme, const History& h, PlotSpec spec, ImVec2 size) {
+    const PlotLine late[] = {{&h.lateness_p50_s, colour::kGood, "p50"},
+                             {&h.lateness_p99_s, colour::kWatch, "p99"},
+                             {&h.lateness_max_s, colour::kBad, "max"},
+                             {&h.cycle_cost_s, colour::kAccent, "work"}};
+    spec.title = "Lateness and work";
+    spec.unit = "µs";
+    spec.scale = 1e6;
+    spec.lines = late;
+    spec.logarithmic = true;
+    draw_plot(theme, spec, size);
+}
+
+void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVec2 size) {
+    const History& h = state.history;
+    std::array<PlotLine, kPathColours.size()> level{};
+    std::array<std::string, kPathColours.size()> name, words;
+    const std::size_t paths = state.have_levels ? std::min<std::size_t>(state.levels.count, level.size()) : 0;
+    for (std::size_t i = 0; i < paths; ++i) {
+        const PathLevel& p = state.levels.path[i];
+        name[i] = path_name(p);
+        level[i] = {&h.level[i], kPathColours[i], name[i].c_str()};
+        words[i] = name[i] + format(" %.2f ", static_cast<double>(p.level)) +
+                   level_reason_text(static_cast<LevelReason>(p.reason));
+    }
+    spec.title = "Knobs";
+    spec.unit = "of 1";
+    spec.lines = std::span(level).first(paths);
+    spec.words = std::span<const std::string>(words).first(paths);
+    spec.fixed_top = 1.0;
+    spec.steps = true;
+    const PlotHover hover = draw_plot(theme, spec, size);
+    if (!hover.inside) return;
+    std::string text = ago_text(std::max(spec.now_s - hover.t_s, 0.0));
+    for (std::size_t i = 0; i < paths; ++i) {
+        text += "\n" + name[i] + ": ";
+        if (const KnobChange* const c = h.knobs.in_force(i, hover.t_s); c != nullptr) {
+            text += knob_change_text(*c) + ", " + ago_text(std::max(spec.now_s - c->end_s, 0.0));
+        } else {
+            text += h.knobs.forgotten() > 0 ? "its change is forgotten" : "as it started";
+        }
+    }
+    if (h.knobs.forgotten() > 0)
+        text += format("\n%s older changes are forgotten", grouped(h.knobs.forgotten()).c_str());
+    ImGui::SetTooltip("%s", text.c_str());
 }
 
 }  // namespace
@@ -25,56 +81,46 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     ImGui::SameLine(0.0F, theme.px(16.0F));
     span_choice(theme, state);
     const History& h = state.history;
-    const double span = kSpans_s[static_cast<std::size_t>(std::clamp(state.span_choice, 0, 4))];
-    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const ImVec2 inside = ImGui::GetContentRegionAvail();
     const float gap = theme.px(12.0F);
-    const ImVec2 each{std::floor((room.x - 3.0F * gap) / 4.0F), room.y};
+    // A wide window has the lateness both ways.
+    const bool wide = inside.x > theme.px(900.0F);
+    if (!wide) state.lateness_choice = std::clamp(state.lateness_choice, 0, 2);
+    if (wide && state.lateness_choice == 2) state.lateness_choice = 0;
+    ImGui::SameLine(0.0F, theme.px(20.0F));
+    ImGui::PushFont(theme.small);
+    text_coloured(colour::kDim, "lateness:");
+    ImGui::SameLine(0.0F, theme.px(6.0F));
+    choose(theme, std::span(kLatenessViews).first(wide ? 2 : 3), state.lateness_choice);
+    ImGui::PopFont();
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const float shares = wide ? 5.8F : 4.8F, gaps = wide ? 4.0F : 3.0F;
+    const float unit = (room.x - gaps * gap) / shares;
+    const auto sized = [&](float share) { return ImVec2{std::floor(share * unit), room.y}; };
 
     PlotSpec spec{};
     spec.now_s = h.now_s;
-    spec.span_s = span;
+    spec.span_s = kSpans_s[static_cast<std::size_t>(std::clamp(state.span_choice, 0, 4))];
+    PlotSpec rate_spec = spec;
     const PlotLine rate[] = {{&h.rate_hz, colour::kGood, "rate"}};
-    spec.title = "Force rate";
-    spec.unit = "kHz";
-    spec.scale = 1e-3;
-    spec.lines = rate;
-    spec.goal = 1e-3 * (state.have_levels   ? state.levels.goal_hz
-                        : state.have_health ? state.health.goal_hz
-                                            : 0.0);
-    draw_plot(theme, spec, each);
+    rate_spec.title = "Force rate";
+    rate_spec.unit = "kHz";
+    rate_spec.scale = 1e-3;
+    rate_spec.lines = rate;
+    rate_spec.goal = 1e-3 * (state.have_levels   ? state.levels.goal_hz
+                             : state.have_health ? state.health.goal_hz
+                                                 : 0.0);
+    draw_plot(theme, rate_spec, sized(1.0F));
     ImGui::SameLine(0.0F, gap);
-
-    const PlotLine late[] = {{&h.lateness_p50_s, colour::kGood, "p50"},
-                             {&h.lateness_p99_s, colour::kWatch, "p99"},
-                             {&h.lateness_max_s, colour::kBad, "max"},
-                             {&h.cycle_cost_s, colour::kAccent, "work"}};
-    spec.title = "Lateness and work";
-    spec.unit = "µs";
-    spec.scale = 1e6;
-    spec.lines = late;
-    spec.goal = 0.0;
-    spec.logarithmic = true;
-    draw_plot(theme, spec, each);
-    ImGui::SameLine(0.0F, gap);
-
-    std::array<PlotLine, kPathsMax> level{};
-    std::array<std::array<char, kPathNameMax>, kPathsMax> name{};
-    const std::size_t paths =
-        state.have_levels ? std::min<std::size_t>(state.levels.count, kPathColours.size()) : 0;
-    for (std::size_t i = 0; i < paths; ++i) {
-        std::copy_n(state.levels.path[i].path, kPathNameMax - 1, name[i].begin());
-        // The part behind the dot tells them apart: "mesh", "force".
-        const auto dot = std::find(name[i].begin(), name[i].end(), '.');
-        const char* const tail = dot != name[i].end() ? &*dot + 1 : name[i].data();
-        level[i] = {&h.level[i], kPathColours[i], tail};
+    if (wide || state.lateness_choice == 2) {
+        lateness_over_time(theme, h, spec, sized(wide ? 1.0F : 1.2F));
+        ImGui::SameLine(0.0F, gap);
     }
-    spec.title = "Levels";
-    spec.unit = "of 1";
-    spec.scale = 1.0;
-    spec.lines = std::span(level).first(paths);
-    spec.logarithmic = false;
-    spec.fixed_top = 1.0;
-    draw_plot(theme, spec, each);
+    if (wide || state.lateness_choice != 2) {
+        draw_lateness(theme, state, sized(1.2F), state.lateness_choice == 1);
+        ImGui::SameLine(0.0F, gap);
+    }
+    levels(theme, state, spec, sized(1.6F));
     ImGui::SameLine(0.0F, gap);
 
     const PlotLine frame[] = {{&h.frame_s, colour::kAccent, "frame"}, {&h.busy_s, colour::kPink, "busy"}};
@@ -82,11 +128,10 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     spec.unit = "ms";
     spec.scale = 1e3;
     spec.lines = frame;
-    spec.fixed_top = 0.0;
     spec.least_top = 20.0;
     const double goal_hz = state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0;
     spec.goal = goal_hz > 0.0 ? 1e3 / goal_hz : 0.0;
-    draw_plot(theme, spec, each);
+    draw_plot(theme, spec, sized(1.0F));
     end_card();
 }
 

@@ -6,6 +6,10 @@
 namespace tact {
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card);
+// Inside the controller's card: devices, tracker, motors.
+void draw_device_rows(const Theme& theme, const DashboardState& state);
+// A plot of how late cycles began, in a box of that size.
+void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size, bool whole_run);
 void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card);
 void draw_drilling(const Theme& theme, const DashboardState& state, const PixelRect& card);
 void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card);

@@ -44,7 +44,7 @@ struct Frame {
 };
 
 void draw_line(ImDrawList* draw, const Frame& f, const std::vector<PlotBin>& bins, double scale, ImU32 c,
-               float thick) {
+               float thick, bool steps) {
     static thread_local std::vector<ImVec2> points;
     points.clear();
     // Per pixel column the least and the greatest; a band where they differ, so that no spike is lost.
@@ -64,7 +64,10 @@ void draw_line(ImDrawList* draw, const Frame& f, const std::vector<PlotBin>& bin
         const float top = f.y(scale * static_cast<double>(high)),
                     bottom = f.y(scale * static_cast<double>(low));
         if (bottom - top > 1.5F) draw->AddRectFilled({x, top}, {x + 1.0F, bottom}, band);
-        points.push_back({x + 0.5F, f.y(scale * sum / count)});
+        const ImVec2 point{x + 0.5F, f.y(scale * sum / count)};
+        if (steps && !points.empty() && points.back().y != point.y)
+            points.push_back({point.x, points.back().y});
+        points.push_back(point);
     }
     if (points.size() == 1) draw->AddCircleFilled(points[0], 1.5F * thick, c, 8);
     draw->AddPolyline(points.data(), static_cast<int>(points.size()), c, 0, thick);
@@ -100,7 +103,7 @@ Axis log_axis(double low, double high) {
     return axis;
 }
 
-void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
+PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     ImDrawList* const draw = ImGui::GetWindowDrawList();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy(size);
@@ -131,17 +134,28 @@ void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
 
     float gutter = 0.0F;
     for (const double v : axis.mark) gutter = std::max(gutter, width_of(mark_text(v)));
-    Frame f{{at.x + gutter + theme.px(5.0F), at.y + 2.1F * line + theme.px(9.0F)},
+    const auto rows = static_cast<float>(std::max<std::size_t>(spec.words.size(), 1));
+    Frame f{{at.x + gutter + theme.px(5.0F), at.y + (1.1F + rows) * line + theme.px(9.0F)},
             {at.x + size.x - 1.0F, at.y + size.y - line - theme.px(3.0F)},
             axis,
             spec.logarithmic,
             begin_s,
             spec.now_s};
 
-    // Title and unit, then the legend with the newest values.
+    // Title and unit, then the legend with the newest values; nothing reaches into the neighbour.
+    draw->PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
     const std::string title = std::string(spec.title) + " ";
     draw->AddText(theme.small, line, at, colour::kText, title.c_str());
     label({at.x + width_of(title), at.y}, colour::kDim, "[" + std::string(spec.unit) + "]");
+    const auto swatch = [&](float x, float y, ImU32 c) {
+        draw->AddRectFilled({x, y + 0.47F * line}, {x + theme.px(8.0F), y + 0.47F * line + theme.px(3.0F)},
+                            c);
+    };
+    for (std::size_t i = 0; i < spec.words.size(); ++i) {
+        const float y = at.y + (1.08F + static_cast<float>(i)) * line;
+        if (i < spec.lines.size()) swatch(at.x, y, spec.lines[i].colour);
+        label({at.x + theme.px(11.0F), y}, colour::kDim, spec.words[i]);
+    }
     const auto legend = [&](const PlotLine& l, bool with_value) {
         const std::string name = l.name;
         if (!with_value || l.series->empty()) return name;
@@ -152,9 +166,9 @@ void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     const bool values = legend_width < size.x + theme.px(9.0F);
     float x = at.x;
     for (const PlotLine& l : spec.lines) {
+        if (!spec.words.empty()) break;
         const std::string text = legend(l, values);
-        draw->AddRectFilled({x, at.y + 1.55F * line},
-                            {x + theme.px(8.0F), at.y + 1.55F * line + theme.px(3.0F)}, l.colour);
+        swatch(x, at.y + 1.08F * line, l.colour);
         x += theme.px(11.0F);
         label({x, at.y + 1.08F * line}, colour::kDim, text);
         x += width_of(text) + theme.px(9.0F);
@@ -185,14 +199,22 @@ void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     }
     for (const PlotLine& l : spec.lines) {
         l.series->window(begin_s, spec.now_s, bins);
-        draw_line(draw, f, bins, spec.scale, l.colour, theme.px(1.3F));
+        draw_line(draw, f, bins, spec.scale, l.colour, theme.px(1.3F), spec.steps);
     }
+    PlotHover hover;
+    if (any && ImGui::IsMouseHoveringRect(f.low, f.high)) {
+        const float mouse = ImGui::GetIO().MousePos.x;
+        hover = {true, begin_s + static_cast<double>((mouse - f.low.x) / (f.high.x - f.low.x)) * spec.span_s};
+        draw->AddRectFilled({mouse, f.low.y}, {mouse + 1.0F, f.high.y}, colour::kDim);
+    }
+    draw->PopClipRect();
     draw->PopClipRect();
     if (!any) {
         const std::string none = "nothing measured yet";
         label({0.5F * (f.low.x + f.high.x - width_of(none)), 0.5F * (f.low.y + f.high.y) - 0.5F * line},
               colour::kDim, none);
     }
+    return hover;
 }
 
 }  // namespace tact

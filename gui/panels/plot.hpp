@@ -29,9 +29,17 @@ struct PlotSpec {
     double least_top = 0.0;  // the vertical axis reaches at least this far (shown unit)
     double fixed_top = 0.0;  // > 0: exactly this far
     double goal = 0.0;       // > 0: a dashed line (shown unit)
+    bool steps = false;      // a value holds until the next one
+    // In place of the legend's own words, a line for each of `lines`; cut off where there is no room.
+    std::span<const std::string> words = {};
 };
 
-void draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
+// Where the mouse is in it, for a caller that has words about that moment.
+struct PlotHover {
+    bool inside = false;
+    double t_s = 0.0;
+};
+PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
 
 // Borders for an axis that shows [low, high], and its marks; tested apart from drawing.
 struct Axis {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "ipc/topics/text.hpp"
 
@@ -13,6 +14,18 @@ std::string count_words(std::uint64_t n, const char* one, const char* many) {
 }
 
 }  // namespace
+
+std::string ago_text(double s) {
+    char text[48];
+    if (s < 99.5) {
+        std::snprintf(text, sizeof text, "%.0f s ago", s);
+    } else if (s < 5970.0) {
+        std::snprintf(text, sizeof text, "%.0f min ago", s / 60.0);
+    } else {
+        std::snprintf(text, sizeof text, "%.1f h ago", s / 3600.0);
+    }
+    return text;
+}
 
 const char* grade_text(Grade grade) noexcept {
     switch (grade) {
@@ -56,12 +69,15 @@ Verdict bus_verdict(const BusCounts& counts) {
     return {Grade::watch, std::to_string(bad) + " bad, " + std::to_string(counts.lost) + " lost"};
 }
 
-Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles) {
-    if (overruns == 0) return {Grade::good, "none"};
-    const double part = static_cast<double>(overruns) / static_cast<double>(cycles > 0 ? cycles : 1);
+Verdict overrun_verdict(const HealthTopic& h, std::int64_t now_ns) {
+    if (h.overruns == 0) return {Grade::good, "none"};
+    const double part = static_cast<double>(h.overruns) / static_cast<double>(h.cycle > 0 ? h.cycle : 1);
     char text[64];
     std::snprintf(text, sizeof text, "%.2g %% of the cycles", 100.0 * part);
-    return {part < 1e-3 ? Grade::watch : Grade::bad, text};
+    std::string words = text;
+    const double ago_s = 1e-9 * static_cast<double>(now_ns - h.overrun_at_ns);
+    if (h.overrun_at_ns > 0 && ago_s >= 0.0) words = "the last " + ago_text(ago_s);
+    return {part < 1e-3 ? Grade::watch : Grade::bad, words};
 }
 
 Verdict state_verdict(RunState state, RunReason reason) {
@@ -192,6 +208,77 @@ Grade notice_grade(DeviceNotice notice) noexcept {
 Grade device_grade(std::uint8_t device_state) noexcept {
     static constexpr Grade kGrades[] = {Grade::watch, Grade::good, Grade::good, Grade::bad, Grade::bad};
     return device_state < 5 ? kGrades[device_state] : Grade::unknown;
+}
+
+Verdict device_verdict(const DeviceHand& device, const BusCounts& bus, DeviceNotice notice) {
+    if (device.there == 0) return {Grade::unknown, "none"};
+    static constexpr const char* kReads[] = {"", "its position is old", "lost", "fault"};
+    if (device.read > 3) return {Grade::unknown, "unknown"};
+    if (device.read >= 2) return {Grade::bad, kReads[device.read]};
+    const Grade state = device_grade(device.state);
+    if (state == Grade::bad) return {Grade::bad, device_state_text(device.state)};
+    if (notice_grade(notice) == Grade::bad) return {Grade::bad, "see what it says above"};
+    if (device.read == 1) return {Grade::watch, kReads[1]};
+    if (notice != DeviceNotice::none) return {Grade::watch, asks(notice) ? "asks for a hand" : "see above"};
+    if (!bus.clean()) return bus_verdict(bus);
+    return {state, device_state_text(device.state)};
+}
+
+Verdict motor_verdict(const DeviceHand& device) {
+    constexpr double kRestC = 25.0;
+    const auto grade = [](double share) {
+        return share < 0.8 ? Grade::good : share < 1.0 ? Grade::watch : Grade::bad;
+    };
+    char text[64];
+    if (device.winding_c_max > 0.0F) {
+        const double share = (static_cast<double>(device.winding_c) - kRestC) /
+                             (static_cast<double>(device.winding_c_max) - kRestC);
+        const Grade g = grade(share);
+        std::snprintf(text, sizeof text, "%s, motor %d of %.0f °C",
+                      g == Grade::good    ? "cool"
+                      : g == Grade::watch ? "warm, weakens"
+                                          : "hot",
+                      device.motor + 1, static_cast<double>(device.winding_c_max));
+        return {g, text};
+    }
+    if (!(device.force_n_continuous > 0.0F)) return {Grade::unknown, "no heat is counted"};
+    const Grade g = grade(static_cast<double>(device.heat));
+    if (g == Grade::good) return {g, "cool"};
+    if (g == Grade::watch) return {g, "warm, weakens"};
+    std::snprintf(text, sizeof text, "hot, %.1f N are left", static_cast<double>(device.force_n_continuous));
+    return {g, text};
+}
+
+// The numbers are those of TrackerState and TrackerLink, which this process does not see.
+Verdict tracker_verdict(const TrackerTopic& t) {
+    constexpr std::uint8_t kLinkUp = 1, kFrozen = 1, kFresh = 2;
+    if (t.link != kLinkUp) return {Grade::bad, head_link_text(t.link)};
+    if (t.state == kFrozen) return {Grade::watch, "frozen, the view stands"};
+    if (t.state != kFresh) return {Grade::bad, "lost, the view stands"};
+    return {Grade::good, "fresh"};
+}
+
+std::string tracker_counts_text(const TrackerTopic& t) {
+    const std::pair<const char*, std::uint64_t> kRows[] = {
+        {"missed", t.missed},    {"refused", t.refused},       {"dropped", t.dropped},
+        {"floods", t.floods},    {"bus errors", t.bus_errors}, {"link losses", t.link_losses},
+        {"reopened", t.reopened}};
+    std::string text;
+    for (const auto& [name, n] : kRows) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(n);
+    }
+    return text;
+}
+
+Verdict picture_verdict(double fps, double goal_hz) {
+    if (!(fps > 0.0)) return {Grade::unknown, "nothing drawn yet"};
+    const bool goal = goal_hz > 0.0;
+    const double share = fps / (goal ? goal_hz : 20.0);
+    if (share >= (goal ? 0.9 : 1.0)) return {Grade::good, goal ? "holds its goal" : "fluent"};
+    char text[64];
+    std::snprintf(text, sizeof text, "below %s%.0f a second", goal ? "its goal of " : "",
+                  goal ? goal_hz : 20.0);
+    return {share >= 0.6 ? Grade::watch : Grade::bad, text};
 }
 
 }  // namespace tact

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "ipc/base/device_notice.hpp"
+#include "ipc/topics/device.hpp"
+#include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -18,6 +20,7 @@ struct Verdict {
     std::string words;
 };
 
+[[nodiscard]] std::string ago_text(double seconds);          // "12 s ago", "3 min ago"
 [[nodiscard]] const char* grade_text(Grade grade) noexcept;  // "good", "watch", "bad", "unknown"
 
 // 5 % below the goal is worth a look, 15 % is bad.
@@ -27,7 +30,8 @@ struct Verdict {
 [[nodiscard]] Verdict lateness_verdict(std::int64_t p99_ns, std::int64_t period_ns);
 // Of a step's work, what is done anew on average: below 95 % is worth a look, below half is bad.
 [[nodiscard]] Verdict fresh_verdict(float mean);
-[[nodiscard]] Verdict overrun_verdict(std::uint64_t overruns, std::uint64_t cycles);
+// now_ns: to tell how long the last one is ago. One in a thousand cycles is bad.
+[[nodiscard]] Verdict overrun_verdict(const HealthTopic& health, std::int64_t now_ns);
 [[nodiscard]] Verdict state_verdict(RunState state, RunReason reason);
 // What stands over the picture while something stops the force: why, and what a person is to do. No words: nothing stops it.
 struct StopNotice {
@@ -47,5 +51,14 @@ struct StopNotice {
 // What ever was wrong on it is worth a look; whether it still is, its notice says.
 [[nodiscard]] Verdict bus_verdict(const BusCounts& counts);
 [[nodiscard]] Grade device_grade(std::uint8_t device_state) noexcept;
+// A hand's device: its state, what its last read gave, what its bus counted and what it says, the worst of them.
+[[nodiscard]] Verdict device_verdict(const DeviceHand& device, const BusCounts& bus, DeviceNotice notice);
+// From 80 % of what the motors stand for ever the force is held back, from all of it on little is left.
+[[nodiscard]] Verdict motor_verdict(const DeviceHand& device);
+[[nodiscard]] Verdict tracker_verdict(const TrackerTopic& tracker);
+// What of a tracker's frames was wrong: "missed 3, refused 1"; empty: nothing.
+[[nodiscard]] std::string tracker_counts_text(const TrackerTopic& tracker);
+// 10 % below its goal is worth a look, 40 % is bad. No goal: 20 pictures a second are what an eye takes for motion.
+[[nodiscard]] Verdict picture_verdict(double fps, double goal_hz);
 
 }  // namespace tact

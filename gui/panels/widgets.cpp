@@ -26,8 +26,8 @@ void begin_card(const Theme& theme, const char* title, const PixelRect& card, bo
 
 void end_card() { ImGui::End(); }
 
-void badge(const Theme& theme, const std::string& word, ImU32 fill) {
-    ImGui::PushFont(theme.bold);
+void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font) {
+    ImGui::PushFont(font != nullptr ? font : theme.bold);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 text = ImGui::CalcTextSize(word.c_str());
     const float pad_x = theme.px(8.0F), pad_y = theme.px(2.0F);

@@ -15,7 +15,7 @@ void begin_card(const Theme& theme, const char* title, const PixelRect& card, bo
 void end_card();
 
 // A filled pill with a word.
-void badge(const Theme& theme, const std::string& word, ImU32 fill);
+void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font = nullptr);
 // One row: what on the left, the value right of it, words after it in the colour of the grade.
 void row(const Theme& theme, const char* what, const std::string& value, const Verdict& verdict);
 void row(const Theme& theme, const char* what, const std::string& value,

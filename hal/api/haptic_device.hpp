@@ -41,6 +41,9 @@ struct DeviceSample {
     // the encoders to the motors in whole samples, never less than it is. 0: unknown.
     Duration delay{0};
     BusCounts bus{};
+    // Of the motor whose winding is hottest, degrees C, as the driver counts it; winding_c_max 0: it does not.
+    float winding_c = 0.0F, winding_c_max = 0.0F;
+    std::uint8_t hottest_motor = 0;
 };
 
 struct DeviceCommand {

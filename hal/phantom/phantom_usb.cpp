@@ -57,6 +57,12 @@ void PhantomUsb::heat() noexcept {
     const double dt_s = std::min((news_.state.time_us - time_us_) * 1e-6, 1.0);
     for (std::size_t i = 0; i < 3; ++i)
         heat_[i] = heated(p.heat, heat_[i], news_.state.current_ma[i] * 1e-3, dt_s);
+    std::size_t hottest = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (heat_[i].winding_c > heat_[hottest].winding_c) hottest = i;
+    sample_.winding_c = static_cast<float>(heat_[hottest].winding_c);
+    sample_.winding_c_max = static_cast<float>(p.heat.winding_c_max);
+    sample_.hottest_motor = static_cast<std::uint8_t>(hottest);
 }
 
 void PhantomUsb::calibrate(Instant now) noexcept {

@@ -22,7 +22,7 @@ enum class EventCode : std::uint16_t {
     gui_detached,
     gui_silent,     // a: heartbeat age in ms
     command_done,   // a: CommandKind, b: CommandResult
-    level_changed,  // a: index in LevelsTopic::path, b: new level
+    level_changed,  // a: index in LevelsTopic::path, b: new level, detail: LevelReason
     input_refused,  // a: count so far
     model_swapped,
     hand_present,
@@ -37,11 +37,12 @@ enum class EventCode : std::uint16_t {
 };
 
 struct EventTopic {
-    static constexpr TopicInfo kInfo{.name = "event", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "event", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::uint16_t code;         // EventCode
-    std::uint16_t reserved[3];  // zero
+    std::uint16_t detail;       // of a code that has one; else zero
+    std::uint16_t reserved[2];  // zero
     double a;
     double b;
 };

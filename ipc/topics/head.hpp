@@ -28,4 +28,25 @@ struct alignas(64) HeadTopic {
 static_assert(std::is_trivially_copyable_v<HeadTopic> && sizeof(HeadTopic) == 192);
 static_assert(offsetof(HeadTopic, velocity_screen_m_s) == 72);
 
+// What came from the head tracker since it was opened, and what of it was wrong, ten times a second.
+struct alignas(64) TrackerTopic {
+    static constexpr TopicInfo kInfo{.name = "tracker", .version = 1, .writer = Writer::rt};
+    std::int64_t taken_at_ns;
+    std::int64_t age_ns;        // of the newest sample; -1: none yet
+    double rate_hz;             // that its maker names; 0: unknown
+    std::uint64_t frames;       // taken from its bus
+    std::uint64_t samples;      // whole good poses
+    std::uint64_t missed;       // periods that never came
+    std::uint64_t refused;      // frames and poses that were not believed
+    std::uint64_t dropped;      // by the kernel
+    std::uint64_t floods;       // rounds that ended with more to take
+    std::uint64_t bus_errors;   // error frames
+    std::uint64_t link_losses;  // times that the link went from up
+    std::uint64_t reopened;
+    std::uint8_t state;         // TrackerState
+    std::uint8_t link;          // TrackerLink
+    std::uint8_t reserved[30];  // zero
+};
+static_assert(std::is_trivially_copyable_v<TrackerTopic> && sizeof(TrackerTopic) == 128);
+
 }  // namespace tact

@@ -9,6 +9,7 @@
 #include "ipc/shm/topic_list.hpp"
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
+#include "ipc/topics/device.hpp"
 #include "ipc/topics/drill.hpp"
 #include "ipc/topics/event.hpp"
 #include "ipc/topics/head.hpp"
@@ -22,7 +23,7 @@
 namespace tact {
 
 inline constexpr std::size_t kHandsMax = 2;
-static_assert(kDrillHands == kHandsMax);
+static_assert(kDrillHands == kHandsMax && kDeviceHands == kHandsMax);
 
 struct RtRegion {
     static constexpr char kName[] = "tact.rt";
@@ -31,6 +32,8 @@ struct RtRegion {
     Latest<TouchTopic> touch;
     Latest<DrillTopic> drill;
     Latest<HeadTopic> head;
+    Latest<TrackerTopic> tracker;
+    Latest<DevicesTopic> devices;
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
     Latest<LevelsTopic> levels;
@@ -46,9 +49,9 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, HealthTopic,
-                             LatenessTopic, LevelsTopic, EventTopic, TraceTopic, StartTopic, CycleTopic,
-                             HandTopic, MailTopic, ReportTopic, RunText>;
+    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic,
+                             DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, EventTopic, TraceTopic,
+                             StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {

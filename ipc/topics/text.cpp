@@ -301,7 +301,8 @@ std::string event_text(const EventTopic& event) {
             return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
                    command_result_text(code_of<CommandResult>(event.b));
         case EventCode::level_changed:
-            return what + ": " + path_text(event.a) + " to " + number(event.b, 2);
+            return what + ": " + path_text(event.a) + " to " + number(event.b, 2) + ", " +
+                   level_reason_text(code_of<LevelReason>(event.detail));
         case EventCode::input_refused:
             return what + ": " + a + " so far";
         case EventCode::stopping:

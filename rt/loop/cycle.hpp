@@ -25,6 +25,7 @@ struct HandCycle {
     IoStatus read_status = IoStatus::ok;
     IoStatus write_status = IoStatus::ok;
     bool sample_usable = false;
+    Duration age_most{0};  // of a sample, since the devices were last published
     ToolState tool;
     StepResult step;
     DeadlineLooks deadline;          // of that step

@@ -33,15 +33,24 @@ void put(const Vec3& v, double (&out)[3]) noexcept { std::copy_n(v.data(), 3, ou
 
 }  // namespace
 
-HeadFeed::HeadFeed(const HeadSettings& settings, std::unique_ptr<Tracker> tracker, Latest<HeadTopic>& topic)
-    : settings_(settings), tracker_(std::move(tracker)), topic_(topic), filter_(settings.filter) {}
+HeadFeed::HeadFeed(const HeadSettings& settings, std::unique_ptr<Tracker> tracker, Latest<HeadTopic>& topic,
+                   Latest<TrackerTopic>& counts)
+    : settings_(settings),
+      tracker_(std::move(tracker)),
+      topic_(topic),
+      counts_(counts),
+      filter_(settings.filter) {}
 
 HeadFeed::~HeadFeed() {
     leave_.store(true, std::memory_order_relaxed);
     if (thread_.joinable()) thread_.join();
 }
 
-TrackerInfo HeadFeed::open() { return tracker_->open(); }
+TrackerInfo HeadFeed::open() {
+    TrackerInfo info = tracker_->open();
+    rate_hz_ = info.rate_hz;
+    return info;
+}
 
 void HeadFeed::start() {
     // The new thread inherits a mask that lets no signal in: they belong to main.
@@ -72,10 +81,32 @@ void HeadFeed::step(Instant now) noexcept {
         if (link != TrackerLink::up || link_ != TrackerLink::closed)
             spdlog::info("head tracker: {}", words(link));
         link_ = link;
-    } else if (!fresh && newest_.state == before) {
-        return;
+        publish();
+    } else if (fresh || newest_.state != before) {
+        publish();
     }
-    publish();
+    if (now - counted_at_ >= kCountsEvery) publish_counts(now);
+}
+
+void HeadFeed::publish_counts(Instant now) noexcept {
+    counted_at_ = now;
+    const TrackerHealth h = tracker_->health();
+    TrackerTopic t{};
+    t.taken_at_ns = to_ns(now);
+    t.age_ns = newest_.sequence > 0 ? std::max<std::int64_t>((now - newest_.taken_at).count(), 0) : -1;
+    t.rate_hz = rate_hz_;
+    t.frames = h.frames;
+    t.samples = h.samples;
+    t.missed = h.missed;
+    t.refused = h.refused;
+    t.dropped = h.dropped;
+    t.floods = h.floods;
+    t.bus_errors = h.bus_errors;
+    t.link_losses = h.link_losses;
+    t.reopened = h.reopened;
+    t.state = static_cast<std::uint8_t>(newest_.state);
+    t.link = static_cast<std::uint8_t>(link_);
+    counts_.publish(t);
 }
 
 void HeadFeed::publish() noexcept {

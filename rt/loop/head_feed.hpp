@@ -1,4 +1,4 @@
-// From the head tracker to the head topic: filtered, in the frame of the screen.
+// From the head tracker to the head topic: filtered, in the frame of the screen; and what it counts to the tracker topic.
 //
 // Thread   "head", ordinary scheduling; it sees every sample of a tracker of up to 500 Hz and publishes
 //          each once. step() may be called instead, by a test.
@@ -25,9 +25,11 @@ struct HeadSettings {
 class HeadFeed {
 public:
     static constexpr Duration kEvery = std::chrono::milliseconds(2);
+    static constexpr Duration kCountsEvery = std::chrono::milliseconds(100);
 
-    // The topic outlives the feed.
-    HeadFeed(const HeadSettings& settings, std::unique_ptr<Tracker> tracker, Latest<HeadTopic>& topic);
+    // The topics outlive the feed.
+    HeadFeed(const HeadSettings& settings, std::unique_ptr<Tracker> tracker, Latest<HeadTopic>& topic,
+             Latest<TrackerTopic>& counts);
     ~HeadFeed();
     HeadFeed(const HeadFeed&) = delete;
     HeadFeed& operator=(const HeadFeed&) = delete;
@@ -38,10 +40,14 @@ public:
 
 private:
     void publish() noexcept;
+    void publish_counts(Instant now) noexcept;
 
     HeadSettings settings_;
     std::unique_ptr<Tracker> tracker_;
     Latest<HeadTopic>& topic_;
+    Latest<TrackerTopic>& counts_;
+    double rate_hz_ = 0.0;  // that its maker names
+    Instant counted_at_{};
     HeadFilter filter_;
     TrackerSample newest_;
     std::uint64_t filtered_ = 0;  // sequence of the sample that the filter saw last

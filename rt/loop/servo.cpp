@@ -160,6 +160,7 @@ void Servo::sense(CycleState& c) noexcept {
         h.sample_usable = h.read_status != IoStatus::lost && h.sample.T_dev_tool.finite() &&
                           h.sample.twist_dev.linear_m_s.allFinite() &&
                           h.sample.twist_dev.angular_rad_s.allFinite();
+        if (h.sample.sequence > 0) h.age_most = std::max(h.age_most, c.now - h.sample.taken_at);
         if (h.read_status == IoStatus::ok && h.sample.delay > Duration{0})
             statistics_.delayed(h.sample.delay);
     }
@@ -311,6 +312,7 @@ void Servo::publish(CycleState& c) noexcept {
         statistics_.work.turn(c.now);
         health_at_ = c.now;
         health_due_ = true;
+        publish_devices(c);
         if (statistics_.second_over(c.now)) publish_lateness(c);
         bound_by_delay();
     }
@@ -333,6 +335,7 @@ void Servo::close(CycleState& c) noexcept {
     }
     if (c.overran) {
         ++interval_overruns_;
+        overrun_at_ns_ = to_ns(end);
         if (end - overrun_said_at_ > std::chrono::milliseconds(100)) {
             overrun_said_at_ = end;
             say(EventCode::overrun, to_us(end - c.planned), static_cast<double>(pacer_.overruns()));

@@ -149,7 +149,7 @@ private:
     void rearm_lines(CycleState& c, RunState before) noexcept TACT_RT;
     void drive_lines(CycleState& c) noexcept TACT_RT;
     void note_fault(const CycleState& c) noexcept TACT_RT;
-    void say(EventCode code, double a, double b) noexcept TACT_RT;
+    void say(EventCode code, double a, double b, std::uint16_t detail = 0) noexcept TACT_RT;
     void say_acts(CycleState& c, HandCycle& h) noexcept TACT_RT;
     void bound_by_delay() noexcept TACT_RT;
     void glide(HandCycle& h, double dt_s) noexcept TACT_RT;
@@ -158,6 +158,7 @@ private:
     void publish_drill(const CycleState& c) noexcept TACT_RT;
     void publish_tools(const CycleState& c) noexcept TACT_RT;
     void publish_health(const CycleState& c) noexcept TACT_RT;
+    void publish_devices(CycleState& c) noexcept TACT_RT;
     void publish_lateness(const CycleState& c) noexcept TACT_RT;
     void publish_levels(const CycleState& c) noexcept TACT_RT;
     void publish_trace(const CycleState& c) noexcept TACT_RT;
@@ -198,6 +199,7 @@ private:
     bool health_due_ = false;
     bool stopping_ = false, finished_ = false, dry_ = false;
     Instant health_at_{}, overrun_said_at_{};
+    std::int64_t overrun_at_ns_ = 0;        // the last one
     bool building_ = false;                 // a model is being built aside
     std::uint16_t governed_structure_ = 0;  // whose knob the governor has
     std::uint64_t page_faults_ = 0;

@@ -64,7 +64,8 @@ void Servo::say_levels(const CycleState& c, std::span<const float> before, bool 
     if (changed) ++levels_sequence_;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (paths[i].level == before[i]) continue;
-        say(EventCode::level_changed, static_cast<double>(i), static_cast<double>(paths[i].level));
+        say(EventCode::level_changed, static_cast<double>(i), static_cast<double>(paths[i].level),
+            static_cast<std::uint16_t>(paths[i].reason));
         if (!paths[i].knob.haptic) picture_.asked(levels_sequence_, c.now);
     }
     publish_levels(c);

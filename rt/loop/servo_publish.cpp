@@ -32,12 +32,13 @@ std::int32_t cut_ns(Duration d) noexcept {
 
 }  // namespace
 
-void Servo::say(EventCode code, double a, double b) noexcept {
+void Servo::say(EventCode code, double a, double b, std::uint16_t detail) noexcept {
     ++events_said_;
     EventTopic e{};
     e.taken_at_ns = to_ns(c_->now);
     e.cycle = c_->cycle;
     e.code = static_cast<std::uint16_t>(code);
+    e.detail = detail;
     e.a = a;
     e.b = b;
     region_.events.push(e);
@@ -191,6 +192,7 @@ void Servo::publish_health(const CycleState& c) noexcept {
     t.cycle_cost_p50_ns = f.cost_p50_ns;
     t.cycle_cost_max_ns = f.cost_max_ns;
     t.overruns = pacer_.overruns();
+    t.overrun_at_ns = overrun_at_ns_;
     t.skipped = pacer_.skipped();
     t.allocations = rt_guard::counts().allocations;
     t.locks = rt_guard::counts().locks;
@@ -224,6 +226,31 @@ void Servo::publish_health(const CycleState& c) noexcept {
         t.device_bus[i] = c.hand[i].sample.bus;
     }
     region_.health.publish(t);
+}
+
+void Servo::publish_devices(CycleState& c) noexcept {
+    DevicesTopic t{};
+    t.taken_at_ns = to_ns(c.now);
+    t.cycle = c.cycle;
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        const DeviceSample& s = h.sample;
+        DeviceHand& d = t.hand[i];
+        d.there = 1;
+        d.samples = s.sequence;
+        d.age_ns = s.sequence > 0 ? std::max<std::int64_t>((c.now - s.taken_at).count(), 0) : -1;
+        d.age_ns_most = std::max(h.age_most.count(), d.age_ns);
+        d.heat = static_cast<float>(h.out.heat);
+        d.force_n_max = static_cast<float>(h.chain.settings().force_n_max);
+        d.force_n_continuous = static_cast<float>(h.chain.settings().force_n_continuous);
+        d.winding_c = s.winding_c;
+        d.winding_c_max = s.winding_c_max;
+        d.motor = s.hottest_motor;
+        d.state = static_cast<std::uint8_t>(s.state);
+        d.read = static_cast<std::uint8_t>(h.read_status);
+        h.age_most = Duration{0};
+    }
+    region_.devices.publish(t);
 }
 
 void Servo::publish_lateness(const CycleState& c) noexcept {

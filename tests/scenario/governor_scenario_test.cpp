@@ -269,6 +269,18 @@ TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_retur
     loop.cycles(10000);
     EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
     EXPECT_GT(loop.said(EventCode::level_changed), 2);
+    // Each change says why.
+    bool fell = false, rose = false;
+    RingCursor cursor;
+    for (EventTopic e{}; loop.region_->events.next(cursor, e);) {
+        if (e.code != static_cast<std::uint16_t>(EventCode::level_changed)) continue;
+        const auto why = static_cast<LevelReason>(e.detail);
+        EXPECT_TRUE(why == LevelReason::rate_low || why == LevelReason::rate_high) << e.detail;
+        fell = fell || why == LevelReason::rate_low;
+        rose = rose || why == LevelReason::rate_high;
+    }
+    EXPECT_TRUE(fell);
+    EXPECT_TRUE(rose);
 }
 
 TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {

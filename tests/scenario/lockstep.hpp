@@ -67,6 +67,11 @@ public:
         static_cast<void>(region_->health.read(t));
         return t;
     }
+    [[nodiscard]] DevicesTopic devices() const {
+        DevicesTopic t{};
+        static_cast<void>(region_->devices.read(t));
+        return t;
+    }
     [[nodiscard]] LevelsTopic levels() const {
         LevelsTopic t{};
         static_cast<void>(region_->levels.read(t));

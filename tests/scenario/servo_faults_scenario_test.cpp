@@ -156,6 +156,9 @@ TEST(ServoFaults, overruns_are_counted_and_skip_forward_without_a_burst) {
     EXPECT_EQ(loop.servo_->pacer().skipped(), 200U);
     EXPECT_EQ(loop.state(), RunState::active);
     EXPECT_EQ(before.overruns, 0U);
+    EXPECT_EQ(before.overrun_at_ns, 0);
+    EXPECT_GT(loop.health().overrun_at_ns, to_ns(begin));
+    EXPECT_LE(loop.health().overrun_at_ns, loop.health().taken_at_ns);
 }
 
 }  // namespace

@@ -117,6 +117,27 @@ TEST(ServoScenario, a_signal_ends_a_faulted_loop_as_well) {
 
 // --- commands ---
 
+TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat) {
+    Lockstep loop;
+    loop.cycles(200);
+    const DevicesTopic cool = loop.devices();
+    ASSERT_EQ(cool.hand[0].there, 1);
+    EXPECT_EQ(cool.hand[1].there, 0);
+    EXPECT_GT(cool.hand[0].samples, 100U);
+    EXPECT_GE(cool.hand[0].age_ns, 0);
+    EXPECT_GE(cool.hand[0].age_ns_most, cool.hand[0].age_ns);
+    EXPECT_LT(cool.hand[0].age_ns_most, 5'000'000);
+    EXPECT_FLOAT_EQ(cool.hand[0].heat, 0.0F);
+    EXPECT_GT(cool.hand[0].force_n_continuous, 0.0F);
+    EXPECT_EQ(cool.hand[0].winding_c_max, 0.0F);  // the emulated device counts none
+    loop.active();
+    loop.cycles(2000);
+    const DevicesTopic warm = loop.devices();
+    EXPECT_GT(warm.hand[0].heat, 0.0F);
+    EXPECT_LT(warm.hand[0].heat, 1.0F);
+    EXPECT_GT(warm.hand[0].samples, cool.hand[0].samples + 1000);
+}
+
 TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
     Lockstep loop;
     loop.order(CommandKind::disarm);

@@ -41,6 +41,15 @@ std::unique_ptr<RtRegion> a_region() {
     std::strcpy(levels.path[0].path, "docking.force");
     levels.path[0].level = 0.25F;
     region->levels.publish(levels);
+    DevicesTopic devices{};
+    devices.hand[0].there = 1;
+    devices.hand[0].heat = 0.5F;
+    devices.hand[0].force_n_continuous = 1.4F;
+    region->devices.publish(devices);
+    TrackerTopic tracker{};
+    tracker.state = 2;
+    tracker.missed = 4;
+    region->tracker.publish(tracker);
     return region;
 }
 
@@ -74,6 +83,11 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     EXPECT_EQ(value_of(text, "tact_level{session=\"lab\",path=\"docking.force\"}"), 0.25);
     EXPECT_EQ(value_of(text, "tact_frame_time_seconds{session=\"lab\"}"), 0.02);
     EXPECT_EQ(value_of(text, "tact_device_bus_errors_total{session=\"lab\",hand=\"1\",kind=\"lost\"}"), 7.0);
+    EXPECT_EQ(value_of(text, "tact_motor_heat_ratio{session=\"lab\",hand=\"1\"}"), 0.5);
+    EXPECT_TRUE(std::isnan(value_of(text, "tact_motor_heat_ratio{session=\"lab\",hand=\"2\"}")));
+    EXPECT_TRUE(std::isnan(value_of(text, "tact_motor_winding_celsius{session=\"lab\",hand=\"1\"}")));
+    EXPECT_EQ(value_of(text, "tact_tracker_fresh{session=\"lab\"}"), 1.0);
+    EXPECT_EQ(value_of(text, "tact_tracker_errors_total{session=\"lab\",kind=\"missed\"}"), 4.0);
     const auto cause = [&](RunReason reason) {
         return value_of(text, std::string("tact_faults_total{session=\"lab\",cause=\"") +
                                   run_reason_text(reason) + "\"}");

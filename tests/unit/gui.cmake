@@ -2,6 +2,7 @@
 if(TACT_GUI)
     find_package(CLI11 REQUIRED)
     tact_test(unit/gui_plot_series_test.cpp USES gui_panels)
+    tact_test(unit/gui_dashboard_test.cpp USES gui_panels topics base)
     tact_test(unit/gui_particles_test.cpp USES gui_particles assets base)
     tact_test(scenario/site_scenario_test.cpp USES gui_site gui_link gui_particles topics shm assets hal force loop base)
     tact_test(unit/gui_site_test.cpp USES gui_site gui_link gui_particles topics shm assets base

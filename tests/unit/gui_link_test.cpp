@@ -106,6 +106,39 @@ TEST(RegionChecks, RefuseAHeadThatCannotBe) {
     refused([](HeadTopic& h) { h.quality = 1.5; });
 }
 
+TEST(RegionChecks, RefuseDevicesATrackerAndALatenessThatCannotBe) {
+    EXPECT_TRUE(sensible(DevicesTopic{}));
+    EXPECT_TRUE(sensible(TrackerTopic{}));
+    EXPECT_TRUE(sensible(LatenessTopic{}));
+    const auto device = [](const auto& spoil) {
+        DevicesTopic t{};
+        t.hand[1].there = 1;
+        spoil(t.hand[1]);
+        return sensible(t);
+    };
+    EXPECT_TRUE(device([](DeviceHand& d) { d.heat = 3.0F; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.heat = NAN; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.winding_c = INFINITY; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.force_n_continuous = -1.0F; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.age_ns = -2; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.read = 4; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.there = 2; }));
+    TrackerTopic tracker{};
+    tracker.link = 5;
+    EXPECT_FALSE(sensible(tracker));
+    tracker = {};
+    tracker.rate_hz = NAN;
+    EXPECT_FALSE(sensible(tracker));
+    LatenessTopic late{};
+    late.counts[7] = 3;
+    EXPECT_FALSE(sensible(late));  // of no cycles
+    late.total = 3;
+    EXPECT_TRUE(sensible(late));
+    late.counts[8] = ~std::uint64_t{0};
+    late.total = 2;  // where the sum overflows
+    EXPECT_FALSE(sensible(late));
+}
+
 TEST(RegionChecks, RefuseBodiesThatCannotBe) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();
@@ -283,15 +316,84 @@ TEST(Verdict, GradesTheRateAgainstItsGoal) {
     EXPECT_EQ(rate_verdict(5.0, 0.0).grade, Grade::unknown);
 }
 
+TEST(Verdicts, OfDevicesMotorsAndATrackerSayTheWorstOfWhatIsKnown) {
+    DeviceHand d{};
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::unknown);
+    d.there = 1;
+    d.state = 2;
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::good);
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).words, "powered");
+    BusCounts lossy;
+    lossy.lost = 3;
+    EXPECT_EQ(device_verdict(d, lossy, DeviceNotice::none).grade, Grade::watch);
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::keep_still).grade, Grade::watch);
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::gone).grade, Grade::bad);
+    d.read = 1;
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::watch);
+    d.read = 2;
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).words, "lost");
+    d.read = 0;
+    d.state = 4;
+    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::bad);
+
+    DeviceHand m{};
+    EXPECT_EQ(motor_verdict(m).grade, Grade::unknown);
+    m.force_n_continuous = 1.4F;
+    m.heat = 0.79F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::good);
+    m.heat = 0.81F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::watch);
+    m.heat = 1.01F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::bad);
+    EXPECT_NE(motor_verdict(m).words.find("1.4 N"), std::string::npos);
+    m.winding_c_max = 100.0F;  // what the driver counts is nearer to the truth
+    m.winding_c = 60.0F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::good);
+    m.winding_c = 90.0F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::watch);
+    m.winding_c = 101.0F;
+    EXPECT_EQ(motor_verdict(m).grade, Grade::bad);
+
+    TrackerTopic t{};
+    t.link = 1;
+    t.state = 2;
+    EXPECT_EQ(tracker_verdict(t).grade, Grade::good);
+    t.state = 1;
+    EXPECT_EQ(tracker_verdict(t).grade, Grade::watch);
+    t.state = 0;
+    EXPECT_EQ(tracker_verdict(t).grade, Grade::bad);
+    t.link = 4;
+    EXPECT_EQ(tracker_verdict(t).words, "gone");
+    EXPECT_EQ(tracker_counts_text(t), "");
+    t.missed = 2;
+    t.bus_errors = 1;
+    EXPECT_EQ(tracker_counts_text(t), "missed 2, bus errors 1");
+
+    EXPECT_EQ(picture_verdict(0.0, 30.0).grade, Grade::unknown);
+    EXPECT_EQ(picture_verdict(29.0, 30.0).grade, Grade::good);
+    EXPECT_EQ(picture_verdict(20.0, 30.0).grade, Grade::watch);
+    EXPECT_EQ(picture_verdict(10.0, 30.0).grade, Grade::bad);
+    EXPECT_EQ(picture_verdict(25.0, 0.0).grade, Grade::good);
+    EXPECT_EQ(picture_verdict(15.0, 0.0).grade, Grade::watch);
+}
+
 TEST(Verdict, EveryGradeComesWithWords) {
     for (int state = 0; state < 7; ++state)
         for (int reason = 0; reason < 15; ++reason)
             EXPECT_FALSE(
                 state_verdict(static_cast<RunState>(state), static_cast<RunReason>(reason)).words.empty());
     EXPECT_EQ(state_verdict(RunState::fault, RunReason::device_lost).grade, Grade::bad);
-    EXPECT_EQ(overrun_verdict(0, 1000).grade, Grade::good);
-    EXPECT_EQ(overrun_verdict(1, 1'000'000).grade, Grade::watch);
-    EXPECT_EQ(overrun_verdict(100, 1000).grade, Grade::bad);
+    const auto overran = [](std::uint64_t overruns, std::uint64_t cycles) {
+        HealthTopic h{};
+        h.overruns = overruns;
+        h.cycle = cycles;
+        h.overrun_at_ns = overruns > 0 ? 1'000'000'000 : 0;
+        return overrun_verdict(h, 13'000'000'000);
+    };
+    EXPECT_EQ(overran(0, 1000).grade, Grade::good);
+    EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
+    EXPECT_EQ(overran(1, 1'000'000).words, "the last 12 s ago");
+    EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
     EXPECT_EQ(lateness_verdict(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_verdict(900'000, 1'000'000).grade, Grade::bad);
     EXPECT_EQ(bus_verdict({.packets = 1000}).grade, Grade::good);

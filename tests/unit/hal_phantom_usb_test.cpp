@@ -366,6 +366,9 @@ TEST_F(Phantom, warm_motors_get_less_current_and_never_reach_their_limit) {
     }
     EXPECT_GT(arm_.board().hottest_c(), 80.0);
     EXPECT_LT(arm_.board().hottest_c(), 100.5);
+    // The driver counts the same and says so.
+    EXPECT_NEAR(static_cast<double>(arm_.sample.winding_c), arm_.board().hottest_c(), 5.0);
+    EXPECT_FLOAT_EQ(arm_.sample.winding_c_max, 100.0F);
 }
 
 TEST_F(Phantom, a_nonsense_wrench_carries_the_arm_and_nothing_else) {

@@ -45,8 +45,9 @@ TEST(Text, HeadCodesAreSpelledOut) {
 }
 
 TEST(Text, EventsCarryTheirNumbersAndUnits) {
-    const auto text = [](EventCode code, double a, double b) {
+    const auto text = [](EventCode code, double a, double b, std::uint16_t detail = 0) {
         EventTopic e{};
+        e.detail = detail;
         e.code = static_cast<std::uint16_t>(code);
         e.a = a;
         e.b = b;
@@ -58,10 +59,15 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
-    EXPECT_EQ(text(EventCode::level_changed, kPicturePathIndex, 0.5), "level changed: picture to 0.5");
-    EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25), "level changed: force to 0.25");
-    EXPECT_EQ(text(EventCode::level_changed, kParticlesPathIndex, 0.25), "level changed: particles to 0.25");
-    EXPECT_EQ(text(EventCode::level_changed, 7, 1), "level changed: path 7 to 1");
+    EXPECT_EQ(text(EventCode::level_changed, kPicturePathIndex, 0.5), "level changed: picture to 0.5, start");
+    EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
+                   static_cast<std::uint16_t>(LevelReason::rate_low)),
+              "level changed: force to 0.25, force rate below goal");
+    EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25, 999),
+              "level changed: force to 0.25, unknown");
+    EXPECT_EQ(text(EventCode::level_changed, kParticlesPathIndex, 0.25),
+              "level changed: particles to 0.25, start");
+    EXPECT_EQ(text(EventCode::level_changed, 7, 1), "level changed: path 7 to 1, start");
     EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
     EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
     EXPECT_EQ(text(EventCode::device_notice, static_cast<double>(DeviceNotice::keep_still), 0),

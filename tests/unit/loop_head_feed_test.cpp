@@ -19,7 +19,7 @@ protected:
         auto tracker = std::make_unique<SimTracker>();
         tracker_ = tracker.get();
         settings_.T_screen_tracker = {Vec3(0.1, -0.2, 0.3), quat_from_rotation_vector(Vec3(0.0, 1.5, 0.0))};
-        feed_ = std::make_unique<HeadFeed>(settings_, std::move(tracker), topic_);
+        feed_ = std::make_unique<HeadFeed>(settings_, std::move(tracker), topic_, counts_);
         feed_->open();
     }
     void run(Duration d) {
@@ -33,6 +33,7 @@ protected:
     static Vec3 at(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
     Latest<HeadTopic> topic_{};
+    Latest<TrackerTopic> counts_{};
     HeadSettings settings_;
     SimTracker* tracker_ = nullptr;
     std::unique_ptr<HeadFeed> feed_;
@@ -81,10 +82,33 @@ TEST_F(Feed, says_that_the_link_is_gone_and_back) {
     EXPECT_EQ(head().link, static_cast<std::uint8_t>(TrackerLink::up));
 }
 
+TEST_F(Feed, tells_ten_times_a_second_what_came_and_how_old_it_is) {
+    TrackerTopic t{};
+    run(milliseconds(1000));
+    ASSERT_TRUE(counts_.read(t));
+    EXPECT_NEAR(static_cast<double>(counts_.count()), 10.0, 1.0);
+    EXPECT_LE(t.samples, tracker_->health().samples);
+    EXPECT_GT(t.samples + 30, tracker_->health().samples);  // a tenth of a second old at most
+    EXPECT_GT(t.rate_hz, 0.0);
+    EXPECT_GE(t.age_ns, 0);
+    EXPECT_LT(t.age_ns, 50'000'000);
+    tracker_->inject(TrackerFault::silent);
+    run(milliseconds(2000));
+    ASSERT_TRUE(counts_.read(t));
+    EXPECT_EQ(t.state, static_cast<std::uint8_t>(TrackerState::lost));
+    EXPECT_GT(t.age_ns, 1'500'000'000);
+    tracker_->inject(TrackerFault::gone);
+    run(milliseconds(300));
+    ASSERT_TRUE(counts_.read(t));
+    EXPECT_EQ(t.link, static_cast<std::uint8_t>(TrackerLink::gone));
+    EXPECT_GE(t.link_losses, 1U);
+}
+
 TEST(HeadFeedThread, publishes_by_itself_and_ends_with_its_object) {
     Latest<HeadTopic> topic{};
+    Latest<TrackerTopic> counts{};
     {
-        HeadFeed feed({}, make_tracker({.driver = "sim", .interface = "", .sim = {}}), topic);
+        HeadFeed feed({}, make_tracker({.driver = "sim", .interface = "", .sim = {}}), topic, counts);
         feed.open();
         feed.start();
         const Instant end = Monotonic::now() + std::chrono::minutes(1);

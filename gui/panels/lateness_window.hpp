@@ -1,0 +1,70 @@
+// Lateness of the whole run and of its last minute, out of the counts that the controller publishes once a second.
+//
+// The counts and their buckets are the controller's (DurationHistogram); the last minute is the newest record less the
+// one of a minute before, so that both are the same measurement.
+// Memory   kKept records, taken once.  Thread  one; plain arithmetic.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ipc/topics/health.hpp"
+
+namespace tact {
+
+struct LatenessFigures {
+    std::uint64_t cycles = 0;
+    std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
+};
+
+class LatenessWindow {
+public:
+    using Counts = std::array<std::uint64_t, DurationHistogram::kBuckets>;
+    static constexpr std::size_t kKept = 61;  // a minute, and the one it began with
+
+    LatenessWindow();
+    // Of the same run as those before, or of another one: its counts fall, and everything begins anew.
+    void add(const LatenessTopic& record);
+    void clear();
+
+    [[nodiscard]] bool empty() const { return kept_ == 0; }
+    [[nodiscard]] const Counts& whole() const { return at(0); }
+    [[nodiscard]] const Counts& recent() const { return recent_; }
+    [[nodiscard]] double recent_s() const { return recent_s_; }  // how long that is
+    [[nodiscard]] const LatenessFigures& whole_figures() const { return whole_figures_; }
+    // The most late of them to a bucket's upper edge, 6 %, where it is not the most late of the whole run.
+    [[nodiscard]] const LatenessFigures& recent_figures() const { return recent_figures_; }
+    [[nodiscard]] std::size_t memory_bytes() const { return records_.capacity() * sizeof(Record); }
+
+private:
+    struct Record {
+        std::int64_t taken_at_ns = 0;
+        std::uint64_t total = 0, max_ns = 0;
+        Counts counts{};
+    };
+    [[nodiscard]] const Record& record(std::size_t back) const;
+    [[nodiscard]] const Counts& at(std::size_t back) const { return record(back).counts; }
+
+    std::vector<Record> records_;  // a ring
+    std::size_t next_ = 0, kept_ = 0;
+    Counts recent_{};
+    double recent_s_ = 0.0;
+    LatenessFigures whole_figures_, recent_figures_;
+};
+
+// Counts of buckets gathered in bars of a quarter of an octave each from the first to beyond the last edge.
+struct LatenessBars {
+    static constexpr std::size_t kBars = 72;  // 1 us to 0.26 s
+    static constexpr std::size_t kPerOctave = 4;
+    static constexpr double kLeastNs = 1024.0;  // what is less late counts in the first
+    std::array<std::uint64_t, kBars> count{};
+    std::uint64_t most = 0;  // of a bar
+    std::size_t last = 0;    // the last bar that is not empty
+
+    explicit LatenessBars(const LatenessWindow::Counts& counts);
+    [[nodiscard]] static double edge_ns(std::size_t bar);  // its lower one
+};
+
+}  // namespace tact
