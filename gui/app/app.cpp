@@ -32,10 +32,11 @@ GuiApp::GuiApp(const GuiOptions& options)
     : options_(options),
       controller_(options.session, region_.fd()),
       commands_(region_->commands),
-      window_(options.width_px, options.height_px, options.hidden) {
+      window_(options.width_px, options.height_px, options.hidden, options.ui_scale) {
     region_.mark_ready();
     state_.session = options.session;
     state_.history.first_ns = first_ns_;
+    state_.strip = options.traces ? 1 : 0;
     state_.renderer = window_.renderer();
     if (options.plain) {
         view_options_.gradient = false;
@@ -123,6 +124,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
         second_hand_.forget();
         commands_.forget();
         forget_rates(state_);
+        traces_place_ = {};
         std::string path = controller_.scene_path();
         if (options_.scene.empty() && !path.empty() &&
             (!content_ || content_->checksum != controller_.scene_checksum()))
@@ -133,6 +135,8 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     if (fresh.second) second_hand_.follow(controller_.second);
     if (fresh.health) add_health(controller_.health, state_.history);
     add_rates(controller_, fresh, state_);
+    add_cycles(controller_, traces_place_, state_);
+    trace_export_.follow(state_.traces);
     if (controller_.have_health) commands_.update(controller_.health, now_ns);
     show_controller(controller_, commands_, state_);
 }

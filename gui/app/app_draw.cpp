@@ -12,7 +12,7 @@ namespace tact {
 void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
     const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
-                                     middle_card(state_.scene));
+                                     middle_card(state_.scene), state_.strip == 1);
     const PixelRect& rect = layout.view;
     const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
     ViewFrame view{};

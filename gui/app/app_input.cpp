@@ -8,8 +8,9 @@ namespace tact {
 void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.WantCaptureMouse) {
-        const float height =
-            layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_.scene)).view.height;
+        const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_.scene),
+                                        state_.strip == 1)
+                                 .view.height;
         if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)

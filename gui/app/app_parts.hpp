@@ -22,6 +22,7 @@
 #include "gui/app/picture_files.hpp"
 #include "gui/app/scene_loader.hpp"
 #include "gui/app/second_hand.hpp"
+#include "gui/app/trace_export.hpp"
 #include "gui/app/window.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
@@ -76,6 +77,8 @@ private:
     bool near_burr_wanted_ = options_.near_burr;
     BodyList list_;
     SecondHand second_hand_;
+    RingCursor traces_place_;  // in the trace ring
+    TraceExport trace_export_;
     std::vector<DrawnBody> shown_;
     ViewOptions view_options_;
     Camera camera_;

@@ -75,6 +75,10 @@ bool Controller::next_cycle(TraceTopic& cycle) {
     return !region_.empty() && region_->trace.next(trace_cursor_, cycle);
 }
 
+bool Controller::next_cycle(RingCursor& place, TraceTopic& cycle) const {
+    return !region_.empty() && region_->trace.next(place, cycle);
+}
+
 const PathLevel* Controller::level(const char* path) const {
     return attached() && have_levels ? find_path(levels, path) : nullptr;
 }

@@ -30,6 +30,8 @@ public:
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
     [[nodiscard]] bool next_cycle(TraceTopic& cycle);
+    // For another reader, with a place of its own.
+    [[nodiscard]] bool next_cycle(RingCursor& place, TraceTopic& cycle) const;
     [[nodiscard]] std::uint64_t cycles_missed() const { return trace_cursor_.missed; }
 
     [[nodiscard]] bool attached() const { return !region_.empty(); }

@@ -39,6 +39,11 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                 return {};
             },
             "WxH"));
+    app.add_option("--ui-scale", options.ui_scale,
+                   "letters and panels so many times as large as the display's size and density ask for")
+        ->check(CLI::Range(0.5, 4.0));
+    app.add_flag("--traces", options.traces,
+                 "begin with the traces of every servo cycle in place of the plots");
     app.add_flag("--hidden", options.hidden, "draw without showing a window");
     app.add_flag("--plain", options.plain, "cheapest drawing: no gradient, solid surface");
     app.add_option(

@@ -20,6 +20,8 @@ struct GuiOptions {
     double seconds = 0.0;    // 0: until closed
     double zoom = 1.0;       // of the home view
     int width_px = 1280, height_px = 720;
+    float ui_scale = 1.0F;  // of letters and panels
+    bool traces = false;    // in the place of the plots, at the start
     bool hidden = false;
     bool plain = false;
     StageSettings stage;                  // of a stereo picture

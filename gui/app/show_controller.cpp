@@ -8,7 +8,7 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kEventsKept = 100;
-constexpr std::size_t kEventsPerFrame = 64;
+constexpr std::size_t kEventsPerFrame = 64, kCyclesPerFrame = 16384;
 
 void take_events(Controller& controller, DashboardState& state) {
     EventTopic event;
@@ -71,7 +71,17 @@ void add_rates(const Controller& controller, const Controller::Fresh& fresh, Das
         to.device_rate[i].add(controller.devices.taken_at_ns, controller.devices.hand[i].samples);
 }
 
+void add_cycles(const Controller& controller, RingCursor& place, DashboardState& to) {
+    const std::uint64_t missed = place.missed;
+    TraceTopic cycle;
+    // A loop that runs away from its reader must not hold the frame.
+    for (std::size_t i = 0; i < kCyclesPerFrame && controller.next_cycle(place, cycle); ++i)
+        to.traces.scope.add(cycle, controller.have_health ? controller.health.period_ns : 0);
+    to.traces.scope.add_missed(place.missed - missed);
+}
+
 void forget_rates(DashboardState& state) {
+    state.traces.scope.clear();
     state.lateness.clear();
     state.tracker_rate.clear();
     for (CounterRate& rate : state.device_rate) rate.clear();

@@ -14,6 +14,8 @@ void show_controller(Controller& controller, const CommandSender& commands, Dash
 void add_health(const HealthTopic& health, History& to);
 // What is counted up over records: lateness, samples a second. Another controller begins anew.
 void add_rates(const Controller& controller, const Controller::Fresh& fresh, DashboardState& to);
+// Every servo cycle since the frame before.
+void add_cycles(const Controller& controller, RingCursor& place, DashboardState& to);
 void forget_rates(DashboardState& state);
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to);
 

@@ -7,6 +7,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
@@ -61,7 +62,8 @@ void on_char(GLFWwindow* window, unsigned int character) {
 
 }  // namespace
 
-Window::Window(int width_px, int height_px, bool hidden) : hidden_(hidden) {
+Window::Window(int width_px, int height_px, bool hidden, float ui_scale)
+    : hidden_(hidden), ui_scale_(ui_scale) {
     try {
         open(width_px, height_px, hidden);
         start_imgui();
@@ -145,13 +147,20 @@ Window::Size Window::size() const {
     return s;
 }
 
+// What of the display's scale is not in the window's own units already: all of it under X11, nothing under Wayland.
+float Window::density(const Size& s) const {
+    float x = 1.0F, y = 1.0F;
+    if (!target_) glfwGetWindowContentScale(window_, &x, &y);
+    return std::max(x, y) * static_cast<float>(s.width) / static_cast<float>(std::max(s.width_px, 1));
+}
+
 bool Window::close_wanted() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 void Window::begin_frame(Theme& theme) {
     glfwPollEvents();
     const Size s = size();
-    const float scale = theme_scale(s.width, s.height);
+    const float scale = theme_scale(s.width, s.height, density(s), ui_scale_);
     if (theme.text == nullptr) {
         build_theme(theme, scale);  // the backend uploads it with its first frame
     } else if (scale != theme.scale) {

@@ -36,7 +36,8 @@ enum class Key {
 
 class Window {
 public:
-    Window(int width_px, int height_px, bool hidden);
+    // ui_scale: of letters and panels, times what size and density of the display ask for.
+    Window(int width_px, int height_px, bool hidden, float ui_scale = 1.0F);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
@@ -65,9 +66,11 @@ public:
 private:
     void open(int width_px, int height_px, bool hidden);
     void start_imgui();
+    [[nodiscard]] float density(const Size& size) const;
 
     GLFWwindow* window_ = nullptr;
     bool hidden_ = false, software_ = false, paced_ = false, imgui_ = false;
+    float ui_scale_ = 1.0F;
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
     std::vector<Key> keys_;

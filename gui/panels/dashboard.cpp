@@ -11,10 +11,11 @@ MiddleCard middle_card(const SceneFacts& scene) {
     return scene.bone ? MiddleCard::drilling : scene.placed() ? MiddleCard::fit : MiddleCard::none;
 }
 
-Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle) {
+Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle, bool traces) {
     const float gap = std::round(theme.px(6.0F));
     const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
-    const float below = std::round(std::min(theme.px(196.0F), 0.45F * height_px));
+    const float below = traces ? std::round(std::clamp(0.5F * height_px, theme.px(196.0F), theme.px(420.0F)))
+                               : std::round(std::min(theme.px(196.0F), 0.45F * height_px));
     const auto at_least_one = [](float v) { return std::max(v, 1.0F); };
     Layout l;
     l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
@@ -47,7 +48,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCar
 
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px) {
     const MiddleCard middle = middle_card(state.scene);
-    const Layout layout = layout_for(theme, width_px, height_px, middle);
+    const Layout layout = layout_for(theme, width_px, height_px, middle, state.strip == 1);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
     draw_health(theme, state, layout.health);
     if (middle == MiddleCard::fit) draw_fit(theme, state, layout.middle);

@@ -16,6 +16,7 @@
 #include "gui/panels/lateness_window.hpp"
 #include "gui/panels/plot_series.hpp"
 #include "gui/panels/theme.hpp"
+#include "gui/panels/traces.hpp"
 #include "ipc/assets/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
@@ -213,6 +214,7 @@ struct DashboardState {
     DetailFacts detail;
     DrillingFacts drilling;
     History history;
+    TracesState traces;
     std::deque<EventLine> events;  // newest first
     std::uint64_t events_missed = 0;
     std::int64_t now_ns = 0;
@@ -230,6 +232,7 @@ struct DashboardState {
     // What a person chose.
     SceneToggles toggles;
     int span_choice = 0;      // of the plots
+    int strip = 0;            // 0: plots, 1: traces
     int lateness_choice = 0;  // a minute, the whole run, over time
     bool show_keys = false;
     int tab = 0;  // of the scene card
@@ -253,7 +256,9 @@ struct Layout {
 // The card between the controller's and the scene's: of a fit, of drilling, or none, and its place goes to the scene.
 enum class MiddleCard : std::uint8_t { none, fit, drilling };
 [[nodiscard]] MiddleCard middle_card(const SceneFacts& scene);
-[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle);
+// traces: the strip below is as high as they need.
+[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle,
+                                bool traces = false);
 
 // Draws everything but the 3D view and the cards' ground.
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px);

@@ -77,8 +77,15 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
 }  // namespace
 
 void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    begin_card(theme, "Load and knobs", card);
+    begin_card(theme, "Over time", card);
     ImGui::SameLine(0.0F, theme.px(16.0F));
+    static constexpr std::array<const char*, 2> kStrips{"Load and knobs", "Traces"};
+    choose(theme, kStrips, state.strip);
+    if (state.strip == 1) {
+        draw_traces(theme, state);
+        return end_card();
+    }
+    ImGui::SameLine(0.0F, theme.px(28.0F));
     span_choice(theme, state);
     const History& h = state.history;
     const ImVec2 inside = ImGui::GetContentRegionAvail();

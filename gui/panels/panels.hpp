@@ -18,6 +18,9 @@ void draw_bodies_tab(const Theme& theme, DashboardState& state);
 void draw_contours_tab(const Theme& theme, DashboardState& state);
 void draw_detail(const Theme& theme, DashboardState& state);
 void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card);
+// In the plots' place: every servo cycle.
+void draw_traces(const Theme& theme, DashboardState& state);
+void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size);
 void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
 // Over the 3D view: legend, scale bar, axes, what is being waited for.
 void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view);

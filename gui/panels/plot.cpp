@@ -91,6 +91,25 @@ Axis linear_axis(double high, int marks_max) {
     return axis;
 }
 
+Axis range_axis(double low, double high, int marks_max) {
+    if (!std::isfinite(low) || !std::isfinite(high) || high < low) low = 0.0, high = 1.0;
+    const double size = std::max(std::fabs(low), std::fabs(high));
+    if (high - low < 1e-6 * size || size == 0.0) {
+        const double half = size > 0.0 ? 0.05 * size : 1.0;
+        low -= half;
+        high += half;
+    }
+    const Axis steps = linear_axis(high - low, marks_max);
+    const double step = steps.mark[1];
+    Axis axis;
+    const double first = std::floor(low / step + 1e-9),
+                 last = std::max(std::ceil(high / step - 1e-9), first + 1.0);
+    axis.low = first * step;
+    axis.high = last * step;
+    for (double i = first; i <= last + 0.5; i += 1.0) axis.mark.push_back(i * step);
+    return axis;
+}
+
 Axis log_axis(double low, double high) {
     Axis axis;
     if (!(low > 0.0) || !std::isfinite(low)) low = 1.0;

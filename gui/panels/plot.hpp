@@ -47,6 +47,8 @@ struct Axis {
     std::vector<double> mark;
 };
 [[nodiscard]] Axis linear_axis(double high, int marks_max);
+// Where 0 is not the end: whole steps around [low, high], and around the middle where both are the same.
+[[nodiscard]] Axis range_axis(double low, double high, int marks_max);
 [[nodiscard]] Axis log_axis(double low, double high);
 
 }  // namespace tact

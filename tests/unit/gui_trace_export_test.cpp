@@ -1,0 +1,88 @@
+// The traces as a file: whole or not at all, and what became of it is said.
+#include "gui/app/trace_export.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "ipc/base/error.hpp"
+#include "tests/unit/gui_wait.hpp"
+
+namespace tact {
+namespace {
+
+class Export : public testing::Test {
+protected:
+    void SetUp() override {
+        before_ = std::filesystem::current_path();
+        char name[] = "/tmp/tact-export-XXXXXX";
+        folder_ = mkdtemp(name);
+        std::filesystem::current_path(folder_);
+        for (std::int64_t i = 1; i <= 3000; ++i) {
+            TraceTopic t{};
+            t.taken_at_ns = 1'000'000'000 + 1'000'000 * i;
+            t.cycle = static_cast<std::uint64_t>(i);
+            t.cost_ns = 50'000;
+            traces_.scope.add(t, 1'000'000);
+        }
+        traces_.scope.hold();
+    }
+    void TearDown() override {
+        std::filesystem::current_path(before_);
+        std::filesystem::remove_all(folder_);
+    }
+    bool said() {
+        return test::wait_for([this] {
+            out_.follow(traces_);
+            return traces_.said_grade != Grade::unknown;
+        });
+    }
+
+    std::filesystem::path before_, folder_;
+    TracesState traces_;
+    TraceExport out_;
+};
+
+TEST_F(Export, WritesWhatIsSeenAndSaysWhere) {
+    traces_.scope.set_span(0.5);
+    traces_.scope.zoom(0.5, traces_.scope.end_ns());
+    traces_.export_wanted = true;
+    out_.follow(traces_);
+    EXPECT_FALSE(traces_.export_wanted);
+    ASSERT_TRUE(said());
+    EXPECT_EQ(traces_.said_grade, Grade::good) << traces_.said;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) files.push_back(entry.path());
+    ASSERT_EQ(files.size(), 1U);  // and nothing partial
+    EXPECT_NE(traces_.said.find(files[0].string()), std::string::npos) << traces_.said;
+    std::ifstream in(files[0]);
+    std::string line, last;
+    std::size_t lines = 0;
+    std::getline(in, line);
+    EXPECT_EQ(line, "time_s,taken_at_ns,cycle,state,force_n,position_y_m,lateness_s,cost_s");
+    for (; std::getline(in, line); ++lines) last = line;
+    EXPECT_EQ(lines, 251U);  // a quarter of a second, both ends
+    EXPECT_NE(last.find(",3000,"), std::string::npos) << last;
+}
+
+TEST_F(Export, AFolderThatIsGoneIsSaidInWords) {
+    std::filesystem::remove_all(folder_);
+    traces_.export_wanted = true;
+    out_.follow(traces_);
+    ASSERT_TRUE(said());
+    EXPECT_EQ(traces_.said_grade, Grade::bad);
+    EXPECT_NE(traces_.said.find("mend:"), std::string::npos) << traces_.said;
+}
+
+TEST_F(Export, NoPartOfAFileStaysWhereItCannotBeWritten) {
+    EXPECT_THROW(write_whole_file((folder_ / "none" / "such.csv").string(), "x"), StartupError);
+    std::filesystem::create_directory(folder_ / "taken.csv");
+    EXPECT_THROW(write_whole_file((folder_ / "taken.csv").string(), "x"), StartupError);
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        EXPECT_EQ(entry.path().filename(), "taken.csv");
+}
+
+}  // namespace
+}  // namespace tact

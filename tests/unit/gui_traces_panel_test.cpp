@@ -1,0 +1,161 @@
+// A person's mouse on the traces: pause, trigger, cursors, zoom, export; and the strip that they lie in.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ipc/base/run_state.hpp"
+#include "tests/unit/gui_dashboard_fixture.hpp"
+
+namespace tact {
+namespace {
+
+constexpr char kCard[] = "Over time";
+
+class TracesPanel : public testing::Test {
+protected:
+    // So many cycles of 1 kHz, with a force that swings between -1 and 1 N five times a second.
+    void run(int cycles) {
+        for (int i = 0; i < cycles; ++i) {
+            TraceTopic t{};
+            t.taken_at_ns = 1'000'000'000 + 1'000'000 * ++cycle_;
+            t.cycle = static_cast<std::uint64_t>(cycle_);
+            t.force_world_n[0] = static_cast<float>(std::sin(0.0314159 * static_cast<double>(cycle_)));
+            t.cost_ns = 90'000;
+            t.lateness_ns = 2'000;
+            t.status = static_cast<std::uint32_t>(RunState::active);
+            scope().add(t, 1'000'000);
+        }
+        desk_.frame();
+    }
+    TraceScope& scope() { return desk_.state.traces.scope; }
+    void open() {
+        desk_.click(kCard, "Traces");
+        ASSERT_EQ(desk_.state.strip, 1);
+        run(5000);
+    }
+    ImVec2 on_lanes(float share) {
+        const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true);
+        return {l.plots.x + desk_.theme.px(60.0F) + share * (l.plots.width - desk_.theme.px(80.0F)),
+                l.plots.y + 0.7F * l.plots.height};
+    }
+
+    test::Desk desk_{1280.0F, 720.0F, 1.0F};
+    std::int64_t cycle_ = 0;
+};
+
+TEST_F(TracesPanel, OpenInPlaceOfThePlotsHigherThanThey) {
+    const float before = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, false).plots.height;
+    open();
+    EXPECT_GT(layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true).plots.height, 1.4F * before);
+    desk_.click(kCard, "Load and knobs");
+    EXPECT_EQ(desk_.state.strip, 0);
+}
+
+TEST_F(TracesPanel, PauseHoldsThePictureStillAndRunGoesOn) {
+    open();
+    desk_.click(kCard, "Pause");
+    EXPECT_TRUE(scope().held());
+    const std::int64_t end_ns = scope().end_ns();
+    run(1000);
+    EXPECT_EQ(scope().end_ns(), end_ns);
+    desk_.click(kCard, "Run");
+    EXPECT_FALSE(scope().held());
+    EXPECT_GT(scope().end_ns(), end_ns);
+}
+
+TEST_F(TracesPanel, ArmedForASingleCaptureItWaitsAndCapturesOnce) {
+    open();
+    TriggerSettings s = scope().trigger();
+    s.channel = TraceChannel::force_x;
+    s.level = 5.0;  // never
+    scope().set_trigger(s);
+    scope().set_span(0.1);
+    desk_.click(kCard, "single");
+    EXPECT_EQ(scope().run(), TraceRun::single);
+    run(1000);
+    EXPECT_EQ(scope().captures(), 0U);
+    s.level = 0.5;
+    scope().set_trigger(s);
+    run(1000);
+    EXPECT_EQ(scope().captures(), 1U);
+    EXPECT_STREQ(scope().status(), "captured");
+    desk_.click(kCard, "Arm trigger");
+    EXPECT_STREQ(scope().status(), "waiting for the trigger");
+    run(1000);
+    EXPECT_STREQ(scope().status(), "captured");
+}
+
+TEST_F(TracesPanel, TheEdgeIsTurnedByAClick) {
+    open();
+    desk_.click(kCard, "normal");
+    EXPECT_TRUE(scope().trigger().rising);
+    desk_.click(kCard, "rising");
+    EXPECT_FALSE(scope().trigger().rising);
+}
+
+TEST_F(TracesPanel, DraggingMovesACursorWhereOneIsAndElseThePicture) {
+    open();
+    desk_.click(kCard, "Cursors");
+    EXPECT_TRUE(scope().cursors);
+    const double begun_s = scope().span_s();
+    const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true);
+    // The lanes begin behind their numbers, 44 wide, inside the card's padding.
+    const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
+    const float y = l.plots.y + 0.7F * l.plots.height;
+    const auto x = [&](double share) { return x0 + static_cast<float>(share) * (x1 - x0); };
+    desk_.drag({x(scope().cursor[0]), y}, {x(0.5), y});
+    EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
+    EXPECT_FALSE(scope().held());
+    EXPECT_EQ(scope().span_s(), begun_s);
+    const std::int64_t end_ns = scope().end_ns();
+    desk_.drag({x(0.1), y}, {x(0.3), y});
+    EXPECT_TRUE(scope().held());
+    EXPECT_NEAR(1e-9 * static_cast<double>(end_ns - scope().end_ns()), 0.2, 0.03);
+    EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
+}
+
+TEST_F(TracesPanel, TheWheelLooksNearerAboutTheMouse) {
+    open();
+    desk_.click(kCard, "Pause");
+    const ImVec2 at = on_lanes(0.5F);
+    const double before = scope().span_s();
+    desk_.wheel(at, 3.0F);
+    EXPECT_NEAR(scope().span_s(), before * std::pow(0.8, 3.0), 1e-6);
+    desk_.wheel(at, -3.0F);
+    EXPECT_NEAR(scope().span_s(), before, 1e-6);
+}
+
+TEST_F(TracesPanel, ExportAsksTheApplication) {
+    desk_.click(kCard, "Traces");
+    desk_.click(kCard, "Export");
+    EXPECT_FALSE(desk_.state.traces.export_wanted);  // there is nothing yet
+    run(100);
+    desk_.click(kCard, "Export");
+    EXPECT_TRUE(desk_.state.traces.export_wanted);
+}
+
+TEST_F(TracesPanel, NothingKnownGarbageAndEveryModeAreDrawn) {
+    for (int strip : {0, 1}) {
+        desk_.state.strip = strip;
+        desk_.frame();
+        for (int mode = 0; mode < 4; ++mode) {
+            scope().choose_run(static_cast<TraceRun>(mode));
+            run(300);
+        }
+    }
+    for (int i = 0; i < 50; ++i) {
+        TraceTopic t{};
+        std::memset(static_cast<void*>(&t), 0xFF, sizeof t);
+        t.taken_at_ns = 1'000'000'000 + 1'000'000 * ++cycle_;
+        scope().add(t, 1'000'000);
+    }
+    desk_.state.traces.channels.set();
+    scope().cursors = true;
+    run(10);
+    desk_.state.traces.channels.reset();
+    desk_.frame();
+    SUCCEED();
+}
+
+}  // namespace
+}  // namespace tact
