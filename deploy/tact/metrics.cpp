@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "ipc/base/histogram.hpp"
+#include "ipc/topics/frames.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact::launch {
@@ -181,6 +182,45 @@ void levels(Page& page, const LevelsTopic& l) {
          [](const PathLevel& p) { return p.cost_s; });
 }
 
+void picture(Page& page, const FrameFigures& f) {
+    const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+    page.one("tact_frames_total", "counter", "pictures since the visual process started", count(f.frames));
+    page.one("tact_frames_late_total", "counter",
+             "pictures that came more than half a period after they were due", count(f.late));
+    if (f.due_s > 0.0)
+        page.one("tact_frame_due_seconds", "gauge", "period that a picture is due in", f.due_s);
+    page.about("tact_frame_seconds", "gauge", "from picture to picture, of the last ones");
+    for (const auto& [q, s] :
+         {std::pair{"0.5", f.p50_s}, std::pair{"0.99", f.p99_s}, std::pair{"1", f.most_s}})
+        page.value(static_cast<double>(s), label("quantile", q));
+    const auto times = [&page](const char* name, const char* help, const char* key, std::size_t n,
+                               const auto& text, const PassFigures* of, bool drawn) {
+        page.about(name, "gauge", help);
+        for (std::size_t i = 0; i < n; ++i) {
+            const float p50_s = drawn ? of[i].drawn_p50_s : of[i].work_p50_s;
+            const float p99_s = drawn ? of[i].drawn_p99_s : of[i].work_p99_s;
+            if (p50_s < 0.0F) continue;  // not known
+            for (const auto& [q, s] : {std::pair{"0.5", p50_s}, std::pair{"0.99", p99_s}})
+                page.value(static_cast<double>(s), label(key, text(i)) + "," + label("quantile", q));
+        }
+    };
+    const auto pass = [](std::size_t i) { return std::string(pass_text(static_cast<Pass>(i))); };
+    const auto path = [](std::size_t i) { return std::string(visual_path_text(i)); };
+    times("tact_pass_work_seconds", "processor time of a pass of a picture", "pass", kPasses, pass, f.pass,
+          false);
+    times("tact_pass_drawn_seconds", "time of the renderer for a pass, where it is known", "pass", kPasses,
+          pass, f.pass, true);
+    times("tact_path_work_seconds", "processor time of a picture for a visual path", "path", kVisualPaths,
+          path, f.path, false);
+    times("tact_path_drawn_seconds", "time of the renderer for a visual path, where it is known", "path",
+          kVisualPaths, path, f.path, true);
+    page.one("tact_picture_gl_objects", "gauge", "objects of the graphics driver that are kept",
+             count(f.gl_objects));
+    page.one("tact_picture_heap_bytes", "gauge", "heap of the visual process", count(f.heap_bytes));
+    page.one("tact_picture_resident_bytes", "gauge", "memory of the visual process that is resident",
+             count(f.resident_bytes));
+}
+
 }  // namespace
 
 void Metrics::follow(const RtRegion& region, bool arrived) {
@@ -209,6 +249,8 @@ std::string Metrics::text(const RtRegion* region) const {
     if (const auto t = newest(region->tracker)) tracker(page, *t);
     if (const auto l = newest(region->lateness)) lateness(page, *l);
     if (const auto l = newest(region->levels)) levels(page, *l);
+    if (const auto p = newest(region->picture); p && p->taken_at_ns > 0 && plausible(p->figures))
+        picture(page, p->figures);
     return page.take();
 }
 

@@ -10,6 +10,7 @@
 #include "deploy/tact/report_drilling.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/topics/frames_json.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact::launch {
@@ -205,6 +206,11 @@ json controller_report(const RtRegion& region) {
                 {"heartbeat_age_ms", h.gui_heartbeat_age_ns >= 0
                                          ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
                                          : json(nullptr)}};
+    // A hostile picture's figures are none.
+    const auto picture = newest(region.picture);
+    j["gui"]["frames"] = picture && picture->taken_at_ns > 0 && plausible(picture->figures)
+                             ? frames_json(picture->figures)
+                             : json(nullptr);
     j["devices"] = devices(h);
     j["governor"] = governor(region);
     j["head"] = head(region);

@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -69,12 +70,14 @@ int GuiApp::run() {
     }
     desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
     drilling_.save(controller_, options_.report);
+    write_frame_report(options_.frames, frame_figures(clock_, passes_));
     if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
     return pictures_.failed() ? 1 : 0;
 }
 
 void GuiApp::frame(Instant now, bool take_picture) {
-    clock_.begin();
+    clock_.begin(due_s());
+    passes_.begin_frame();
     window_.begin_frame(theme_);
     const bool of_series = pictures_.series_due(now, view_ != nullptr);
     sharp_ = of_series || take_picture;
@@ -85,14 +88,19 @@ void GuiApp::frame(Instant now, bool take_picture) {
     follow_scene();
     drilling_.follow(controller_, state_);
     handle_input();
-    if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
-    obey_level();
-    clock_.end_part(FramePart::adapt);
-    if (view_) view_->upload();
-    clock_.end_part(FramePart::upload);
-    if (content_)
+    {
+        const PassClock::Scope scope(&passes_, Pass::adapt);
+        if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
+        obey_level();
+        clock_.end_part(FramePart::adapt);
+        if (view_) view_->upload();
+        clock_.end_part(FramePart::upload);
+    }
+    if (content_) {
+        const PassClock::Scope scope(&passes_, Pass::motion);
         drilling_.move(controller_, clock_.frame_s(),
                        content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>());
+    }
     clock_.end_part(FramePart::particles);
     draw_scene(now_ns);
     if (of_series) pictures_.save_of_series(window_.picture(), drawn_view_);
@@ -104,10 +112,15 @@ void GuiApp::frame(Instant now, bool take_picture) {
         if (stage_ && view_) pictures_.save_stage(stage_->pictures());
     }
     if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
-    window_.show();
+    {
+        const PassClock::Scope scope(&passes_, Pass::swap);
+        window_.show();
+    }
+    passes_.end_frame();
     clock_.end_part(FramePart::swap);
     if (view_) drilling_.ended(*view_, clock_.work_s());
     publish_load();
+    publish_frames();
 }
 
 void GuiApp::follow_controller(std::int64_t now_ns) {
@@ -142,6 +155,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
 }
 
 void GuiApp::draw_panels() {
+    const PassClock::Scope scope(&passes_, Pass::dashboard);
     const ImGuiIO& io = ImGui::GetIO();
     draw_dashboard(theme_, state_, io.DisplaySize.x, io.DisplaySize.y);
     window_.draw_panels();
@@ -176,6 +190,27 @@ void GuiApp::publish_load() {
     state_.load = load;
     const bool levels = controller_.have_levels && controller_.attached();
     add_load(load, levels ? &controller_.levels : nullptr, state_.history);
+}
+
+void GuiApp::publish_frames() {
+    constexpr auto kEvery = std::chrono::milliseconds(500);
+    const Instant now = Monotonic::now();
+    if (now - frames_told_ < kEvery) return;
+    frames_told_ = now;
+    FramesTopic topic{};
+    topic.taken_at_ns = to_ns(now);
+    topic.figures = state_.frames = frame_figures(clock_, passes_);
+    region_->frames.publish(topic);
+}
+
+// The longest of the display's period, that of the highest rate asked for, and that of the governor's goal.
+double GuiApp::due_s() const {
+    double due = window_.paced_by_display() ? window_.display_period_s() : 0.0;
+    if (fps_max_ > 0.0) due = std::max(due, 1.0 / fps_max_);
+    const double goal_hz = controller_.attached() && controller_.have_levels
+                               ? static_cast<double>(controller_.levels.picture_goal_hz)
+                               : 0.0;
+    return goal_hz > 0.0 ? std::max(due, 1.0 / goal_hz) : due;
 }
 
 int run_gui(const GuiOptions& options) {

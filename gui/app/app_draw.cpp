@@ -20,7 +20,11 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     view.width_px = std::max(size.width_px - view.x_px, 1);
     view.height_px = std::max(static_cast<int>(rect.height * to_px), 1);
     view.y_px = size.height_px - view.height_px;
-    paint_grounds(layout, to_px, size.height_px);
+    {
+        const PassClock::Scope scope(&passes_, Pass::ground);
+        paint_grounds(layout, to_px, size.height_px);
+    }
+    view.passes = &passes_;
     if (!programs_) programs_ = std::make_unique<Programs>();
     if (!view_ || !stage_) begin_view(view);
     state_.a_per_px = static_cast<double>(camera_.a_per_px(rect.height));
@@ -86,6 +90,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
 }
 
 void GuiApp::begin_view(const ViewFrame& view) {
+    const PassClock::Scope scope(&passes_, Pass::ground);
     glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
     if (view_options_.gradient) programs_->draw_background();
 }
@@ -105,7 +110,10 @@ void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
                                 content_->meta.to_world(content_->centre_model_m), view_->radius_a()),
                     view_options_, view);
     }
-    stage_->show(window_.frame_buffer());
+    {
+        const PassClock::Scope scope(&passes_, Pass::stereo);
+        stage_->show(window_.frame_buffer());
+    }
     state_.a_per_px = 0.0;  // each eye has a scale of its own
     state_.stage = std::string("stereo: ") + stage_words(*stage_);
     state_.head_lost = stage_->head().sight() == HeadSight::lost;

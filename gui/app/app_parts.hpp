@@ -18,6 +18,7 @@
 #include "gui/app/drill_show.hpp"
 #include "gui/app/fit_desk.hpp"
 #include "gui/app/frame_clock.hpp"
+#include "gui/app/frame_report.hpp"
 #include "gui/app/options.hpp"
 #include "gui/app/picture_files.hpp"
 #include "gui/app/scene_loader.hpp"
@@ -53,6 +54,8 @@ private:
     void draw_stage(ViewFrame view, std::int64_t now_ns);
     void draw_panels();
     void publish_load();
+    void publish_frames();
+    [[nodiscard]] double due_s() const;
 
     const GuiOptions options_;
     OwnedRegion<GuiRegion> region_;
@@ -65,6 +68,8 @@ private:
     const std::int64_t first_ns_ = to_ns(Monotonic::now());
     double fps_max_ = 60.0;
     // OpenGL objects go before the window: members are destroyed from below.
+    PassClock passes_{PassClock::possible(window_.software())};
+    Instant frames_told_{};
     std::unique_ptr<Stage> stage_;  // of a stereo picture
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;

@@ -6,9 +6,16 @@
 
 namespace tact {
 
-void FrameClock::begin() {
+void FrameClock::begin(double due_s) {
+    constexpr double kLate = 1.5;  // periods
     const Instant now = Monotonic::now();
-    if (frame_ > 0) frame_s_ = to_s(now - started_);
+    if (frame_ > 0) {
+        frame_s_ = to_s(now - started_);
+        window_.add(frame_s_);
+        run_.add(now - started_);
+        if (due_s_ > 0.0 && frame_s_ > kLate * due_s_) ++late_;
+    }
+    due_s_ = due_s;
     started_ = mark_ = now;
     part_s_.fill(0.0);
     ++frame_;
@@ -24,6 +31,22 @@ void FrameClock::end_part(FramePart part) {
     const Instant now = Monotonic::now();
     part_s_[static_cast<std::size_t>(part)] += to_s(now - mark_);
     mark_ = now;
+}
+
+void FrameClock::fill(FrameFigures& f) const {
+    const auto of_run = [this](double p) {
+        return static_cast<float>(1e-9 * static_cast<double>(run_.percentile_ns(p)));
+    };
+    f.frames = run_.total();
+    f.late = late_;
+    f.due_s = due_s_;
+    f.window = static_cast<std::uint32_t>(window_.size());
+    f.p50_s = window_.percentile_s(0.5);
+    f.p99_s = window_.percentile_s(0.99);
+    f.most_s = window_.most_s();
+    f.run_p50_s = of_run(0.5);
+    f.run_p99_s = of_run(0.99);
+    f.run_most_s = static_cast<float>(1e-9 * static_cast<double>(run_.max_ns()));
 }
 
 double FrameClock::work_s() const { return std::accumulate(part_s_.begin(), part_s_.end(), 0.0); }

@@ -1,18 +1,22 @@
 // Measures a frame in parts and paces frames. Wall-clock time between calls; the graphics driver is never
-// asked to finish, so that measuring costs nothing.
+// asked to finish, so that measuring costs nothing. Which frames are late: ipc/topics/frames.hpp.
 #pragma once
 
 #include <array>
 #include <deque>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/histogram.hpp"
+#include "ipc/base/recent_times.hpp"
+#include "ipc/topics/frames.hpp"
 #include "ipc/topics/load.hpp"
 
 namespace tact {
 
 class FrameClock {
 public:
-    void begin();                   // of a frame
+    // Of a frame. due_s: the period that it is due in, 0: none.
+    void begin(double due_s);
     void end_part(FramePart part);  // since the last call of either
     // Sleeps until 1/fps_max after the beginning of this frame. 0: not at all.
     void pace(double fps_max) const;
@@ -24,6 +28,8 @@ public:
     [[nodiscard]] std::uint64_t frame() const { return frame_; }
     [[nodiscard]] Instant started_at() const { return started_; }
 
+    void fill(FrameFigures& figures) const;
+
     [[nodiscard]] static double process_cpu_s();
 
 private:
@@ -32,6 +38,10 @@ private:
     std::array<double, static_cast<std::size_t>(FramePart::count)> part_s_{};
     std::uint64_t frame_ = 0;
     std::deque<Instant> recent_;
+    double due_s_ = 0.0;
+    std::uint64_t late_ = 0;
+    RecentTimes window_{600};
+    DurationHistogram run_;
 };
 
 }  // namespace tact

@@ -21,6 +21,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end");
     app.add_option("--report", options.report,
                    "write a report of what was drilled as JSON at the end, where the scene is of bone");
+    app.add_option("--frames", options.frames, "write what frames and their passes took as JSON at the end");
     app.add_option(
            "--picture-every", options.every_s,
            "with --screenshot NAME.png: also NAME-01.png and so on, of the view alone, so many seconds apart")

@@ -16,6 +16,7 @@ struct GuiOptions {
     std::string session = "default";
     std::string screenshot;  // empty: none
     std::string report;      // of drilling, JSON, at the end; empty: none
+    std::string frames;      // what frames took, JSON, at the end; empty: none
     double every_s = 0.0;    // between pictures of a series beside the screenshot; 0: none
     double seconds = 0.0;    // 0: until closed
     double zoom = 1.0;       // of the home view

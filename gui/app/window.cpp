@@ -109,6 +109,9 @@ void Window::open(int width_px, int height_px, bool hidden) {
     // the display must not be waited for there.
     paced_ = !software_ && !hidden;
     glfwSwapInterval(paced_ ? 1 : 0);
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* const video = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+    if (video != nullptr && video->refreshRate > 0) display_period_s_ = 1.0 / video->refreshRate;
     if (hidden) target_ = std::make_unique<OffscreenTarget>(width_px, height_px);
     glfwSetWindowUserPointer(window_, &keys_);
     glfwSetKeyCallback(window_, on_key);

@@ -62,6 +62,7 @@ public:
     [[nodiscard]] bool software() const { return software_; }
     // The display sets the pace of show(): waiting there is not work.
     [[nodiscard]] bool paced_by_display() const { return paced_; }
+    [[nodiscard]] double display_period_s() const { return display_period_s_; }  // 0: not known
 
 private:
     void open(int width_px, int height_px, bool hidden);
@@ -71,6 +72,7 @@ private:
     GLFWwindow* window_ = nullptr;
     bool hidden_ = false, software_ = false, paced_ = false, imgui_ = false;
     float ui_scale_ = 1.0F;
+    double display_period_s_ = 0.0;
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
     std::vector<Key> keys_;

@@ -21,6 +21,7 @@
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/device.hpp"
+#include "ipc/topics/frames.hpp"
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
@@ -69,9 +70,10 @@ struct SceneToggles {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
     int style = 0;  // glass, solid, wire
     bool depth_cue = true;
-    bool detail = false;  // the length of edges as colour, where the scene has a forest
-    int molecule = 1;     // trace, tube, sticks, spheres
-    int colouring = 0;    // by chain, element, body
+    bool frame_times = false;  // the table of passes
+    bool detail = false;       // the length of edges as colour, where the scene has a forest
+    int molecule = 1;          // trace, tube, sticks, spheres
+    int colouring = 0;         // by chain, element, body
 };
 
 struct SceneFacts {
@@ -204,6 +206,7 @@ struct DashboardState {
     CounterRate tracker_rate;
     LatenessWindow lateness;
     LoadTopic load{};
+    FrameFigures frames{};  // twice a second
     std::uint64_t refused_records = 0;
     std::string command_text;  // what became of the last command
     Grade command_grade = Grade::unknown;

@@ -104,10 +104,15 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
         pen.theme.small,
         {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, fps), v.y + pen.theme.px(12.0F)},
         colour::kDim, fps);
+    const std::string times = frame_line(state.frames);
+    pen.text(
+        pen.theme.small,
+        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, times), v.y + pen.theme.px(30.0F)},
+        colour::kDim, times);
     const std::string help = "? keys";
     pen.text(
         pen.theme.small,
-        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, help), v.y + pen.theme.px(30.0F)},
+        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, help), v.y + pen.theme.px(48.0F)},
         colour::kDim, help);
 }
 
@@ -200,6 +205,7 @@ void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& vi
     axes(pen, state, view);
     scale_bar(pen, state, view);
     detail_scale(pen, state, view);
+    if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
     message(pen, state, view);
     stop_banner(pen, state, view);
     if (state.show_keys) keys(pen, view);

@@ -22,6 +22,10 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
 void draw_traces(const Theme& theme, DashboardState& state);
 void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size);
 void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
+// What a frame takes in a line; empty: not known yet.
+[[nodiscard]] std::string frame_line(const FrameFigures& figures);
+// And in a table over the 3D view.
+void draw_frame_times(const Theme& theme, const FrameFigures& figures, const PixelRect& view);
 // Over the 3D view: legend, scale bar, axes, what is being waited for.
 void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view);
 

@@ -33,6 +33,8 @@ void surface_card(const Theme& theme, DashboardState& state) {
     ImGui::Checkbox("Surface", &state.toggles.surface);
     ImGui::SameLine(theme.px(104.0F));
     ImGui::Checkbox("Depth cue", &state.toggles.depth_cue);
+    ImGui::SameLine(theme.px(196.0F));
+    ImGui::Checkbox("Times", &state.toggles.frame_times);
     static constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
     text_coloured(colour::kDim, "Surface as");
     ImGui::SameLine(theme.px(104.0F));
@@ -40,10 +42,12 @@ void surface_card(const Theme& theme, DashboardState& state) {
     draw_detail(theme, state);
 }
 
-void bone_card(const Theme& theme, const SceneFacts& s) {
+void bone_card(const Theme& theme, DashboardState& state) {
+    const SceneFacts& s = state.scene;
     row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
         format("of %.3g mm", 1e3 * s.voxel_m));
     row(theme, "File", s.file, "");
+    ImGui::Checkbox("Frame times", &state.toggles.frame_times);
 }
 
 void toggles(const Theme& theme, SceneToggles& t) {
@@ -59,6 +63,8 @@ void toggles(const Theme& theme, SceneToggles& t) {
     ImGui::SameLine(third);
     ImGui::Checkbox("Map box", &t.box);
     ImGui::Checkbox("Depth cue", &t.depth_cue);
+    ImGui::SameLine(second);
+    ImGui::Checkbox("Frame times", &t.frame_times);
     static constexpr std::array<const char*, 4> kMolecule{"trace", "tube", "sticks", "spheres"};
     static constexpr std::array<const char*, 3> kColouring{"by chain", "by element", "by body"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
@@ -87,7 +93,7 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
     if (s.loaded && s.surface) {  // nothing to place or to contour
         surface_card(theme, state);
     } else if (s.loaded && s.bone) {
-        bone_card(theme, s);
+        bone_card(theme, state);
     } else if (s.loaded) {
         static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));

@@ -30,6 +30,7 @@ FluidTarget::FluidTarget(int picture_width_px, int picture_height_px, int coarse
     GLint before = 0;
     glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
     glGenFramebuffers(1, &frame_);
+    gl_names_held() += 3;
     glBindFramebuffer(GL_FRAMEBUFFER, frame_);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, sums_, 0);
     const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -45,6 +46,7 @@ FluidTarget::~FluidTarget() {
     glDeleteFramebuffers(1, &frame_);
     glDeleteTextures(1, &sums_);
     glDeleteTextures(1, &depth_);
+    gl_names_held() -= 3;
 }
 
 void FluidTarget::take_depth(int x_px, int y_px) const {

@@ -8,10 +8,17 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 namespace tact {
+
+// Names that their owners here hold now, all together: what grows with time is not given back.
+[[nodiscard]] inline std::uint32_t& gl_names_held() noexcept {
+    static std::uint32_t held = 0;
+    return held;
+}
 
 class GlBuffer {
 public:
@@ -22,11 +29,15 @@ public:
         return *this;
     }
     ~GlBuffer() {
-        if (name_ != 0) glDeleteBuffers(1, &name_);
+        if (name_ == 0) return;
+        glDeleteBuffers(1, &name_);
+        --gl_names_held();
     }
     // Made at the first call, so that an owner may be constructed without a context.
     GLuint get() {
-        if (name_ == 0) glGenBuffers(1, &name_);
+        if (name_ != 0) return name_;
+        glGenBuffers(1, &name_);
+        ++gl_names_held();
         return name_;
     }
 
@@ -43,10 +54,14 @@ public:
         return *this;
     }
     ~GlVertexArray() {
-        if (name_ != 0) glDeleteVertexArrays(1, &name_);
+        if (name_ == 0) return;
+        glDeleteVertexArrays(1, &name_);
+        --gl_names_held();
     }
     GLuint get() {
-        if (name_ == 0) glGenVertexArrays(1, &name_);
+        if (name_ != 0) return name_;
+        glGenVertexArrays(1, &name_);
+        ++gl_names_held();
         return name_;
     }
 
@@ -60,10 +75,14 @@ public:
     GlTexture(const GlTexture&) = delete;
     GlTexture& operator=(const GlTexture&) = delete;
     ~GlTexture() {
-        if (name_ != 0) glDeleteTextures(1, &name_);
+        if (name_ == 0) return;
+        glDeleteTextures(1, &name_);
+        --gl_names_held();
     }
     GLuint get() {
-        if (name_ == 0) glGenTextures(1, &name_);
+        if (name_ != 0) return name_;
+        glGenTextures(1, &name_);
+        ++gl_names_held();
         return name_;
     }
 
@@ -77,10 +96,14 @@ public:
     GlFramebuffer(const GlFramebuffer&) = delete;
     GlFramebuffer& operator=(const GlFramebuffer&) = delete;
     ~GlFramebuffer() {
-        if (name_ != 0) glDeleteFramebuffers(1, &name_);
+        if (name_ == 0) return;
+        glDeleteFramebuffers(1, &name_);
+        --gl_names_held();
     }
     GLuint get() {
-        if (name_ == 0) glGenFramebuffers(1, &name_);
+        if (name_ != 0) return name_;
+        glGenFramebuffers(1, &name_);
+        ++gl_names_held();
         return name_;
     }
 

@@ -109,32 +109,50 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    if (options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
-    if (frame.T_model_tool) draw_tool(pass);
-    draw_drill_tools(pass);
+    draw_structures(pass);
     draw_bone(pass);
     const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
-    const bool detail = options.detail && detail_.indices() > 0;
-    if (detail) draw_detail(pass);
-    if (options.surface && !detail)
-        contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
+    const bool detail = options.detail && detail_.indices() > 0, surface = options.surface && !detail;
+    {
+        const PassClock::Scope scope(frame.passes, tact::Pass::surface);
+        if (detail) draw_detail(pass);
+        if (surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
+    }
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    if (options.codebook || options.graph) draw_codebook(pass);
-    if (options.box) draw_box(pass);
-    if (options.surface && !detail)
+    if (options.codebook || options.graph || options.box) {
+        const PassClock::Scope scope(frame.passes, tact::Pass::marks);
+        if (options.codebook || options.graph) draw_codebook(pass);
+        if (options.box) draw_box(pass);
+    }
+    if (surface) {
+        const PassClock::Scope scope(frame.passes, tact::Pass::surface);
         contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
+    }
     glDisable(GL_BLEND);
     if (frame.particles != nullptr) draw_particles(pass);
-    // Always seen, also inside the structures: everything else is drawn, so its depth may go.
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    if (options.force) draw_force(pass);
-    if (frame.second_hand) draw_second_hand(pass);
-    if (frame.touch) draw_touch(pass);
-    glDisable(GL_DEPTH_TEST);
+    draw_in_front(pass);
     glBindVertexArray(0);
     glUseProgram(0);
+}
+
+void SceneView::draw_structures(const Pass& pass) {
+    const ViewFrame& frame = pass.frame;
+    const PassClock::Scope scope(frame.passes, tact::Pass::structures);
+    if (pass.options.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
+    if (frame.T_model_tool) draw_tool(pass);
+    draw_drill_tools(pass);
+}
+
+// Always seen, also inside the structures: everything else is drawn, so its depth may go.
+void SceneView::draw_in_front(const Pass& pass) {
+    const PassClock::Scope scope(pass.frame.passes, tact::Pass::marks);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    if (pass.options.force) draw_force(pass);
+    if (pass.frame.second_hand) draw_second_hand(pass);
+    if (pass.frame.touch) draw_touch(pass);
+    glDisable(GL_DEPTH_TEST);
 }
 
 Haze SceneView::haze_of(const EyeView& eye, const ViewOptions& options) const {
@@ -196,6 +214,7 @@ void SceneView::draw_tool(const Pass& pass) {
 void SceneView::draw_bone(const Pass& pass) {
     if (!bone_) return;
     const ViewFrame& f = pass.frame;
+    const PassClock::Scope scope(f.passes, tact::Pass::bone);
     bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
                  f.bone_rays, f.eye, f.bone_fill_s});
 }
@@ -265,9 +284,13 @@ void SceneView::draw_touch(const Pass& pass) {
 
 // Over all that is solid, which hides them by its depth.
 void SceneView::draw_particles(const Pass& pass) {
+    if (pass.frame.time_particles) {  // what is left of the bone is not theirs
+        const PassClock::Scope scope(pass.frame.passes, tact::Pass::bone);
+        glFinish();
+    }
+    const PassClock::Scope scope(pass.frame.passes, tact::Pass::particles);
     if (!cloud_) cloud_ = std::make_unique<ParticleCloud>();
     const ParticleCells& cells = pass.frame.particles->cells();
-    if (pass.frame.time_particles) glFinish();
     const Instant begin = Monotonic::now();
     cloud_->fill(pass.frame.particles->all());
     Eigen::Matrix4f model_from_cells = Eigen::Matrix4f::Identity();

@@ -18,6 +18,7 @@
 #include "gui/render/eye_view.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/particle_cloud.hpp"
+#include "gui/render/pass_clock.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/second_hand.hpp"
@@ -50,6 +51,7 @@ struct ViewFrame {
     std::uint32_t bone_rays = 0;                  // through the bone, at most
     double bone_fill_s = 1e9;                     // at most, for bone that is not in graphics memory yet
     std::size_t eye = 0;                          // which of two
+    PassClock* passes = nullptr;                  // told what each takes
     std::span<const DrawnDrillTool> drill_tools;  // the force is felt at the first one
 };
 
@@ -93,6 +95,8 @@ private:
     };
     struct Pass;  // matrices of one draw()
     [[nodiscard]] Haze haze_of(const EyeView& eye, const ViewOptions& options) const;
+    void draw_structures(const Pass& pass);
+    void draw_in_front(const Pass& pass);
     void draw_codebook(const Pass& pass);
     void draw_force(const Pass& pass);
     void draw_second_hand(const Pass& pass);

@@ -12,6 +12,7 @@ OffscreenTarget::OffscreenTarget(int width_px, int height_px) : width_px_(width_
     glGenFramebuffers(1, &frame_);
     glGenRenderbuffers(1, &colour_);
     glGenRenderbuffers(1, &depth_);
+    gl_names_held() += 3;
     glBindRenderbuffer(GL_RENDERBUFFER, colour_);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_px, height_px);
     glBindRenderbuffer(GL_RENDERBUFFER, depth_);
@@ -31,6 +32,7 @@ OffscreenTarget::~OffscreenTarget() {
     glDeleteFramebuffers(1, &frame_);
     glDeleteRenderbuffers(1, &colour_);
     glDeleteRenderbuffers(1, &depth_);
+    gl_names_held() -= 3;
 }
 
 Image read_pixels(int width_px, int height_px) {

@@ -12,6 +12,7 @@
 #include "ipc/topics/device.hpp"
 #include "ipc/topics/drill.hpp"
 #include "ipc/topics/event.hpp"
+#include "ipc/topics/frames.hpp"
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
@@ -37,6 +38,7 @@ struct RtRegion {
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
     Latest<LevelsTopic> levels;
+    Latest<PictureTopic> picture;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
     // For recordings. 1 kHz: half a minute is kept.
@@ -50,15 +52,16 @@ struct RtRegion {
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
     using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic,
-                             DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, EventTopic, TraceTopic,
-                             StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
+                             DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, PictureTopic, EventTopic,
+                             TraceTopic, StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {
     static constexpr char kName[] = "tact.gui";
     Latest<LoadTopic> load;
+    Latest<FramesTopic> frames;
     Ring<CommandTopic, 64> commands;
-    using Topics = TopicList<LoadTopic, CommandTopic>;
+    using Topics = TopicList<LoadTopic, FramesTopic, CommandTopic>;
 };
 
 }  // namespace tact

@@ -169,12 +169,27 @@ void House::attend_link() {
             return;
         }
         commands_ = gui_->commands.tail();  // what an earlier controller was told is not for this one
-        loads_seen_ = 0;
+        loads_seen_ = frames_seen_ = 0;
         report_.gui_attached = 1;
         report_.gui_generation = gui_.generation();
         report_.gui_heartbeat_ns = to_ns(Monotonic::now());
         spdlog::info("visual process {} attached", news.gui_pid);
     }
+}
+
+void House::pass_on_frames() {
+    const std::uint64_t count = gui_->frames.count();
+    FramesTopic frames{};
+    if (count == frames_seen_ || !gui_->frames.read(frames)) return;
+    frames_seen_ = count;
+    if (!plausible(frames.figures)) {
+        ++bad_input_;
+        return;
+    }
+    PictureTopic picture{};
+    picture.taken_at_ns = to_ns(Monotonic::now());  // what the other process wrote there is not believed
+    picture.figures = frames.figures;
+    region_->picture.publish(picture);
 }
 
 void House::attend_gui() {
@@ -204,6 +219,7 @@ void House::attend_gui() {
             ++bad_input_;
         }
     }
+    pass_on_frames();
     CommandTopic command{};
     const std::uint64_t missed = commands_.missed;
     for (int i = 0; i < kCommandsPerTurn && gui_->commands.next(commands_, command); ++i) {

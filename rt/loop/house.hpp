@@ -54,6 +54,7 @@ public:
 private:
     void attend_link();
     void attend_gui();
+    void pass_on_frames();
     void attend_events();
     void report();
 
@@ -65,7 +66,7 @@ private:
     MappedRegion<GuiRegion> gui_;
     RingCursor commands_;
     RingCursor events_;
-    std::uint64_t loads_seen_ = 0;
+    std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
     std::uint64_t bad_input_ = 0;
     std::uint64_t faults_seen_ = 0;
     HouseReport report_{};

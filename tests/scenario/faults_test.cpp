@@ -181,6 +181,11 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
         load.frame_s = burst % 2 == 0 ? std::nan("") : -1.0;
         visual.region().load.publish(load);
         ++loads;
+        FramesTopic frames{};
+        auto* const words = reinterpret_cast<unsigned char*>(&frames);
+        for (std::size_t i = 0; i < sizeof frames; ++i) words[i] = static_cast<unsigned char>(random());
+        frames.figures.late = frames.figures.frames + 1;
+        visual.region().frames.publish(frames);
         ASSERT_TRUE(watch.cycles_pass(5));
         EXPECT_EQ(watch.state(), RunState::active);
         EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
@@ -202,6 +207,14 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
     std::printf("%d impossible commands and %d loads sent, %llu refusals counted\n", commands, loads,
                 static_cast<unsigned long long>(h.bad_input - refused));
+    // None of its impossible figures were passed on; possible ones are.
+    PictureTopic picture{};
+    EXPECT_TRUE(!watch.region().picture.read(picture) || plausible(picture.figures));
+    FramesTopic frames{};
+    frames.figures.frames = 4321;
+    visual.region().frames.publish(frames);
+    EXPECT_TRUE(
+        until([&] { return watch.region().picture.read(picture) && picture.figures.frames == 4321; }));
     // Good words are still understood.
     EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
     EXPECT_EQ(watch.state(), RunState::ready);

@@ -50,6 +50,17 @@ std::unique_ptr<RtRegion> a_region() {
     tracker.state = 2;
     tracker.missed = 4;
     region->tracker.publish(tracker);
+    PictureTopic picture{};
+    picture.taken_at_ns = 1;
+    picture.figures.frames = 400;
+    picture.figures.late = 2;
+    picture.figures.p50_s = 0.5F;
+    picture.figures.p99_s = picture.figures.most_s = 0.75F;
+    for (PassFigures& p : picture.figures.pass) p.drawn_p50_s = p.drawn_p99_s = -1.0F;
+    picture.figures.pass[static_cast<std::size_t>(Pass::bone)] = {0.125F, 0.25F, 0.375F, 0.5F};
+    picture.figures.path[1].work_p50_s = 0.0625F;
+    picture.figures.path[1].work_p99_s = 0.125F;
+    region->picture.publish(picture);
     return region;
 }
 
@@ -88,6 +99,16 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     EXPECT_TRUE(std::isnan(value_of(text, "tact_motor_winding_celsius{session=\"lab\",hand=\"1\"}")));
     EXPECT_EQ(value_of(text, "tact_tracker_fresh{session=\"lab\"}"), 1.0);
     EXPECT_EQ(value_of(text, "tact_tracker_errors_total{session=\"lab\",kind=\"missed\"}"), 4.0);
+    EXPECT_EQ(value_of(text, "tact_frames_total{session=\"lab\"}"), 400.0);
+    EXPECT_EQ(value_of(text, "tact_frames_late_total{session=\"lab\"}"), 2.0);
+    EXPECT_EQ(value_of(text, "tact_frame_seconds{session=\"lab\",quantile=\"0.99\"}"), 0.75);
+    const std::string bone = "{session=\"lab\",pass=\"bone\",quantile=\"0.99\"}";
+    EXPECT_EQ(value_of(text, "tact_pass_work_seconds" + bone), 0.25);
+    EXPECT_EQ(value_of(text, "tact_pass_drawn_seconds" + bone), 0.5);
+    EXPECT_EQ(value_of(text, "tact_path_work_seconds{session=\"lab\",path=\"gui.volume\",quantile=\"0.5\"}"),
+              0.0625);
+    // What is not known is not told.
+    EXPECT_EQ(text.find("tact_pass_drawn_seconds{session=\"lab\",pass=\"swap\""), std::string::npos);
     const auto cause = [&](RunReason reason) {
         return value_of(text, std::string("tact_faults_total{session=\"lab\",cause=\"") +
                                   run_reason_text(reason) + "\"}");
@@ -128,6 +149,9 @@ TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
     std::memcpy(l.path[0].path, "a\"b\\c\nd", 8);
     l.path[0].level = 1.0F;
     region->levels.publish(l);
+    PictureTopic p{};
+    std::memset(static_cast<void*>(&p), 0x7F, sizeof p);
+    region->picture.publish(p);
     EventTopic e{};
     e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
     e.a = NAN;

@@ -18,6 +18,8 @@ if(TACT_GUI)
     tact_test(unit/gui_bone_draw_test.cpp USES gui_app gui_panels gui_render launch assets base TIMEOUT 300)
     tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
     tact_test(unit/gui_stage_test.cpp USES gui_stage gui_render topics base)
+    tact_test(unit/gui_frames_test.cpp USES gui_app gui_panels gui_render launch shm topics assets base
+        SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
     tact_test(unit/gui_link_test.cpp USES gui_link gui_panels topics shm base)
     tact_test(unit/gui_bone_follower_test.cpp USES gui_link topics shm assets base)
     tact_test(unit/gui_history_test.cpp USES gui_fit base SYSTEM rapidcheck)

@@ -164,6 +164,18 @@ TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
     }
 }
 
+TEST_F(GuiWindow, WritesWhatFramesTookAtTheEnd) {
+    const std::string report = folder_ + "/frames.json";
+    EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1", "--frames", report})->wait(), 0) << log();
+    std::ifstream file(report);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (const char* const word :
+         {"\"late\"", "\"surface\"", "\"gui.mesh\"", "\"drawn_ms\"", "\"resident_bytes\""})
+        EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
+    EXPECT_NE(gui({scene(), "--hidden", "--seconds", "0.2", "--frames", "/nowhere/f.json"})->wait(), 0);
+    EXPECT_NE(log().find("--frames"), std::string::npos) << log();
+}
+
 TEST_F(GuiWindow, StartsWithTheLooksOfTheCommandLine) {
     const std::string picture = folder_ + "/looks.png";
     EXPECT_EQ(
@@ -223,6 +235,19 @@ TEST_F(GuiWindow, HeartbeatCarriesPartsAndProcessorTime) {
     // Drawing on the processor there is no display to wait for: all of it is work.
     EXPECT_NEAR(sum, last.busy_s, 1e-9);
     EXPECT_GT(last.triangles_drawn, 0U);
+    FramesTopic frames{};
+    ASSERT_TRUE(wait_for([&] {
+        return controller.gui()->frames.read(frames) && frames.figures.frames >= 2 * kFinishEvery &&
+               frames.figures.pass[static_cast<std::size_t>(Pass::surface)].work_p99_s > 0.0F;
+    })) << log();
+    const FrameFigures& f = frames.figures;
+    EXPECT_TRUE(plausible(f));
+    EXPECT_GT(f.gl_objects, 3U);
+    EXPECT_GT(f.resident_bytes, 1000000U);
+    EXPECT_GT(f.p50_s, 0.0F);
+    for (const Pass pass : {Pass::ground, Pass::structures, Pass::surface, Pass::dashboard})
+        EXPECT_GT(f.pass[static_cast<std::size_t>(pass)].drawn_p50_s, 0.0F) << pass_text(pass) << log();
+    EXPECT_GT(f.path[0].drawn_p50_s, 0.0F);
     process->signal(SIGINT);
     EXPECT_EQ(process->wait(), 0) << log();
 }

@@ -1,0 +1,46 @@
+#include "gui/app/frame_report.hpp"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "ipc/base/error.hpp"
+#include "ipc/topics/frames_json.hpp"
+
+namespace tact {
+namespace {
+
+std::uint64_t resident_bytes() {
+    std::FILE* const file = std::fopen("/proc/self/statm", "re");
+    if (file == nullptr) return 0;
+    unsigned long long all = 0, resident = 0;
+    const int read = std::fscanf(file, "%llu %llu", &all, &resident);
+    std::fclose(file);
+    return read == 2 ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+}  // namespace
+
+FrameFigures frame_figures(const FrameClock& clock, const PassClock& passes) {
+    FrameFigures f{};
+    clock.fill(f);
+    passes.fill(f);
+    f.gl_objects = gl_names_held();
+    const struct mallinfo2 heap = mallinfo2();
+    f.heap_bytes = heap.uordblks + heap.hblkhd;
+    f.resident_bytes = resident_bytes();
+    return f;
+}
+
+void write_frame_report(const std::string& path, const FrameFigures& figures) {
+    if (path.empty()) return;
+    std::ofstream file(path, std::ios::trunc);
+    file << frames_json(figures).dump(2) << '\n';
+    if (!file.flush())
+        throw StartupError("writing what the frames took to " + path, "it cannot be written",
+                           "give --frames another path");
+}
+
+}  // namespace tact

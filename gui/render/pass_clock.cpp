@@ -1,0 +1,127 @@
+#include "gui/render/pass_clock.hpp"
+
+#include <algorithm>
+
+namespace tact {
+namespace {
+
+constexpr std::uint64_t kFirstFinished = 16;  // soon after the start, so that there is something to show
+
+// The passes of each visual path, in the order of visual_path_text().
+constexpr std::array<std::array<Pass, 2>, kVisualPaths> kPassesOf{
+    {{Pass::adapt, Pass::surface}, {Pass::bone, Pass::bone}, {Pass::motion, Pass::particles}}};
+
+std::size_t at(Pass pass) { return static_cast<std::size_t>(pass); }
+
+void add_paths(const std::array<double, kPasses>& of_pass_s, std::vector<RecentTimes>& to) {
+    for (std::size_t i = 0; i < kVisualPaths; ++i) {
+        const auto [first, second] = kPassesOf[i];
+        to[i].add(of_pass_s[at(first)] + (second != first ? of_pass_s[at(second)] : 0.0));
+    }
+}
+
+PassFigures figures_of(const RecentTimes& work, const RecentTimes& drawn, bool known) {
+    PassFigures f{work.percentile_s(0.5), work.percentile_s(0.99), -1.0F, -1.0F};
+    if (known && drawn.size() > 0) {
+        f.drawn_p50_s = drawn.percentile_s(0.5);
+        f.drawn_p99_s = drawn.percentile_s(0.99);
+    }
+    return f;
+}
+
+}  // namespace
+
+PassClock::Drawn PassClock::possible(bool software) {
+    if (software) return Drawn::finished;
+    GLint bits = 0;
+    glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+    return bits > 0 ? Drawn::stamped : Drawn::unknown;
+}
+
+PassClock::PassClock(Drawn drawn)
+    : how_(drawn),
+      work_(kPasses, RecentTimes(kFrames)),
+      drawn_(kPasses, RecentTimes(drawn == Drawn::finished ? kFinished : kFrames)),
+      path_work_(kVisualPaths, RecentTimes(kFrames)),
+      path_drawn_(kVisualPaths, RecentTimes(drawn == Drawn::finished ? kFinished : kFrames)) {
+    if (how_ != Drawn::stamped) return;
+    for (Stamps& s : in_flight_) glGenQueries(static_cast<GLsizei>(s.query.size()), s.query.data());
+    gl_names_held() += static_cast<std::uint32_t>(kFramesInFlight * 2 * kScopesMost);
+}
+
+PassClock::~PassClock() {
+    if (how_ != Drawn::stamped) return;
+    for (Stamps& s : in_flight_) glDeleteQueries(static_cast<GLsizei>(s.query.size()), s.query.data());
+    gl_names_held() -= static_cast<std::uint32_t>(kFramesInFlight * 2 * kScopesMost);
+}
+
+void PassClock::begin_frame() {
+    ++frame_;
+    work_s_.fill(0.0);
+    drawn_s_.fill(0.0);
+    finishing_ = how_ == Drawn::finished && frame_ % kFinishEvery == kFirstFinished;
+    if (how_ == Drawn::stamped) collect(in_flight_[frame_ % kFramesInFlight]);
+}
+
+void PassClock::begin(Pass pass) {
+    if (finishing_) glFinish();  // what is left of others is not this one's
+    Stamps& s = in_flight_[frame_ % kFramesInFlight];
+    if (how_ == Drawn::stamped && stamps(pass) && s.count < kScopesMost) {
+        s.pass[s.count] = pass;
+        glQueryCounter(s.query[2 * s.count], GL_TIMESTAMP);
+    }
+    began_ = Monotonic::now();
+}
+
+void PassClock::end(Pass pass) {
+    work_s_[at(pass)] += to_s(Monotonic::now() - began_);
+    if (finishing_) {
+        glFinish();
+        drawn_s_[at(pass)] += to_s(Monotonic::now() - began_);
+    }
+    Stamps& s = in_flight_[frame_ % kFramesInFlight];
+    if (how_ == Drawn::stamped && stamps(pass) && s.count < kScopesMost)
+        glQueryCounter(s.query[2 * s.count++ + 1], GL_TIMESTAMP);
+}
+
+void PassClock::end_frame() {
+    for (std::size_t i = 0; i < kPasses; ++i) work_[i].add(work_s_[i]);
+    add_paths(work_s_, path_work_);
+    if (finishing_) add_drawn(drawn_s_);
+}
+
+void PassClock::collect(Stamps& s) {
+    if (s.count == 0) return;
+    GLuint there = GL_FALSE;
+    glGetQueryObjectuiv(s.query[2 * s.count - 1], GL_QUERY_RESULT_AVAILABLE, &there);
+    if (there == GL_FALSE) {
+        ++lost_;
+    } else {  // they end in the order in which they were asked for: all are there
+        Times drawn_s{};
+        for (std::size_t i = 0; i < s.count; ++i) {
+            GLuint64 from_ns = 0, to_ns = 0;
+            glGetQueryObjectui64v(s.query[2 * i], GL_QUERY_RESULT, &from_ns);
+            glGetQueryObjectui64v(s.query[2 * i + 1], GL_QUERY_RESULT, &to_ns);
+            if (to_ns > from_ns) drawn_s[at(s.pass[i])] += 1e-9 * static_cast<double>(to_ns - from_ns);
+        }
+        add_drawn(drawn_s);
+    }
+    s.count = 0;
+}
+
+void PassClock::add_drawn(const Times& drawn_s) {
+    for (std::size_t i = 0; i < kPasses; ++i) drawn_[i].add(drawn_s[i]);
+    add_paths(drawn_s, path_drawn_);
+}
+
+void PassClock::fill(FrameFigures& f) const {
+    for (std::size_t i = 0; i < kPasses; ++i) {
+        const bool known =
+            how_ == Drawn::finished || (how_ == Drawn::stamped && stamps(static_cast<Pass>(i)));
+        f.pass[i] = figures_of(work_[i], drawn_[i], known);
+    }
+    for (std::size_t i = 0; i < kVisualPaths; ++i)
+        f.path[i] = figures_of(path_work_[i], path_drawn_[i], how_ != Drawn::unknown);
+}
+
+}  // namespace tact

@@ -1,0 +1,82 @@
+// What each pass of a frame costs: time of the frame thread, and of the renderer where that can be known.
+//
+// Stamped    a graphics card writes down when it begins and ends a pass. That is read kFramesInFlight frames later, and only
+//            where it is there by then: reading never waits. What was not there is counted as lost.
+// Finished   where the processor draws, one frame in kFinishEvery is finished pass by pass (ipc/topics/frames.hpp).
+// Unknown    the driver has no stamps, or its counter has no bits.
+// Thread     frame thread, context current.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "gui/render/gl.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/recent_times.hpp"
+#include "ipc/topics/frames.hpp"
+
+namespace tact {
+
+class PassClock {
+public:
+    enum class Drawn : std::uint8_t { unknown, stamped, finished };
+    static constexpr std::size_t kFramesInFlight = 4, kScopesMost = 48;
+    static constexpr std::size_t kFrames = 600;   // that percentiles are of
+    static constexpr std::size_t kFinished = 64;  // and of frames that were finished
+
+    explicit PassClock(Drawn drawn);
+    ~PassClock();
+    PassClock(const PassClock&) = delete;
+    PassClock& operator=(const PassClock&) = delete;
+    // What this driver can do.
+    [[nodiscard]] static Drawn possible(bool software);
+
+    void begin_frame();
+    void end_frame();
+    void fill(FrameFigures& figures) const;
+    [[nodiscard]] Drawn drawn() const { return how_; }
+    [[nodiscard]] std::uint64_t lost() const { return lost_; }
+
+    // From its construction to its end. One after the other, not one in another. No clock: does nothing.
+    class Scope {
+    public:
+        Scope(PassClock* clock, Pass pass) : clock_(clock), pass_(pass) {
+            if (clock_ != nullptr) clock_->begin(pass_);
+        }
+        ~Scope() {
+            if (clock_ != nullptr) clock_->end(pass_);
+        }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+    private:
+        PassClock* clock_;
+        Pass pass_;
+    };
+
+private:
+    struct Stamps {
+        std::array<GLuint, 2 * kScopesMost> query{};
+        std::array<Pass, kScopesMost> pass{};
+        std::size_t count = 0;
+    };
+    using Times = std::array<double, kPasses>;
+    void begin(Pass pass);
+    void end(Pass pass);
+    [[nodiscard]] static bool stamps(Pass pass) { return pass != Pass::swap && pass != Pass::motion; }
+    void collect(Stamps& stamps);
+    void add_drawn(const Times& drawn_s);
+
+    const Drawn how_;
+    std::uint64_t frame_ = 0, lost_ = 0;
+    bool finishing_ = false;
+    Instant began_{};
+    Times work_s_{}, drawn_s_{};
+    std::vector<RecentTimes> work_, drawn_;            // of each pass
+    std::vector<RecentTimes> path_work_, path_drawn_;  // of each visual path
+    std::array<Stamps, kFramesInFlight> in_flight_{};
+};
+
+}  // namespace tact
