@@ -22,7 +22,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCar
 
     // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
     const float usable = height_px - 4.0F * gap;
-    const float health = std::round(std::min(theme.px(330.0F), 0.48F * usable));
+    const float health = std::round(std::min(theme.px(344.0F), 0.48F * usable));
     const float wanted = middle == MiddleCard::fit        ? std::min(theme.px(212.0F), 0.3F * usable)
                          : middle == MiddleCard::drilling ? std::min(theme.px(300.0F), 0.42F * usable)
                                                           : 0.0F;

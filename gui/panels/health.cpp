@@ -163,18 +163,19 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
     if (!state.attached) {
-        ImGui::SameLine();
-        badge(theme, known ? "gone" : "waiting", colour::kWatch);
+        badge(theme, known ? "GONE" : "WAITING", colour::kWatch, theme.large);
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(colour::kWatch, state.link_text);
         ImGui::PopTextWrapPos();
     } else if (!known) {
-        ImGui::SameLine();
-        badge(theme, "attached", colour::kWatch);
+        badge(theme, "ATTACHED", colour::kWatch, theme.large);
         text_coloured(colour::kWatch, "attached; its health is not published yet");
     }
+    if (known && state.attached) hero(theme, state);
+    // Under what is read first: a device with much to say must not push them out.
+    buttons(theme, state);
+    if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {
-        hero(theme, state);
         if (h.period_ns > 0) {
             timing(theme, state);
         } else {
@@ -189,8 +190,6 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
         law_and_goal(theme, state);
     }
-    buttons(theme, state);
-    if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {
         const bool clean = memory_verdict(h).grade == Grade::good;
         text_small(theme, colour::kDim, schedule_text(h.schedule_flags) + (clean ? "; memory clean" : ""));

@@ -8,6 +8,12 @@
 namespace tact {
 namespace {
 
+// Under a row's value.
+void below(const Theme& theme, const std::string& text) {
+    ImGui::SetCursorPosX(theme.px(100.0F));
+    text_small(theme, colour::kDim, text);
+}
+
 std::string a_second(const CounterRate& rate) {
     return rate.known() ? format("%.0f /s", rate.per_s()) : std::string("- /s");
 }
@@ -23,7 +29,7 @@ void device_row(const Theme& theme, const DashboardState& state, std::size_t han
     Verdict v = device_verdict(d, bus, static_cast<DeviceNotice>(state.health.device_notice[hand]));
     v.words = aged(v, d.age_ns);
     row(theme, name, a_second(state.device_rate[hand]), v);
-    if (!bus.clean()) text_small(theme, colour::kDim, bus_text(bus));
+    if (!bus.clean()) below(theme, bus_text(bus));
 }
 
 // Of two hands the one that is nearer to its limit.
@@ -46,8 +52,7 @@ void tracker_row(const Theme& theme, const DashboardState& state) {
     Verdict v = tracker_verdict(t);
     v.words = aged(v, t.age_ns);
     row(theme, "Head tracker", a_second(state.tracker_rate), v);
-    if (const std::string wrong = tracker_counts_text(t); !wrong.empty())
-        text_small(theme, colour::kDim, wrong);
+    if (const std::string wrong = tracker_counts_text(t); !wrong.empty()) below(theme, wrong);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::array<ImU32, 4> kPathColours{colour::kAccent, colour::kOrange, colour::kGreen, colour::kPink};
 constexpr std::array<const char*, 3> kLatenessViews{"last minute", "whole run", "over time"};
+constexpr std::array<const char*, 3> kLatenessShort{"minute", "run", "trend"};
 
 void span_choice(const Theme& theme, DashboardState& state) {
     static constexpr std::array<const char*, kSpans_s.size()> kNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
@@ -85,7 +86,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
         draw_traces(theme, state);
         return end_card();
     }
-    ImGui::SameLine(0.0F, theme.px(28.0F));
+    ImGui::SameLine(0.0F, theme.px(18.0F));
     span_choice(theme, state);
     const History& h = state.history;
     const ImVec2 inside = ImGui::GetContentRegionAvail();
@@ -96,9 +97,13 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     if (wide && state.lateness_choice == 2) state.lateness_choice = 0;
     ImGui::SameLine(0.0F, theme.px(20.0F));
     ImGui::PushFont(theme.small);
-    text_coloured(colour::kDim, "lateness:");
-    ImGui::SameLine(0.0F, theme.px(6.0F));
-    choose(theme, std::span(kLatenessViews).first(wide ? 2 : 3), state.lateness_choice);
+    const bool roomy = inside.x > theme.px(620.0F);
+    if (roomy) {
+        text_coloured(colour::kDim, "lateness:");
+        ImGui::SameLine(0.0F, theme.px(6.0F));
+    }
+    choose(theme, std::span(roomy ? kLatenessViews : kLatenessShort).first(wide ? 2 : 3),
+           state.lateness_choice);
     ImGui::PopFont();
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float shares = wide ? 5.8F : 4.8F, gaps = wide ? 4.0F : 3.0F;

@@ -64,23 +64,29 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         return;
     }
 
-    // The figures: two lines of two, as words in the colour of what they mean.
+    // What they mean in words, and the figures in two lines of two.
+    const Verdict verdict = lateness_verdict(f.p99_ns, period_ns);
+    const float words_at = size.x - width_of(verdict.words);
+    if (words_at > width_of("Lateness last 60 s "))
+        label({at.x + words_at, at.y}, grade_colour(verdict.grade), verdict.words);
     const std::pair<const char*, std::int64_t> figures[] = {
         {"p50", f.p50_ns}, {"p99", f.p99_ns}, {"p99.9", f.p999_ns}, {"max", f.max_ns}};
-    const float column = 0.5F * size.x;
+    // In two columns where there is room for them.
+    const bool one = 0.5F * size.x < width_of("p99.9 99.9 µs ");
+    const std::size_t columns = one ? 1 : 2;
+    const float rows = one ? 4.0F : 2.0F;
     for (std::size_t i = 0; i < std::size(figures); ++i) {
-        const ImVec2 where{at.x + static_cast<float>(i % 2) * column,
-                           at.y + (1.08F + 1.02F * static_cast<float>(i / 2)) * line};
+        const ImVec2 where{at.x + 0.5F * size.x * static_cast<float>(i % columns),
+                           at.y + (1.08F + 1.02F * static_cast<float>(i / columns)) * line};
         label(where, colour::kDim, figures[i].first);
-        label({where.x + width_of("p99.9 "), where.y},
-              grade_colour(grade_of(static_cast<double>(figures[i].second), period_ns)),
+        label({where.x + width_of("p99.9 "), where.y}, colour::kText,
               duration_text(1e-9 * static_cast<double>(figures[i].second)));
     }
 
     const LatenessBars whole(l.whole()), last(recent ? l.recent() : l.whole());
     const double reach =
         std::max({LatenessBars::edge_ns(whole.last + 2), 1.2 * static_cast<double>(period_ns), 1e5});
-    const LatenessFrame frame{{at.x, at.y + 3.3F * line},
+    const LatenessFrame frame{{at.x, at.y + (1.3F + rows) * line},
                               {at.x + size.x - 1.0F, at.y + size.y - line - theme.px(3.0F)},
                               reach,
                               static_cast<double>(std::max(whole.most, last.most))};
@@ -132,7 +138,9 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         std::string text = words("whole run", l.whole_figures());
         if (l.recent_figures().cycles > 0)
             text += "\n" + words(format("last %.0f s", l.recent_s()).c_str(), l.recent_figures());
-        text += "\nColoured: what is chosen; grey behind it: the whole run. Dashed: one period.";
+        text +=
+            "\nColoured: what is chosen; grey behind it: the whole run. Dashed: one period."
+            "\nGreen: less late than a tenth of the period; amber: than half of it; red: later.";
         ImGui::SetTooltip("%s", text.c_str());
     }
 }

@@ -275,9 +275,8 @@ Verdict picture_verdict(double fps, double goal_hz) {
     const bool goal = goal_hz > 0.0;
     const double share = fps / (goal ? goal_hz : 20.0);
     if (share >= (goal ? 0.9 : 1.0)) return {Grade::good, goal ? "holds its goal" : "fluent"};
-    char text[64];
-    std::snprintf(text, sizeof text, "below %s%.0f a second", goal ? "its goal of " : "",
-                  goal ? goal_hz : 20.0);
+    char text[48];
+    std::snprintf(text, sizeof text, "below %s%.0f", goal ? "goal of " : "", goal ? goal_hz : 20.0);
     return {share >= 0.6 ? Grade::watch : Grade::bad, text};
 }
 
