@@ -40,10 +40,10 @@ private:
     void follow_controller(std::int64_t now_ns);
     void start_loading(const std::string& path);
     void follow_scene();
-    void use_scene();
+    void use_scene(DrillStart drill);
     void home_view();
     void look_at_burr();
-    void show_bone();
+    void show_bone(DrillStart drill);
     void handle_input();
     void fitting_key(Key key);
     void obey_level();

@@ -34,7 +34,7 @@ void GuiApp::follow_scene() {
     if (auto loaded = loader_.poll()) {
         if (loaded->content) {
             content_ = std::move(loaded->content);
-            use_scene();
+            use_scene(std::move(loaded->drill));
         } else {
             spdlog::error("{}", loaded->error);
             const SceneFacts before = state_.scene;
@@ -53,7 +53,7 @@ void GuiApp::follow_scene() {
                                : std::string();
 }
 
-void GuiApp::use_scene() {
+void GuiApp::use_scene(DrillStart drill) {
     if (!programs_) programs_ = std::make_unique<Programs>();
     view_ = std::make_unique<SceneView>(content_, *programs_, refine_by_child(content_));
     if (!options_.contours.empty()) view_->contours().set(contours_of(options_.contours, content_->scale));
@@ -76,7 +76,7 @@ void GuiApp::use_scene() {
     desk_.use(content_);
     detail_.use(content_, state_.detail);
     state_.scene = describe(*content_);
-    show_bone();
+    show_bone(std::move(drill));
     window_.set_title(std::string("Tact: ") + state_.scene.title);
     spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
                  view_->vertices_max(), state_.scene.bodies, state_.scene.atoms);
@@ -99,9 +99,9 @@ void GuiApp::look_at_burr() {
                      kBurrsShown * static_cast<float>(radius_m / kAngstromM));
 }
 
-void GuiApp::show_bone() {
+void GuiApp::show_bone(DrillStart drill) {
     try {
-        drilling_.use(content_, controller_, *view_, options_.particles);
+        drilling_.use(content_, controller_, std::move(drill), *view_, options_.particles);
     } catch (const StartupError& e) {
         spdlog::error("{}", e.what());
         state_.scene.warning = e.what();

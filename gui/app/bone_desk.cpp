@@ -6,10 +6,9 @@
 
 namespace tact {
 
-void BoneDesk::use(const SceneContent& content) {
+void BoneDesk::use(std::unique_ptr<BoneFollower> follower) {
     changes_ = {};
-    follower_.reset();
-    if (content.bone) follower_ = std::make_unique<BoneFollower>(content.bone->volume, content.checksum);
+    follower_ = std::move(follower);
 }
 
 void BoneDesk::meet(const Controller& controller) {

@@ -19,7 +19,7 @@ public:
     static constexpr std::size_t kBricksAFrame =
         512;  // 256 KiB; a burr changes some ten a cycle, mostly the same
 
-    void use(const SceneContent& content);
+    void use(std::unique_ptr<BoneFollower> follower);  // null: the scene is not of bone
     void meet(const Controller& controller);
     void leave();
     void follow();

@@ -14,14 +14,14 @@ constexpr double kFillS = 12e-3;  // of a picture, for bone that goes into graph
 }  // namespace
 
 void DrillShow::use(const std::shared_ptr<const SceneContent>& content, const Controller& controller,
-                    SceneView& view, std::uint32_t particles) {
+                    DrillStart start, SceneView& view, std::uint32_t particles) {
     content_ = content;
     site_.reset();
-    bone_.use(*content);
+    bone_.use(std::move(start.follower));
     desk_.use(content);
     bone_.meet(controller);
     if (!content->bone) return;
-    site_.emplace(*bone_.volume(), content->bone->labels, content->meta.world_per_model);
+    site_ = std::move(start.site);
     site_->keep(particles);
     view.show_bone(*bone_.volume());
 }
@@ -74,6 +74,7 @@ void DrillShow::prepare(const Controller& controller, SceneView& view, bool shar
 }
 
 void DrillShow::drawn(SceneView& view, DashboardState& state) {
+    if (!view.bone_error().empty()) state.scene.warning = view.bone_error();
     state.scene.bone_shown = view.bone() != nullptr ? view.bone()->filled() : 1.0F;
     if (site_ && software_) particle_pace_.took(site_->particles().all().size(), view.particles_draw_s());
 }

@@ -17,6 +17,7 @@
 #include "gui/app/controller.hpp"
 #include "gui/app/drill_desk.hpp"
 #include "gui/app/drill_hands.hpp"
+#include "gui/app/drill_start.hpp"
 #include "gui/app/site.hpp"
 #include "gui/render/particle_pace.hpp"
 #include "gui/render/ray_pace.hpp"
@@ -29,9 +30,10 @@ class DrillShow {
 public:
     explicit DrillShow(bool software) : software_(software) {}
 
-    // particles: there are always so many over the bone (Site::keep()). Throws StartupError where the bone cannot be drawn.
+    // start: made for the same content. particles: there are always so many over the bone (Site::keep()). Throws StartupError
+    // where the bone cannot be drawn.
     void use(const std::shared_ptr<const SceneContent>& content, const Controller& controller,
-             SceneView& view, std::uint32_t particles);
+             DrillStart start, SceneView& view, std::uint32_t particles);
     void meet(const Controller& controller);
     void leave() { bone_.leave(); }
     void follow(Controller& controller, DashboardState& state);
@@ -51,7 +53,7 @@ private:
     const bool software_;
     std::shared_ptr<const SceneContent> content_;
     BoneDesk bone_;
-    std::optional<Site> site_;  // goes before the bone that it reads
+    std::unique_ptr<Site> site_;  // goes before the bone that it reads
     ParticlePace particle_pace_;
     RayPace ray_pace_;
     float particles_level_ = 1.0F;

@@ -7,7 +7,11 @@ namespace tact {
 
 bool SceneLoader::start(const std::string& path) {
     if (running()) return false;
-    loading_ = std::async(std::launch::async, [path] { return load_scene(path); });
+    loading_ = std::async(std::launch::async, [path] {
+        Loaded loaded{load_scene(path), {}};
+        loaded.drill = make_drill_start(*loaded.content);
+        return loaded;
+    });
     return true;
 }
 
@@ -15,9 +19,10 @@ std::optional<SceneLoader::Outcome> SceneLoader::poll() {
     if (!running() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return std::nullopt;
     try {
-        return Outcome{loading_.get(), {}};
+        Loaded loaded = loading_.get();
+        return Outcome{std::move(loaded.content), std::move(loaded.drill), {}};
     } catch (const std::exception& e) {
-        return Outcome{nullptr, e.what()};
+        return Outcome{nullptr, {}, e.what()};
     }
 }
 

@@ -7,7 +7,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "gui/app/drill_start.hpp"
 #include "gui/render/scene_content.hpp"
 
 namespace tact {
@@ -16,6 +18,7 @@ class SceneLoader {
 public:
     struct Outcome {
         std::shared_ptr<const SceneContent> content;  // null: it failed
+        DrillStart drill;
         std::string error;
     };
     // False, and nothing is begun, while another is being read.
@@ -24,7 +27,11 @@ public:
     [[nodiscard]] std::optional<Outcome> poll();  // once, when it is done
 
 private:
-    std::future<std::shared_ptr<const SceneContent>> loading_;
+    struct Loaded {
+        std::shared_ptr<const SceneContent> content;
+        DrillStart drill;
+    };
+    std::future<Loaded> loading_;
 };
 
 }  // namespace tact

@@ -191,24 +191,8 @@ void fill_slab(const BoneBricks& bricks, std::uint32_t bz, std::vector<std::uint
 }  // namespace
 
 BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure> structures)
-    : unsent_(field.bricks().bricks()[2]) {
-    while (glGetError() != GL_NO_ERROR) {
-    }
-    const BoneBricks& bricks = field.bricks();
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    volume_texture(solid_.get(), GL_LINEAR, GL_CLAMP_TO_BORDER, bricks.size);
-    label_size_ = field.labelled() ? bricks.size : std::array<std::uint32_t, 3>{1, 1, 1};
-    volume_texture(label_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, label_size_);
-    if (!field.labelled()) {  // one voxel says so
-        const std::uint8_t none = 0;
-        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_RED, GL_UNSIGNED_BYTE, &none);
-    }
-    const auto& cells = field.cells();
-    volume_texture(cells_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, cells);
-    // Empty, and left one by one: nothing that was sent is leapt over.
-    const std::vector<std::uint8_t> empty(std::size_t{cells[0]} * cells[1] * cells[2], std::uint8_t{1});
-    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, static_cast<GLsizei>(cells[0]), static_cast<GLsizei>(cells[1]),
-                    static_cast<GLsizei>(cells[2]), GL_RED, GL_UNSIGNED_BYTE, empty.data());
+    : label_size_(field.labelled() ? field.bricks().size : std::array<std::uint32_t, 3>{1, 1, 1}),
+      unsent_(field.bricks().bricks()[2]) {
     std::vector<std::uint8_t> rgba(std::size_t{4} * 256, 255);
     for (std::size_t i = 0; i < std::min<std::size_t>(structures.size(), 255); ++i)
         std::copy(structures[i].rgba.begin(), structures[i].rgba.end(), rgba.begin() + 4 * (i + 1));
@@ -216,6 +200,30 @@ BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+
+void BoneTextures::make_next(const BoneField& field) {
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    const BoneBricks& bricks = field.bricks();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (unmade_ == 3) {
+        volume_texture(solid_.get(), GL_LINEAR, GL_CLAMP_TO_BORDER, bricks.size);
+    } else if (unmade_ == 2) {
+        volume_texture(label_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, label_size_);
+        if (!field.labelled()) {  // one voxel says so
+            const std::uint8_t none = 0;
+            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_RED, GL_UNSIGNED_BYTE, &none);
+        }
+    } else {
+        const auto& cells = field.cells();
+        volume_texture(cells_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, cells);
+        // Empty, and left one by one: nothing that was sent is leapt over.
+        const std::vector<std::uint8_t> empty(std::size_t{cells[0]} * cells[1] * cells[2], std::uint8_t{1});
+        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, static_cast<GLsizei>(cells[0]),
+                        static_cast<GLsizei>(cells[1]), static_cast<GLsizei>(cells[2]), GL_RED,
+                        GL_UNSIGNED_BYTE, empty.data());
+    }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
         throw StartupError("showing bone of " + std::to_string(bricks.size[0]) + " x " +
@@ -223,10 +231,16 @@ BoneTextures::BoneTextures(const BoneField& field, std::span<const BoneStructure
                                " voxels",
                            "the graphics driver has no room for it, error " + std::to_string(error),
                            "bake a part of it with --crop, or larger voxels with --voxel-mm");
+    --unmade_;
 }
 
 void BoneTextures::fill(const BoneField& field, double seconds) {
     const Instant begin = Monotonic::now();
+    const auto over = [&] { return to_s(Monotonic::now() - begin) >= seconds; };
+    while (!made()) {
+        make_next(field);
+        if (over()) return;
+    }
     const BoneBricks& bricks = field.bricks();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     std::vector<std::uint8_t> slab;
@@ -245,7 +259,7 @@ void BoneTextures::fill(const BoneField& field, double seconds) {
                       });
         }
         send_cells(field, bz, 1);
-        if (to_s(Monotonic::now() - begin) >= seconds) break;
+        if (over()) break;
     }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }

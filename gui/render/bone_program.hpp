@@ -13,15 +13,16 @@
 
 namespace tact {
 
-// The volume in graphics memory. It is empty at first and filled from its front, the largest z, slab by slab; what was
-// not sent yet is not seen.
+// The volume in graphics memory. It is made and filled over many pictures: a texture at a time, as memory for a large one
+// takes a good part of a frame; then from its front, the largest z, slab by slab. What was not sent yet is not seen.
 class BoneTextures {
 public:
-    // Throws StartupError where the graphics driver has no room for it.
     BoneTextures(const BoneField& field, std::span<const BoneStructure> structures);
-    // Goes on for so long, and for one slab at least.
+    // Goes on for so long, and for one texture or slab at least. Throws StartupError where the graphics driver has no room
+    // for it.
     void fill(const BoneField& field, double seconds);
-    [[nodiscard]] bool full() const { return unsent_ == 0; }
+    [[nodiscard]] bool made() const { return unmade_ == 0; }  // there is something to draw with
+    [[nodiscard]] bool full() const { return made() && unsent_ == 0; }
     [[nodiscard]] float filled(const BoneField& field) const;  // share
     // Of what was sent already:
     void send(const BoneField& field, std::uint32_t brick);  // its voxels and cells
@@ -30,11 +31,13 @@ public:
     [[nodiscard]] const std::array<std::uint32_t, 3>& label_size() const { return label_size_; }
 
 private:
+    void make_next(const BoneField& field);
     void send_cells(const BoneField& field, std::uint32_t first,
                     std::uint32_t count);  // of these layers of bricks
 
     GlTexture solid_, cells_, label_, palette_;
     std::array<std::uint32_t, 3> label_size_{};  // 1 x 1 x 1 where nothing is labelled
+    int unmade_ = 3;                             // textures
     std::uint32_t unsent_;                       // layers of bricks, from z = 0 on
 };
 

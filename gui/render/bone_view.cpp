@@ -130,15 +130,19 @@ void BoneView::draw(const BoneFrame& frame) {
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
     Eyeful& eye = eye_[frame.eye];
     eye.rays = 0;
-    if (!textures_.full()) textures_.fill(field_, frame.fill_s);
-    const float filled = textures_.filled(field_);
-    const bool same = filled == eye.filled && same_view(frame, eye.last);
-    eye.filled = filled;
     if (frame.width_px != eye.sharp.width_px || frame.height_px != eye.sharp.height_px) {
         eye.sharp.resize(frame.width_px, frame.height_px);
         eye.coarse.resize((frame.width_px + 1) / 2, (frame.height_px + 1) / 2);
         eye.tiles.resize(frame.width_px, frame.height_px);
     }
+    if (!textures_.full()) textures_.fill(field_, frame.fill_s);
+    if (!textures_.made()) {
+        glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound));
+        return;
+    }
+    const float filled = textures_.filled(field_);
+    const bool same = filled == eye.filled && same_view(frame, eye.last);
+    eye.filled = filled;
     if (!same) {
         const auto& size = field_.bricks().size;
         eye.tiles.all_wrong(

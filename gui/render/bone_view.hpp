@@ -29,10 +29,11 @@ struct BoneFrame {
 
 class BoneView {
 public:
-    // All must outlive it; `now` is the bone as it is drilled. Throws StartupError: no room for it.
+    // All must outlive it; `now` is the bone as it is drilled.
     BoneView(const SceneContent& content, const BoneVolumeView& now);
     // Its densities in `now` are others than at the last call, or at the start.
     void changed(std::uint32_t brick);
+    // Throws StartupError: no room for it in graphics memory, of which it takes some at each of its first calls.
     void draw(const BoneFrame& frame);
 
     // Of the last draw() of each eye, together; at the most one a pixel.

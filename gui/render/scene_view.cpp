@@ -7,6 +7,7 @@
 #include "gui/render/camera.hpp"
 #include "gui/render/drawn_tool.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -215,8 +216,14 @@ void SceneView::draw_bone(const Pass& pass) {
     if (!bone_) return;
     const ViewFrame& f = pass.frame;
     const PassClock::Scope scope(f.passes, tact::Pass::bone);
-    bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
-                 f.bone_rays, f.eye, f.bone_fill_s});
+    try {
+        bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, f.x_px, f.y_px, f.width_px, f.height_px,
+                     f.bone_rays, f.eye, f.bone_fill_s});
+    } catch (const StartupError& e) {
+        bone_error_ = e.what();
+        bone_.reset();
+        glViewport(f.x_px, f.y_px, f.width_px, f.height_px);
+    }
 }
 
 void SceneView::draw_drill_tools(const Pass& pass) {

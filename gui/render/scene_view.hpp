@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "gui/render/bone_view.hpp"
@@ -68,9 +69,11 @@ public:
     }
     std::size_t upload() { return contours_.upload(); }
     void show_detail(const DetailMesh& detail);
-    // From now on, the bone of the scene as it is in `now`, which must outlive this. Throws StartupError: no room for it.
+    // From now on, the bone of the scene as it is in `now`, which must outlive this. Where there turns out to be no room for it,
+    // it is drawn no more and bone_error() says so.
     void show_bone(const BoneVolumeView& now) { bone_ = std::make_unique<BoneView>(*content_, now); }
     [[nodiscard]] BoneView* bone() { return bone_.get(); }  // null: none is shown
+    [[nodiscard]] const std::string& bone_error() const { return bone_error_; }
     void draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame);
     // What a person chose of bodies and surfaces.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
@@ -119,6 +122,7 @@ private:
     TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
     std::unique_ptr<BoneView> bone_;
+    std::string bone_error_;
     struct ToolInHand {
         DrawnDrillTool shape;
         TriangleBuffers mesh;

@@ -218,6 +218,16 @@ TEST_F(BoneDraw, ALargeVolumeComesFromItsFrontPictureByPictureAndIsTheSameAtTheE
     const auto slabs = block_->bricks.bricks()[2];
     BoneFrame frame_of_no_time = frame(kAllRays);
     frame_of_no_time.fill_s = 0.0;
+    // A texture a picture, until there is something to draw with; what changes meanwhile is not sent into nothing.
+    for (int texture = 1; texture <= 3; ++texture) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        slowly.draw(frame_of_no_time);
+        slowly.changed(0);
+        EXPECT_EQ(slowly.filled(), 0.0F);
+        EXPECT_FALSE(slowly.sharp());
+        EXPECT_EQ(covered(read_pixels(kWidth, kHeight)), 0U);
+        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+    }
     std::size_t seen = 0;
     for (std::uint32_t i = 1; i <= slabs; ++i) {
         EXPECT_FALSE(slowly.sharp());
