@@ -103,8 +103,8 @@ public:
     [[nodiscard]] std::span<const float> all_positions_m() const noexcept { return position_m_; }
     [[nodiscard]] std::span<const std::uint32_t> all_corners() const noexcept { return corner_; }
 
-    // Leaves whose boxes reach into the ball, as codes of SurfaceNode. False: `out` is full and some are left
-    // out. count is how many there are in `out`.
+    // Leaves whose boxes reach into the ball, as codes of SurfaceNode, in the order of their triangles. False: `out`
+    // is full and some are left out. count is how many there are in `out`.
     bool leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,
                      std::size_t& count) const noexcept TACT_RT;
     // The nearest point of one triangle, in double precision.

@@ -43,19 +43,22 @@ bool SurfaceMesh::leaves_near(const Vec3& centre_m, double radius_m, std::span<s
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
-        const SurfaceNode& node = node_[stack[--depth]];
+        const std::uint32_t now = stack[--depth];
+        if ((now & SurfaceNode::kLeaf) != 0) {
+            if (count == out.size()) return false;
+            out[count++] = now;
+            continue;
+        }
+        const SurfaceNode& node = node_[now];
         const F4 squares = box_squares(node, x, y, z);
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (!(squares[k] <= square)) continue;
+        for (std::size_t k = 4; k-- > 0;) {
             const std::uint32_t code = node.child[k];
-            if (code == SurfaceNode::kNone) continue;
+            if (!(squares[k] <= square) || code == SurfaceNode::kNone) continue;
+            stack[depth++] = code;
             if ((code & SurfaceNode::kLeaf) == 0) {
-                stack[depth++] = code;
                 prefetch(&node_[code]);
                 prefetch(&node_[code].child);
             } else {
-                if (count == out.size()) return false;
-                out[count++] = code;
                 prefetch(&corner_[std::size_t{3} * SurfaceNode::leaf_first(code)]);
             }
         }

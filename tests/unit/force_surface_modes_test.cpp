@@ -40,7 +40,6 @@ const Baked& sphere() {
 struct Felt {
     std::vector<Vec3> force_n;
     double adaptive = 0.0;  // share of the cycles
-    double moved_n = 0.0;   // the most from one cycle to the next
 };
 
 // Once around the sphere, and up and down, at a speed in the hand's world.
@@ -65,27 +64,22 @@ Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool tended = tru
         before = tool.T_world_tool.p_m;
         if (i == 0) model->reset(tool);
         if (tended && i % kTendEvery == 0) model->tend(tool, {});
-        const Vec3 force_n = model->step(tool, {}).wrench_world.force_n;
-        if (!felt.force_n.empty())
-            felt.moved_n = std::max(felt.moved_n, (force_n - felt.force_n.back()).norm());
-        felt.force_n.push_back(force_n);
+        felt.force_n.push_back(model->step(tool, {}).wrench_world.force_n);
         felt.adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / 1200.0 : 0.0;
     }
     return felt;
 }
 
+// To the bit: the same triangles are looked at in the same order, however they were found.
 void expect_same_force(const Felt& a, const Felt& b) {
-    double most_n = 0.0, mean_n = 0.0, felt_n = 0.0;
+    double felt_n = 0.0;
+    std::size_t different = 0;
     for (std::size_t i = 0; i < a.force_n.size(); ++i) {
-        most_n = std::max(most_n, (a.force_n[i] - b.force_n[i]).norm());
-        mean_n += (a.force_n[i] - b.force_n[i]).norm();
+        different += a.force_n[i] == b.force_n[i] ? 0 : 1;
         felt_n += b.force_n[i].norm();
     }
-    const double force_n = felt_n / static_cast<double>(b.force_n.size());
-    EXPECT_GT(force_n, 0.3);
-    EXPECT_LT(mean_n, 0.01 * felt_n);
-    EXPECT_LT(most_n, 0.05 * force_n);
-    EXPECT_LT(a.moved_n, b.moved_n + 0.05);  // refinement makes no step
+    EXPECT_GT(felt_n / static_cast<double>(b.force_n.size()), 0.3);
+    EXPECT_EQ(different, 0U);
 }
 
 TEST(SurfaceModes, AllTrianglesAndTheTreeGiveTheSameForce) {
