@@ -45,7 +45,7 @@ public:
     Flight(const FlightSettings& settings, const std::function<void(const std::string&)>& say)
         : settings_(settings),
           say_(say),
-          watched_(settings.session),
+          watched_(settings.session, LinkRole::flight),
           tape_(settings.length, settings.bytes_max) {
         std::error_code error;
         std::filesystem::create_directories(settings.folder, error);

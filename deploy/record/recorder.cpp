@@ -17,7 +17,7 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
     if (std::filesystem::exists(settings.file))
         throw StartupError("recording to '" + settings.file.string() + "'", "the file is there already",
                            "name another one, or remove it");
-    Watched watched(settings.session);
+    Watched watched(settings.session, LinkRole::recorder);
     if (!await(watched, {settings.session, settings.wait_s, settings.stop}, say)) return outcome;
     Drain drain(watched.region());
     Batch batch;

@@ -15,7 +15,7 @@ namespace tact::record {
 // A controller's region; stays mapped after it ended.
 class Watched {
 public:
-    explicit Watched(const std::string& session) : link_(session, -1) {}
+    Watched(const std::string& session, LinkRole as) : link_(session, -1, as) {}
 
     // True: there is one, and its loop has begun.
     bool look();

@@ -25,7 +25,8 @@ public:
     // Reads every topic; true in the flags for what is new.
     struct Fresh {
         bool tool = false, second = false, bodies = false, touch = false, drill = false, head = false,
-             tracker = false, devices = false, health = false, lateness = false, levels = false;
+             tracker = false, devices = false, health = false, lateness = false, levels = false,
+             recorders = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
@@ -56,7 +57,7 @@ public:
 
     bool have_tool = false, have_second = false, have_bodies = false, have_touch = false, have_drill = false,
          have_head = false, have_tracker = false, have_devices = false, have_health = false,
-         have_lateness = false, have_levels = false;
+         have_lateness = false, have_levels = false, have_recorders = false;
     ToolTopic tool{}, second{};  // of the first hand, and of another where there is one
     BodiesTopic bodies{};
     TouchTopic touch{};
@@ -66,6 +67,7 @@ public:
     DevicesTopic devices{};
     HealthTopic health{};
     LatenessTopic lateness{};
+    RecordersTopic recorders{};
     LevelsTopic levels{};
 
 private:
@@ -79,7 +81,7 @@ private:
     RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_touch_ = 0, seen_drill_ = 0,
                   seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0, seen_lateness_ = 0,
-                  seen_levels_ = 0;
+                  seen_levels_ = 0, seen_recorders_ = 0;
     std::uint64_t refused_ = 0;
 };
 

@@ -126,6 +126,8 @@ bool sensible(const LevelsTopic& l) noexcept {
     });
 }
 
+bool sensible(const RecordersTopic& r) noexcept { return r.recorders <= 64 && r.flights <= 64; }
+
 const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept {
     const PathLevel* const end = levels.path + std::min<std::size_t>(levels.count, kPathsMax);
     const PathLevel* const found = std::find_if(levels.path, end, [path](const PathLevel& p) {

@@ -9,6 +9,7 @@
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
+#include "ipc/topics/recorders.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
 
@@ -24,6 +25,7 @@ namespace tact {
 [[nodiscard]] bool sensible(const HealthTopic& health) noexcept;
 [[nodiscard]] bool sensible(const LatenessTopic& lateness) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
+[[nodiscard]] bool sensible(const RecordersTopic& recorders) noexcept;
 
 // The level of a path, or null.
 [[nodiscard]] const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept;

@@ -44,6 +44,8 @@ void show_controller(Controller& controller, const CommandSender& commands, Dash
     state.levels = controller.levels;
     state.have_devices = controller.have_devices;
     state.devices = controller.devices;
+    state.recorders = controller.have_recorders ? controller.recorders.recorders : 0;
+    state.flights = controller.have_recorders ? controller.recorders.flights : 0;
     state.have_tracker = controller.have_tracker;
     state.tracker = controller.tracker;
     state.refused_records = controller.refused();

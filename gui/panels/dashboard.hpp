@@ -202,6 +202,7 @@ struct DashboardState {
     bool have_devices = false, have_tracker = false;
     DevicesTopic devices{};
     TrackerTopic tracker{};
+    std::uint32_t recorders = 0, flights = 0;           // that record this run
     std::array<CounterRate, kDeviceHands> device_rate;  // samples a second
     CounterRate tracker_rate;
     LatenessWindow lateness;

@@ -71,6 +71,21 @@ void words(const Theme& theme, const HealthTopic& h, const Verdict& state) {
     if (!said) text_small(theme, grade_colour(state.grade), state.words);
 }
 
+// A run that is kept says so: beside the card's title, at its right.
+void recording(const Theme& theme, const DashboardState& state) {
+    const bool whole = state.recorders > 0;
+    const std::string text = whole ? "recording" : "flight recorder on";
+    const float width = theme.small->CalcTextSizeA(theme.small->FontSize, 1e9F, 0.0F, text.c_str()).x;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float x = at.x + ImGui::GetContentRegionAvail().x - width, r = theme.px(4.0F);
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    if (whole)
+        draw->AddCircleFilled({x - 2.0F * r, at.y + 0.6F * theme.small->FontSize}, r, colour::kBad, 12);
+    draw->AddText(theme.small, theme.small->FontSize, {x, at.y}, whole ? colour::kText : colour::kDim,
+                  text.c_str());
+    ImGui::NewLine();
+}
+
 // What is read first: what the controller does and why, and its force rate against the goal.
 void hero(const Theme& theme, const DashboardState& state) {
     const HealthTopic& h = state.health;
@@ -162,6 +177,10 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
     begin_card(theme, "Controller", card, true);  // two hands with much to say are higher than it
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
+    if (state.attached && state.recorders + state.flights > 0) {
+        ImGui::SameLine();
+        recording(theme, state);
+    }
     if (!state.attached) {
         badge(theme, known ? "GONE" : "WAITING", colour::kWatch, theme.large);
         ImGui::PushTextWrapPos(0.0F);
@@ -183,9 +202,10 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         }
         draw_device_rows(theme, state);
         delay(theme, h);
-        row(theme, "Picture", format("%.0f /s", state.load.fps),
-            picture_verdict(state.load.fps,
-                            state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0));
+        Verdict picture = picture_verdict(
+            state.load.fps, state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0);
+        if (state.frames.late > 0) picture.words += ", " + grouped(state.frames.late) + " late";
+        row(theme, "Picture", format("%.0f /s", state.load.fps), picture);
         const Verdict memory = memory_verdict(h);
         if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
         law_and_goal(theme, state);

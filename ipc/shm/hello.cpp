@@ -29,7 +29,7 @@ HelloCheck parse(std::span<const std::byte> bytes, std::uint64_t magic, Message&
 
 HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept {
     const HelloCheck check = parse(bytes, kHelloMagic, hello);
-    if (check == HelloCheck::good && hello.role > static_cast<std::uint32_t>(LinkRole::gui))
+    if (check == HelloCheck::good && hello.role > static_cast<std::uint32_t>(LinkRole::flight))
         return HelloCheck::garbage;
     return check;
 }

@@ -13,7 +13,8 @@
 
 namespace tact {
 
-enum class LinkRole : std::uint32_t { observer, gui };
+// A recorder keeps what it watches in a file, a flight recorder the last half minute of it.
+enum class LinkRole : std::uint32_t { observer, gui, recorder, flight };
 enum class LinkAnswer : std::uint32_t {
     attached,  // as asked; the region's file comes with it, and that of the bone where there is one
     watching,  // asked as gui, but another one is attached: the same files come with it, yours may be taken
@@ -25,7 +26,7 @@ enum class LinkAnswer : std::uint32_t {
 
 inline constexpr std::uint64_t kHelloMagic = 0x314F4C4C45485441ULL;
 inline constexpr std::uint64_t kAnswerMagic = 0x3152535741485441ULL;
-inline constexpr std::uint32_t kLinkVersion = 2;  // 2: a second file may come with the answer
+inline constexpr std::uint32_t kLinkVersion = 3;  // 3: recorders say that they are
 
 struct HelloMessage {
     std::uint64_t magic;

@@ -18,6 +18,7 @@
 #include <memory>
 #include <string>
 
+#include "ipc/shm/hello.hpp"
 #include "ipc/shm/region.hpp"
 
 namespace tact {
@@ -39,6 +40,12 @@ public:
         std::uint32_t gui_pid = 0;
     };
     News poll(int timeout_ms);  // serves what is pending; at most one arrival and one departure a call
+    // Who is connected now and records. One that ends or dies is gone with the next poll().
+    struct Recorders {
+        std::uint32_t recorders = 0, flights = 0;
+        bool operator==(const Recorders&) const = default;
+    };
+    [[nodiscard]] Recorders recorders() const;
     [[nodiscard]] std::uint64_t refused() const;  // malformed messages and clients too many
 
 private:
@@ -48,8 +55,9 @@ private:
 
 class LinkClient {
 public:
-    // own_region_fd: the GUI's region, or -1 for an observer. Throws StartupError for a bad session name.
-    LinkClient(std::string session, int own_region_fd);
+    // own_region_fd: the GUI's region, or -1 for who watches, as the role says. Throws StartupError for a bad
+    // session name.
+    LinkClient(std::string session, int own_region_fd, LinkRole watches_as = LinkRole::observer);
     ~LinkClient();
     LinkClient(const LinkClient&) = delete;
     LinkClient& operator=(const LinkClient&) = delete;

@@ -28,6 +28,7 @@ struct LinkClient::State {
     std::string session;
     SessionPaths paths;
     int own_region_fd = -1;
+    LinkRole watches_as = LinkRole::observer;
     enum class Step { apart, asked, attached } step = Step::apart;
     FileDescriptor socket;
     std::uint32_t controller_pid = 0;
@@ -60,7 +61,7 @@ struct LinkClient::State {
         HelloMessage hello{};
         hello.magic = kHelloMagic;
         hello.version = kLinkVersion;
-        hello.role = static_cast<std::uint32_t>(own_region_fd >= 0 ? LinkRole::gui : LinkRole::observer);
+        hello.role = static_cast<std::uint32_t>(own_region_fd >= 0 ? LinkRole::gui : watches_as);
         if (!send_packet(socket.get(), std::as_bytes(std::span(&hello, 1)), own_region_fd))
             return wait(last_error());
         controller_pid = peer.pid;
@@ -119,10 +120,12 @@ struct LinkClient::State {
     }
 };
 
-LinkClient::LinkClient(std::string session, int own_region_fd) : state_(std::make_unique<State>()) {
+LinkClient::LinkClient(std::string session, int own_region_fd, LinkRole watches_as)
+    : state_(std::make_unique<State>()) {
     state_->paths = session_paths(session);
     state_->session = std::move(session);
     state_->own_region_fd = own_region_fd;
+    state_->watches_as = watches_as;
     state_->wait("not tried yet");
     state_->next_try = Instant{};
 }

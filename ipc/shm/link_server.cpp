@@ -40,7 +40,8 @@ struct Client {
     std::uint32_t pid = 0;
     Instant connected_at{};
     bool greeted = false;
-    bool gui = false;       // asked to be the visual process
+    bool gui = false;  // asked to be the visual process
+    LinkRole role = LinkRole::observer;
     bool attached = false;  // is it
     bool gone = false;
 };
@@ -158,6 +159,7 @@ struct LinkServer::State {
         }
         client.greeted = true;
         client.gui = gui;
+        client.role = static_cast<LinkRole>(hello.role);
         client.region = std::move(packet.file);
         const bool is_free = !news.gui_arrived && attached_gui() == nullptr;
         const bool sent = answer(client, gui && !is_free ? LinkAnswer::watching : LinkAnswer::attached);
@@ -233,6 +235,16 @@ LinkServer::News LinkServer::poll(int timeout_ms) {
     ::poll(watched.data(), count, timeout_ms);
     state_->serve(news);
     return news;
+}
+
+LinkServer::Recorders LinkServer::recorders() const {
+    Recorders r;
+    for (const Client& c : state_->clients) {
+        if (!c.greeted || c.gone) continue;
+        r.recorders += c.role == LinkRole::recorder ? 1 : 0;
+        r.flights += c.role == LinkRole::flight ? 1 : 0;
+    }
+    return r;
 }
 
 std::uint64_t LinkServer::refused() const { return state_->refused; }

@@ -18,6 +18,7 @@
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
 #include "ipc/topics/record.hpp"
+#include "ipc/topics/recorders.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
 
@@ -39,6 +40,7 @@ struct RtRegion {
     Latest<LatenessTopic> lateness;
     Latest<LevelsTopic> levels;
     Latest<PictureTopic> picture;
+    Latest<RecordersTopic> recorders;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
     // For recordings. 1 kHz: half a minute is kept.
@@ -51,9 +53,10 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic,
-                             DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, PictureTopic, EventTopic,
-                             TraceTopic, StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
+    using Topics =
+        TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic, DevicesTopic,
+                  HealthTopic, LatenessTopic, LevelsTopic, PictureTopic, RecordersTopic, EventTopic,
+                  TraceTopic, StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {

@@ -155,6 +155,7 @@ void House::run() {
 
 void House::attend_link() {
     LinkServer::News news = link_.poll(kPollMs);
+    count_recorders();
     if (news.gui_left) {
         gui_ = {};
         report_.gui_attached = 0;
@@ -175,6 +176,17 @@ void House::attend_link() {
         report_.gui_heartbeat_ns = to_ns(Monotonic::now());
         spdlog::info("visual process {} attached", news.gui_pid);
     }
+}
+
+void House::count_recorders() {
+    const LinkServer::Recorders now = link_.recorders();
+    if (now == recorders_) return;
+    recorders_ = now;
+    RecordersTopic t{};
+    t.taken_at_ns = to_ns(Monotonic::now());
+    t.recorders = now.recorders;
+    t.flights = now.flights;
+    region_->recorders.publish(t);
 }
 
 void House::pass_on_frames() {

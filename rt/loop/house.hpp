@@ -55,6 +55,7 @@ private:
     void attend_link();
     void attend_gui();
     void pass_on_frames();
+    void count_recorders();
     void attend_events();
     void report();
 
@@ -67,6 +68,7 @@ private:
     RingCursor commands_;
     RingCursor events_;
     std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
+    LinkServer::Recorders recorders_;
     std::uint64_t bad_input_ = 0;
     std::uint64_t faults_seen_ = 0;
     HouseReport report_{};

@@ -33,7 +33,7 @@ bool run(std::span<const std::byte> input) {
         case 0: {
             HelloMessage hello{};
             if (parse_hello(rest, hello) != HelloCheck::good) return false;
-            require(hello.magic == kHelloMagic && hello.role <= 1);
+            require(hello.magic == kHelloMagic && hello.role <= 3);
             return true;
         }
         case 1: {

@@ -93,8 +93,8 @@ protected:
         if (!folder_.empty()) std::filesystem::remove_all(folder_);
     }
 
-    std::unique_ptr<Process> gui(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.begin(), {TACT_GUI_PROGRAM, "--session", "t", "--size", "640x480"});
+    std::unique_ptr<Process> gui(std::vector<std::string> arguments, const char* size = "640x480") const {
+        arguments.insert(arguments.begin(), {TACT_GUI_PROGRAM, "--session", "t", "--size", size});
         return std::make_unique<Process>(arguments, folder_ + "/gui.log");
     }
     std::string log(const std::string& name = "gui.log") const {
@@ -339,6 +339,68 @@ TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
     EXPECT_GT(pictures[0].size(), 100U);
     EXPECT_EQ(dark_red(pictures[0]), 0);
     EXPECT_GT(dark_red(pictures[1]), 0);
+}
+
+// A person's mouse, from the X server to the file.
+TEST_F(GuiWindow, TheMouseHoldsTheTracesStillAndExportsWhatIsSeen) {
+    if (launch::find_in_path("xdotool").empty())
+        GTEST_SKIP() << "xdotool is not installed: nobody moves a mouse";
+    x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
+    for (const auto& [key, value] : x_server_->environment())
+        value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
+    fake::Controller controller("t", scene(), checksum_);
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(folder_);  // where the file goes
+    const auto process = gui({"--traces"}, "1280x720");
+    std::filesystem::current_path(before);
+    ASSERT_TRUE(drawing(controller)) << log();
+    std::uint64_t cycle = 0;
+    const auto live = [&](int milliseconds_long) {
+        for (int i = 0; i < milliseconds_long; ++i) {
+            TraceTopic t{};
+            t.taken_at_ns = to_ns(Monotonic::now());
+            t.cycle = ++cycle;
+            t.force_world_n[1] = static_cast<float>(cycle % 100) * 0.01F;
+            controller.region().trace.push(t);
+            controller.serve(0);
+            std::this_thread::sleep_for(milliseconds(1));
+        }
+    };
+    live(300);
+    const auto exported = [&] {
+        std::vector<std::filesystem::path> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            if (entry.path().extension() == ".csv") files.push_back(entry.path());
+        return files;
+    };
+    const auto mouse = [&](const std::string& what) {
+        EXPECT_EQ(std::system(("xdotool " + what).c_str()), 0) << what;
+        live(100);
+    };
+    mouse("search --onlyvisible --name Tact windowfocus");
+    mouse("mousemove 356 398");
+    mouse("click 1");  // Pause
+    // Where the letters end depends on the fonts there are: along the row of buttons until one answers.
+    for (int x = 900; x > 560 && exported().empty(); x -= 20) {
+        mouse("mousemove " + std::to_string(x) + " 398");
+        mouse("mousedown 1");
+        mouse("mouseup 1");
+    }
+    ASSERT_TRUE(wait_for([&] { return !exported().empty(); })) << log();
+    const std::uint64_t newest = cycle;
+    process->signal(SIGTERM);
+    EXPECT_EQ(process->wait(), 0) << log();
+    std::ifstream file(exported().front());
+    std::string line, last;
+    std::getline(file, line);
+    EXPECT_EQ(line.rfind("time_s,taken_at_ns,cycle,state", 0), 0U) << line;
+    std::size_t lines = 0;
+    for (; std::getline(file, line); ++lines) last = line;
+    EXPECT_GT(lines, 100U);
+    // Held still when Pause was pressed: what came after it is not in the file.
+    std::uint64_t cycle_of_last = 0;
+    ASSERT_EQ(std::sscanf(last.c_str(), "%*[^,],%*[^,],%lu,", &cycle_of_last), 1) << last;
+    EXPECT_LT(cycle_of_last + 100, newest);
 }
 
 TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {

@@ -125,6 +125,30 @@ TEST_F(Link, TheRegionOfTheBoneGoesOutWithTheOther) {
     EXPECT_FALSE(news.bone_fd.valid());
 }
 
+TEST_F(Link, TheControllerKnowsWhoRecordsUntilThatOneIsGone) {
+    LinkServer server("t", rt_.fd());
+    using Recorders = LinkServer::Recorders;
+    EXPECT_EQ(server.recorders(), Recorders{});
+    const auto meet = [&](LinkClient& client) {
+        for (int i = 0; i < 1000; ++i) {
+            if (client.poll().arrived) return;
+            server.poll(1);
+        }
+        FAIL() << client.status_text();
+    };
+    LinkClient observer("t", -1);
+    meet(observer);
+    EXPECT_EQ(server.recorders(), Recorders{});
+    auto recorder = std::make_unique<LinkClient>("t", -1, LinkRole::recorder);
+    meet(*recorder);
+    LinkClient flight("t", -1, LinkRole::flight);
+    meet(flight);
+    EXPECT_EQ(server.recorders(), (Recorders{1, 1}));
+    recorder.reset();
+    server.poll(100);
+    EXPECT_EQ(server.recorders(), (Recorders{0, 1}));
+}
+
 TEST_F(Link, SecondControllerIsRefusedWithTheFirstOnesProcessId) {
     const LinkServer first("t", rt_.fd());
     try {
