@@ -32,6 +32,11 @@ if(TACT_SYSTEM_PYTHON3)
     add_test(NAME record_kill_test COMMAND ${TACT_SYSTEM_PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/unit/record_kill_test.py
         $<TARGET_FILE_DIR:tact-record> $<TARGET_FILE:write_small_scene>)
     set_tests_properties(record_kill_test PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
+    if(TACT_GUI AND NOT TACT_SANITIZE)  # whose allocators keep what is freed
+        add_test(NAME soak_test COMMAND ${TACT_SYSTEM_PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/e2e/soak_test.py
+            $<TARGET_FILE_DIR:tact> synthetic --seconds 20 --rate 2000)
+        set_tests_properties(soak_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77 RUN_SERIAL ON)
+    endif()
 endif()
 add_test(NAME replay_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/replay_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(replay_test PROPERTIES TIMEOUT 900)
