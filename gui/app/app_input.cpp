@@ -1,4 +1,5 @@
 #include <imgui.h>
+#include <spdlog/spdlog.h>
 
 #include "gui/app/app_parts.hpp"
 #include "gui/app/contour_rows.hpp"
@@ -18,38 +19,81 @@ void GuiApp::handle_input() {
         else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
             camera_.zoom(io.MouseWheel);
     }
-    for (const Key key : window_.take_keys()) {
+    KeySituation& now = state_.situation;
+    now.bodies = content_ && state_.scene.placed();
+    now.bone = content_ && state_.scene.bone;
+    now.stereo = stage_ != nullptr;
+    now.controller = controller_.attached();
+    for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
-        if (key == Key::home) home_view();
-        if (key == Key::burr) look_at_burr();
-        if (key == Key::style) state_.toggles.style = (state_.toggles.style + 1) % 3;
-        if (key == Key::picture) picture_wanted_ = true;
-        if (key == Key::swap_eyes && stage_) stage_->swap_eyes();
-        if (key == Key::mark) state_.wishes.push_back({CommandKind::mark, 0.0, {}});
-        if (key == Key::raise && content_) nudge_contour(state_.contours, content_->scale, 1.0);
-        if (key == Key::lower && content_) nudge_contour(state_.contours, content_->scale, -1.0);
-        if (key == Key::help) state_.show_keys = !state_.show_keys;
-        if (key == Key::escape && state_.show_keys)
-            state_.show_keys = false;
-        else
-            fitting_key(key);
+        const KeyFound found = find_key(stroke, now);
+        if (found.row == nullptr) continue;
+        spdlog::debug("key {}: {}", found.row->keys, found.row->what);
+        act(found.row->act, static_cast<std::size_t>(found.place));
     }
 }
 
-void GuiApp::fitting_key(Key key) {
+void GuiApp::act(KeyAct what, std::size_t place) {
     const auto active = list_.active();
     const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
-    const auto wish = [&](FitAct act) { state_.fit_wishes.push_back({act, held, {}}); };
-    if (key == Key::escape) wish(FitAct::revert);
-    if (key == Key::accept) wish(FitAct::accept);
-    if (key == Key::undo) wish(FitAct::undo);
-    if (key == Key::redo) wish(FitAct::redo);
-    if (key == Key::refine && held != 0) wish(FitAct::refine);
-    if (key < Key::body_0 || !controller_.attached()) return;
-    const auto digit = static_cast<std::size_t>(key) - static_cast<std::size_t>(Key::body_0);
-    if (digit == 0) state_.wishes.push_back({CommandKind::select_body, 0.0, {}, kNoBody});
-    if (digit >= 1 && digit <= list_.bodies().size())
-        state_.wishes.push_back({CommandKind::select_body, 0.0, {}, list_.bodies()[digit - 1].id});
+    const auto fit = [&](FitAct wish) { state_.fit_wishes.push_back({wish, held, {}}); };
+    const auto command = [&](CommandKind kind, std::uint32_t body = 0) {
+        state_.wishes.push_back({kind, 0.0, {}, body});
+    };
+    const RunState run =
+        controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;
+    switch (what) {
+        case KeyAct::home:
+            return home_view();
+        case KeyAct::look_at_burr:
+            return look_at_burr();
+        case KeyAct::style:
+            state_.toggles.style = (state_.toggles.style + 1) % 3;
+            return;
+        case KeyAct::swap_eyes:
+            return stage_->swap_eyes();
+        case KeyAct::raise_contour:
+            return nudge_contour(state_.contours, content_->scale, 1.0);
+        case KeyAct::lower_contour:
+            return nudge_contour(state_.contours, content_->scale, -1.0);
+        case KeyAct::take_body:
+            if (place < list_.bodies().size() && controller_.attached())
+                command(CommandKind::select_body, list_.bodies()[place].id);
+            return;
+        case KeyAct::let_go:
+            if (controller_.attached()) command(CommandKind::select_body, kNoBody);
+            return;
+        case KeyAct::undo:
+            return fit(FitAct::undo);
+        case KeyAct::redo:
+            return fit(FitAct::redo);
+        case KeyAct::refine:
+            if (held != 0) fit(FitAct::refine);
+            return;
+        case KeyAct::accept:
+            return fit(FitAct::accept);
+        case KeyAct::revert:
+            return fit(FitAct::revert);
+        case KeyAct::arm:  // as the button: only from where it can be followed
+            if (run == RunState::ready) command(CommandKind::arm);
+            return;
+        case KeyAct::disarm:  // whatever is known: no force is always safe, and the controller answers
+            return command(CommandKind::disarm);
+        case KeyAct::picture:
+            picture_wanted_ = true;
+            return;
+        case KeyAct::mark:
+            return command(CommandKind::mark);
+        case KeyAct::help:
+            state_.situation.sheet = !state_.situation.sheet;
+            return;
+        case KeyAct::close_sheet:
+            state_.situation.sheet = false;
+            return;
+        case KeyAct::none:
+        case KeyAct::count:
+            return;
+    }
 }
 
 }  // namespace tact

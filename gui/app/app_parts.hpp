@@ -45,7 +45,7 @@ private:
     void look_at_burr();
     void show_bone(DrillStart drill);
     void handle_input();
-    void fitting_key(Key key);
+    void act(KeyAct what, std::size_t place);
     void obey_level();
     void follow_detail();
     void follow_bodies(std::int64_t now_ns);

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <utility>
 
 #include "ipc/base/error.hpp"
@@ -23,41 +22,55 @@ std::string glfw_words() {
     return words != nullptr ? words : "no reason given";
 }
 
-std::vector<Key>& keys_of(GLFWwindow* window) {
-    return *static_cast<std::vector<Key>*>(glfwGetWindowUserPointer(window));
+std::vector<KeyStroke>& keys_of(GLFWwindow* window) {
+    return *static_cast<std::vector<KeyStroke>*>(glfwGetWindowUserPointer(window));
+}
+
+// The letter printed on a key, as where Z lies depends on the keyboard; of a keyboard without Latin letters the one at
+// that place. 0: none.
+char letter_of(int key, int scancode) {
+    const char* const name = glfwGetKeyName(key, scancode);
+    if (name != nullptr && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0') return name[0];
+    const bool other_letters = name != nullptr && (static_cast<unsigned char>(name[0]) & 0x80U) != 0;
+    if (other_letters && key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
+        return static_cast<char>('a' + (key - GLFW_KEY_A));
+    return '\0';
+}
+
+KeyCode code_of(int key) {
+    switch (key) {
+        case GLFW_KEY_HOME:
+            return KeyCode::home;
+        case GLFW_KEY_ENTER:
+        case GLFW_KEY_KP_ENTER:
+            return KeyCode::enter;
+        case GLFW_KEY_ESCAPE:
+            return KeyCode::escape;
+        case GLFW_KEY_SPACE:
+            return KeyCode::space;
+        default:
+            return KeyCode::none;
+    }
 }
 
 void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
-    if (action != GLFW_PRESS) return;
-    if ((modifiers & GLFW_MOD_CONTROL) != 0) {
-        // By the letter printed on it: where Z lies depends on the keyboard.
-        const char* const name = glfwGetKeyName(key, scancode);
-        if (name == nullptr) return;
-        const bool shift = (modifiers & GLFW_MOD_SHIFT) != 0;
-        if (std::strcmp(name, "z") == 0) keys_of(window).push_back(shift ? Key::redo : Key::undo);
-        if (std::strcmp(name, "y") == 0) keys_of(window).push_back(Key::redo);
-        return;
+    if (action != GLFW_PRESS || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
+    KeyStroke stroke;
+    stroke.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    stroke.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    stroke.code = code_of(key);
+    if (stroke.code == KeyCode::none) {
+        stroke.character = letter_of(key, scancode);
+        stroke.code = stroke.character != '\0' ? KeyCode::character : KeyCode::none;
     }
-    for (const auto& [which, what] : {std::pair{GLFW_KEY_HOME, Key::home},
-                                      {GLFW_KEY_F, Key::burr},
-                                      {GLFW_KEY_S, Key::style},
-                                      {GLFW_KEY_X, Key::swap_eyes},
-                                      {GLFW_KEY_P, Key::picture},
-                                      {GLFW_KEY_R, Key::refine},
-                                      {GLFW_KEY_M, Key::mark},
-                                      {GLFW_KEY_ENTER, Key::accept},
-                                      {GLFW_KEY_KP_ENTER, Key::accept},
-                                      {GLFW_KEY_ESCAPE, Key::escape}})
-        if (key == which) keys_of(window).push_back(what);
+    if (stroke.code != KeyCode::none) keys_of(window).push_back(stroke);
 }
 
-// A character, not a key: where '?' lies depends on the keyboard.
+// Signs and digits as characters, not as keys: where '?' lies depends on the keyboard.
 void on_char(GLFWwindow* window, unsigned int character) {
-    if (character == '?') keys_of(window).push_back(Key::help);
-    if (character == '+') keys_of(window).push_back(Key::raise);
-    if (character == '-') keys_of(window).push_back(Key::lower);
-    if (character >= '0' && character <= '9')
-        keys_of(window).push_back(static_cast<Key>(static_cast<int>(Key::body_0) + (character - '0')));
+    const bool letter = (character | 0x20U) >= 'a' && (character | 0x20U) <= 'z';
+    if (character <= ' ' || character > '~' || letter) return;  // on_key() has those
+    keys_of(window).push_back({KeyCode::character, static_cast<char>(character), false, false});
 }
 
 }  // namespace
@@ -198,7 +211,7 @@ void Window::show() {
         glfwSwapBuffers(window_);
 }
 
-std::vector<Key> Window::take_keys() { return std::exchange(keys_, {}); }
+std::vector<KeyStroke> Window::take_keys() { return std::exchange(keys_, {}); }
 
 Image Window::picture() {
     const Size s = size();

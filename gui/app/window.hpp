@@ -8,31 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "gui/panels/keys.hpp"
 #include "gui/panels/theme.hpp"
 #include "gui/render/target.hpp"
 
 struct GLFWwindow;
 
 namespace tact {
-
-enum class Key {
-    home,
-    burr,
-    swap_eyes,
-    style,
-    picture,
-    help,
-    escape,
-    accept,
-    undo,
-    redo,
-    refine,
-    mark,
-    raise,
-    lower,
-    body_0,
-    body_9 = body_0 + 9
-};
 
 class Window {
 public:
@@ -53,7 +35,7 @@ public:
     void begin_frame(Theme& theme);
     void draw_panels();  // what ImGui was told in this frame
     void show();         // swaps, or finishes the image where hidden
-    [[nodiscard]] std::vector<Key> take_keys();
+    [[nodiscard]] std::vector<KeyStroke> take_keys();
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
     [[nodiscard]] GLuint frame_buffer() const { return target_ ? target_->name() : 0; }
     [[nodiscard]] Image picture();  // of the frame just drawn, before show()
@@ -75,7 +57,7 @@ private:
     double display_period_s_ = 0.0;
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
-    std::vector<Key> keys_;
+    std::vector<KeyStroke> keys_;
 };
 
 }  // namespace tact

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gui/panels/counter_rate.hpp"
+#include "gui/panels/keys.hpp"
 #include "gui/panels/knob_changes.hpp"
 #include "gui/panels/lateness_window.hpp"
 #include "gui/panels/plot_series.hpp"
@@ -238,8 +239,8 @@ struct DashboardState {
     int span_choice = 0;      // of the plots
     int strip = 0;            // 0: plots, 1: traces
     int lateness_choice = 0;  // a minute, the whole run, over time
-    bool show_keys = false;
-    int tab = 0;  // of the scene card
+    KeySituation situation;   // of the keys; its sheet is what a person opened
+    int tab = 0;              // of the scene card
     // Emptied by the application.
     std::vector<Wish> wishes;
     std::vector<FitWish> fit_wishes;
@@ -268,31 +269,5 @@ enum class MiddleCard : std::uint8_t { none, fit, drilling };
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px);
 
 inline constexpr std::array<double, 5> kSpans_s{60.0, 600.0, 3600.0, 6.0 * 3600.0, 24.0 * 3600.0};
-
-struct KeyHelp {
-    const char* keys;
-    const char* what;
-};
-// The one table that defines and shows them; the application's key handler follows it.
-inline constexpr KeyHelp kKeyHelp[] = {
-    {"left drag", "rotate"},
-    {"right drag", "pan"},
-    {"wheel", "zoom"},
-    {"Home", "home view"},
-    {"F", "look at the burr from near"},
-    {"S", "surface: glass, solid, wire"},
-    {"X", "stereo: swap the eyes"},
-    {"Alt+wheel, + -", "contour level"},
-    {"1 ... 9", "take that body into the hand"},
-    {"0", "let go of all bodies"},
-    {"Ctrl+Z", "undo the last gesture"},
-    {"Ctrl+Y", "redo it"},
-    {"R", "refine the body in the hand"},
-    {"Enter", "accept: undo goes back no farther"},
-    {"Esc", "back to the last accepted places"},
-    {"P", "save a picture"},
-    {"M", "mark this moment: a flight recorder saves it"},
-    {"?", "this table"},
-};
 
 }  // namespace tact

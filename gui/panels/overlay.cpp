@@ -2,6 +2,7 @@
 // keys.
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "gui/panels/panels.hpp"
 #include "gui/panels/widgets.hpp"
@@ -181,18 +182,25 @@ void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
                       nullptr, most);
 }
 
-void keys(const Pen& pen, const PixelRect& v) {
-    const float line = pen.theme.px(20.0F), w = pen.theme.px(330.0F), pad = pen.theme.px(14.0F);
-    const float h = line * static_cast<float>(std::size(kKeyHelp)) + 2.0F * pad;
+// Those that mean something now, in as many columns as the height asks for.
+void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
+    std::vector<const KeyRow*> rows;
+    for (const KeyRow& row : key_rows())
+        if (applies(row.when, now)) rows.push_back(&row);
+    const float line = pen.theme.px(20.0F), pad = pen.theme.px(14.0F), column = pen.theme.px(430.0F);
+    const auto fit = static_cast<std::size_t>(std::max((v.height - 4.0F * pad) / line, 1.0F));
+    const std::size_t columns = std::min<std::size_t>((rows.size() + fit - 1) / fit, 2);
+    const std::size_t each = (rows.size() + columns - 1) / columns;
+    const float w = column * static_cast<float>(columns), h = line * static_cast<float>(each) + 2.0F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.5F * (v.height - h)};
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(18, 22, 29, 245), pen.theme.px(8.0F));
     pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(8.0F));
-    float y = at.y + pad;
-    for (const KeyHelp& k : kKeyHelp) {
-        pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {at.x + pad, y}, colour::kAccent, k.keys);
-        pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {at.x + pen.theme.px(120.0F), y},
-                          colour::kText, k.what);
-        y += line;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const float x = at.x + pad + column * static_cast<float>(i / each);
+        const float y = at.y + pad + line * static_cast<float>(i % each);
+        pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent, rows[i]->keys);
+        pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {x + pen.theme.px(112.0F), y},
+                          colour::kText, rows[i]->what);
     }
 }
 
@@ -208,7 +216,7 @@ void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& vi
     if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
     message(pen, state, view);
     stop_banner(pen, state, view);
-    if (state.show_keys) keys(pen, view);
+    if (state.situation.sheet) keys(pen, state.situation, view);
     pen.draw->PopClipRect();
 }
 

@@ -1,0 +1,75 @@
+// The table of shortcuts: every row can be reached and none stands in another's way.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "gui/panels/keys.hpp"
+
+namespace tact {
+namespace {
+
+KeySituation where_applies(KeyWhen when) {
+    KeySituation now;
+    now.sheet = when == KeyWhen::sheet;
+    now.bodies = when == KeyWhen::bodies;
+    now.bone = when == KeyWhen::bone;
+    now.stereo = when == KeyWhen::stereo;
+    now.controller = when == KeyWhen::controller;
+    return now;
+}
+
+TEST(Keys, EveryRowIsFoundByItsStrokeWhereItAppliesAndByNoOther) {
+    for (const KeyRow& row : key_rows()) {
+        if (row.act == KeyAct::none) continue;
+        const char last = row.last != '\0' ? row.last : row.stroke.character;
+        for (char c = row.stroke.character; c <= last; ++c) {
+            KeyStroke stroke = row.stroke;
+            stroke.character = c;
+            const KeyFound found = find_key(stroke, where_applies(row.when));
+            ASSERT_EQ(found.row, &row) << row.keys;
+            EXPECT_EQ(found.place, c - row.stroke.character) << row.keys;
+            if (row.when != KeyWhen::always) {
+                EXPECT_EQ(find_key(stroke, {}).row, nullptr) << row.keys;
+            }
+            stroke.control = !stroke.control;
+            EXPECT_NE(find_key(stroke, where_applies(row.when)).row, &row) << row.keys;
+        }
+    }
+}
+
+TEST(Keys, NoTwoRowsThatMayApplyAtOnceShareAStroke) {
+    for (const KeyRow& a : key_rows())
+        for (const KeyRow& b : key_rows())
+            if (&a != &b) {
+                EXPECT_FALSE(collide(a, b)) << a.keys << ": " << a.what << " and " << b.what;
+            }
+    // The check itself sees one.
+    const KeyRow digits{{KeyCode::character, '1', false, false}, '9', KeyWhen::bodies, KeyAct::home, "", ""};
+    const KeyRow five{{KeyCode::character, '5', false, false}, 0, KeyWhen::always, KeyAct::mark, "", ""};
+    KeyRow in_bone = five;
+    in_bone.when = KeyWhen::bone;
+    EXPECT_TRUE(collide(digits, five));
+    EXPECT_FALSE(collide(digits, in_bone));
+}
+
+TEST(Keys, EveryActHasAKeyAndEveryRowWords) {
+    std::set<KeyAct> acts;
+    for (const KeyRow& row : key_rows()) {
+        acts.insert(row.act);
+        EXPECT_GT(std::string_view(row.keys).size(), 0U);
+        EXPECT_GT(std::string_view(row.what).size(), 2U) << row.keys;
+    }
+    EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAct::count));
+}
+
+TEST(Keys, TheSheetTakesEscBeforeTheBodiesDo) {
+    KeySituation now = where_applies(KeyWhen::bodies);
+    const KeyStroke escape{KeyCode::escape, '\0', false, false};
+    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::revert);
+    now.sheet = true;
+    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::close_sheet);
+    EXPECT_EQ(find_key({KeyCode::character, 'j', false, false}, now).row, nullptr);
+}
+
+}  // namespace
+}  // namespace tact
