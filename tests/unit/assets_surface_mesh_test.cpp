@@ -85,7 +85,7 @@ RC_GTEST_PROP(SurfaceMesh, TheLeavesNearHoldEveryTriangleInTheBall, ()) {
         std::vector<bool> held_by_leaf(count, false);
         for (std::size_t l = 0; l < found; ++l) {
             const std::uint32_t first = SurfaceNode::leaf_first(leaves[l]);
-            RC_ASSERT(l == 0 || first > SurfaceNode::leaf_first(leaves[l - 1]));
+            if (l > 0) RC_ASSERT(first > SurfaceNode::leaf_first(leaves[l - 1]));
             for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaves[l]); ++k)
                 held_by_leaf[first + k] = true;
         }
