@@ -11,6 +11,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/record/repair.hpp"
+#include "ipc/record/without_folders.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact {
@@ -82,7 +83,7 @@ void RecordingWriter::make(const RecordingHead& head) {
     hdf5::put_text(f, "/", "program", head.program);
     hdf5::put_text(f, "/", "session", head.session);
     if (!head.cause.empty()) hdf5::put_text(f, "/", "cause", head.cause);
-    hdf5::put_text(f, "/", "scene_path", head.scene_path);
+    hdf5::put_text(f, "/", "scene_path", without_folders(head.scene_path));
     hdf5::put_number(f, "/", "scene_checksum", head.scene_checksum);
     hdf5::put_number(f, "/", "generation", head.generation);
     hdf5::put_signed(f, "/", "created_utc_ns", head.created_utc_ns);
@@ -104,7 +105,8 @@ void RecordingWriter::make(const RecordingHead& head) {
     const bool known = t.arguments_bytes <= RunText::kArgumentsMax && t.config_bytes <= RunText::kConfigMax &&
                        t.poses_bytes <= RunText::kPosesMax;
     hdf5::put_number(f, "/start", "known", known ? 1 : 0);
-    hdf5::put_bytes(f, "/start/arguments", told(t.arguments, t.arguments_bytes, RunText::kArgumentsMax));
+    const std::span<const char> arguments = told(t.arguments, t.arguments_bytes, RunText::kArgumentsMax);
+    hdf5::put_bytes(f, "/start/arguments", arguments_without_folders({arguments.data(), arguments.size()}));
     hdf5::put_bytes(f, "/start/config", told(t.config, t.config_bytes, RunText::kConfigMax));
     hdf5::put_bytes(f, "/start/poses", told(t.poses, t.poses_bytes, RunText::kPosesMax));
     for (std::uint32_t i = 0; i < hands_; ++i)

@@ -23,9 +23,10 @@ namespace tact {
 struct RecordingHead {
     StartTopic start{};
     RunText text{};
-    LevelsTopic levels{};                      // names of the paths
-    std::string scene_path, session, program;  // program: with its version
-    std::string cause;                         // of a flight recording; empty: it is no such
+    LevelsTopic levels{};          // names of the paths
+    std::string scene_path;        // only its file name is kept, as of paths in the arguments
+    std::string session, program;  // program: with its version
+    std::string cause;             // of a flight recording; empty: it is no such
     std::uint64_t scene_checksum = 0, generation = 0, first_step = 1;
     std::int64_t created_utc_ns = 0, created_ns = 0;  // the same instant on both clocks
 };

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -88,13 +89,43 @@ bool same_bits(const double (&a)[3], const Vec3& b) {
     return true;
 }
 
-SceneFile open_scene(const RecordingReader::About& about, const std::filesystem::path& wish) {
-    SceneFile scene = SceneFile::open(wish.empty() ? std::filesystem::path(about.scene_path) : wish);
-    if (scene.checksum() != about.scene_checksum)
-        throw StartupError("replaying on '" + scene.name() + "'",
-                           "this is another scene than the recorded one",
-                           "name the recorded one with --scene, or bake it again as it was");
-    return scene;
+// The file that a person names, or the one of the recorded name that has the recorded checksum: beside the recording, in
+// this folder, or among the scenes that `tact` baked. Recordings of before 2026-11-23 have a path.
+SceneFile open_scene(const RecordingReader::About& about, const ReplaySettings& settings) {
+    namespace fs = std::filesystem;
+    if (!settings.scene.empty()) {
+        SceneFile scene = SceneFile::open(settings.scene);
+        if (scene.checksum() != about.scene_checksum)
+            throw StartupError("replaying on '" + scene.name() + "'",
+                               "this is another scene than the recorded one",
+                               "name the recorded one with --scene, or bake it again as it was");
+        return scene;
+    }
+    const fs::path recorded(about.scene_path), name = recorded.filename();
+    std::vector<fs::path> places{settings.recording.parent_path() / name, name};
+    if (recorded.is_absolute()) places.insert(places.begin(), recorded);
+    const char* const cache = std::getenv("XDG_CACHE_HOME");
+    const char* const home = std::getenv("HOME");
+    if (cache != nullptr && *cache == '/')
+        places.push_back(fs::path(cache) / "tact" / name);
+    else if (home != nullptr && *home == '/')
+        places.push_back(fs::path(home) / ".cache" / "tact" / name);
+    bool another = false;
+    for (const fs::path& place : places) {
+        std::error_code unknown;
+        if (name.empty() || !fs::is_regular_file(place, unknown)) continue;
+        try {
+            SceneFile scene = SceneFile::open(place);
+            if (scene.checksum() == about.scene_checksum) return scene;
+        } catch (const StartupError&) {  // no scene: as good as another one
+        }
+        another = true;
+    }
+    throw StartupError(
+        "finding the recorded scene '" + name.string() + "'",
+        another ? "what has its name is another scene than the recorded one"
+                : "it is neither beside the recording, nor in this folder, nor among the baked ones",
+        "name the recorded one with --scene, or bake it again as it was");
 }
 
 }  // namespace
@@ -107,9 +138,7 @@ void ReplayClock::give(std::span<const std::int64_t> looks_ns, Duration shift) n
 }
 
 Replay::Replay(const ReplaySettings& settings)
-    : reader_(settings.recording),
-
-      scene_(open_scene(reader_.about(), settings.scene)) {
+    : reader_(settings.recording), scene_(open_scene(reader_.about(), settings)) {
     const RecordingReader::About& about = reader_.about();
     if (!about.known)
         throw StartupError("replaying '" + settings.recording.string() + "'",

@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/record/recording_writer.hpp"
 #include "ipc/record/repair.hpp"
+#include "ipc/record/without_folders.hpp"
 #include "tests/support/library_leaks.hpp"
 
 namespace tact {
@@ -77,6 +78,23 @@ protected:
     std::filesystem::path path_;
 };
 
+TEST(RecordedPaths, KeepTheirFileNameAndNothingOfTheirFolders) {
+    EXPECT_EQ(without_folders("/home/anna/rod.tact"), "rod.tact");
+    EXPECT_EQ(without_folders("rod.tact"), "rod.tact");
+    EXPECT_EQ(without_folders("../rod.tact/"), "rod.tact");
+    EXPECT_EQ(without_folders("//"), ".");
+    EXPECT_EQ(without_folders(""), "");
+    using namespace std::string_literals;
+    EXPECT_EQ(arguments_without_folders(
+                  "/home/anna/rod.tact\0--config\0/home/anna/t.toml\0--level\0docking.force=1\0"
+                  "--poses=/home/anna/p.json\0--seed=3\0"s),
+              "rod.tact\0--config\0t.toml\0--level\0docking.force=1\0--poses=p.json\0--seed=3\0"s);
+    // Bytes that nobody would write keep their count of words and lose every folder.
+    EXPECT_EQ(arguments_without_folders("\0\0a/b=c/d"s), "\0\0d"s);
+    EXPECT_EQ(arguments_without_folders("--a/b=c\0-=/\0--=/"s), "b=c\0-=\0--=."s);
+    EXPECT_EQ(arguments_without_folders(""), "");
+}
+
 TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     {
         RecordingWriter w(path_, head());
@@ -97,7 +115,7 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(report.last_ns, 3000'000'000);
     const Hdf5Handle file = hdf5::open_file(path_, false);
     EXPECT_EQ(hdf5::number(file.get(), "/", "scene_checksum"), 0xFEDCBA9876543210ULL);
-    EXPECT_EQ(hdf5::text(file.get(), "/", "scene_path", 4096), "/somewhere/rod.tact");
+    EXPECT_EQ(hdf5::text(file.get(), "/", "scene_path", 4096), "rod.tact");
     EXPECT_EQ(hdf5::bytes(file.get(), "/start/arguments", 100), std::string("abc\0", 4));
     const auto cycles = Hdf5Table::open(file.get(), kCyclesGroup, cycle_columns(), sizeof(CycleTopic));
     ASSERT_EQ(cycles.rows(), 3000U);

@@ -90,6 +90,14 @@ def main():
         s.seconds = max(s.seconds, 8.0)  # the surgeon first has to find the bone
         _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "sucker", "--hand-at-mm", "-6,-1.5")
         s.claim("bone was taken in it", said.get("removed_levels", 0) > 255, said)
+        with open(recording, "rb") as file:
+            s.claim("no folder of the run is in it", s.dir.encode() not in file.read())
+        elsewhere = tempfile.mkdtemp(prefix="tact_elsewhere_", dir=s.dir)
+        moved = shutil.copy(recording, elsewhere)
+        code, _, err = s.run("tact", "replay", moved)
+        s.claim("away from its scene it asks for it", code == 1 and "--scene" in err and "dock.tact" in err, (code, err))
+        code, _, err = s.run("tact", "replay", moved, "--scene", s.path("dock.tact"), "--json")
+        s.claim("named, it is replayed", code == 0, (code, err))
         code, _, err = s.run("tact", "replay", recording, "--scene", s.path("ground.tact"))
         s.claim("another scene is refused", code == 1 and "another scene" in err, (code, err))
         code, _, err = s.run("tact", "replay", s.path("dock.tact"))
