@@ -30,7 +30,7 @@ namespace tact {
         std::clamp(wanted, static_cast<double>(vertices_min), static_cast<double>(vertices_max)));
 }
 
-// What adapting and uploading the surface may take of a frame: a quarter of a frame as long as the last one,
+// What adapting and uploading a surface that is too large to follow at once (Contours) may take of a frame: a quarter of a frame as long as the last one,
 // since a picture that is late anyway had better reach its new level soon; never less than 2 ms. A rebuild of
 // a surface of 100,000 vertices fits that. In a slow or interrupted frame the budget stays below 50 ms.
 [[nodiscard]] inline double adapt_budget_s(double frame_s) noexcept {

@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace tact {
+namespace {
+
+// A level is obeyed in the next picture, at the cost of this picture being later by no more than another one.
+constexpr double kAtOnceS = 0.033;
+
+}  // namespace
 
 Eigen::Vector3f contour_colour(std::size_t contour) {
     // Cold and pale first, as what is looked through; the inner ones warm.
@@ -101,7 +107,8 @@ void Contours::apply_share(double budget_s) noexcept {
         if (!shown(i)) continue;
         const double part = std::round(share_ * full(slot_[i]));
         if (slot_[i].surface)
-            slot_[i].surface->approach(static_cast<std::uint32_t>(part), budget_s / surfaces);
+            slot_[i].surface->approach(static_cast<std::uint32_t>(part), budget_s / surfaces,
+                                       kAtOnceS / surfaces);
         else
             plain = std::max(plain, part);
     }

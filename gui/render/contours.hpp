@@ -51,7 +51,8 @@ public:
     [[nodiscard]] std::span<const Contour> contours() const { return wanted_; }
     [[nodiscard]] ContourState state(std::size_t contour) const;
 
-    // As far as `budget_s` of this frame allows, shared by the surfaces; see Surface. Call it every frame.
+    // All the way where that takes less than a picture of 30 a second; else as far as `budget_s` of this frame allows, shared by the
+    // surfaces; see Surface. Call it every frame.
     void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
     // Takes what the worker has, and sends what changed. Bytes.
     std::size_t upload();

@@ -16,9 +16,12 @@ Surface::Surface(const ProgressiveMesh& mesh) : cut_(mesh) {
     glBindVertexArray(0);
 }
 
-void Surface::approach(std::uint32_t wanted, double budget_s) noexcept {
+void Surface::approach(std::uint32_t wanted, double budget_s, double at_once_s) noexcept {
     const Instant begin = Monotonic::now();
-    cut_.approach(wanted, pace_.budget_ns(budget_s));
+    if (cut_.whole_ns(wanted) <= pace_.budget_ns(at_once_s))
+        cut_.set_vertices(wanted);
+    else
+        cut_.approach(wanted, pace_.budget_ns(budget_s));
     moving_ = Monotonic::now() - begin;
 }
 

@@ -19,8 +19,9 @@ class Surface {
 public:
     explicit Surface(const ProgressiveMesh& mesh);  // mesh must outlive this
 
-    // Towards it as far as `budget_s` allows for this and the next upload(). Call it every frame.
-    void approach(std::uint32_t wanted, double budget_s) noexcept;
+    // Towards it as far as `budget_s` allows for this and the next upload(), and all the way where that takes no longer than
+    // `at_once_s`. Call it every frame.
+    void approach(std::uint32_t wanted, double budget_s, double at_once_s = 0.0) noexcept;
     // Bytes sent.
     std::size_t upload();
     void draw(const Eigen::Vector3f& colour);  // with a program in use

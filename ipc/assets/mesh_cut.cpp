@@ -90,6 +90,11 @@ MeshCut::MeshCut(const ProgressiveMesh& mesh)
     vertex_changed_.mark(0, level_);
 }
 
+double MeshCut::whole_ns(std::uint32_t wanted) const noexcept {
+    wanted = std::clamp(wanted, mesh_->vertices_min(), mesh_->vertices());
+    return std::min(kStepNs * distance(wanted), rebuild_ns(wanted)) + send_ns(wanted);
+}
+
 std::uint32_t MeshCut::set_vertices(std::uint32_t wanted) noexcept {
     wanted = std::clamp(wanted, mesh_->vertices_min(), mesh_->vertices());
     const double walk_ns = kStepNs * distance(wanted), jump_ns = rebuild_ns(wanted);
@@ -104,8 +109,7 @@ std::uint32_t MeshCut::set_vertices(std::uint32_t wanted) noexcept {
 std::uint32_t MeshCut::approach(std::uint32_t wanted, double budget_ns) noexcept {
     wanted = std::clamp(wanted, mesh_->vertices_min(), mesh_->vertices());
     const std::uint32_t way = distance(wanted);
-    if (std::min(kStepNs * way, rebuild_ns(wanted)) + send_ns(wanted) <= budget_ns)
-        return set_vertices(wanted);
+    if (whole_ns(wanted) <= budget_ns) return set_vertices(wanted);
     // More steps than these may fit where their ranges join, but not surely.
     const double fit = budget_ns > 0.0 ? budget_ns / (kStepNs + kSendStepNs) : 0.0;
     const std::uint32_t steps =

@@ -34,6 +34,8 @@ public:
     // the cost model; otherwise as many steps towards it as fit, at least kStepsMin. Repeat until there.
     std::uint32_t approach(std::uint32_t wanted, double budget_ns) noexcept;
     static constexpr std::uint32_t kStepsMin = 256;
+    // What set_vertices() would cost by the model, sending included.
+    [[nodiscard]] double whole_ns(std::uint32_t wanted) const noexcept;
     // What the last of these calls costs by the model, sending included.
     [[nodiscard]] double cost_ns() const { return cost_ns_; }
 

@@ -255,6 +255,10 @@ TEST(MeshCut, AFarGoalIsReachedWithinTheBudgetOfEachCall) {
             ASSERT_TRUE(same(cut, jumps));
         }
     }
+    EXPECT_EQ(cut.whole_ns(cut.vertices()), 0.0);
+    const double whole_ns = cut.whole_ns(0);
+    EXPECT_GT(whole_ns, 0.0);
+    EXPECT_NE(cut.approach(0, 0.99 * whole_ns), mesh.vertices_min());  // steps, which are dearer
     EXPECT_EQ(cut.approach(0, enough_ns), mesh.vertices_min());
     EXPECT_EQ(cut.approach(UINT32_MAX, std::nan("")), mesh.vertices_min() + MeshCut::kStepsMin);
 }

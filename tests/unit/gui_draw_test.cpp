@@ -351,6 +351,22 @@ TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {
     EXPECT_EQ(view_->molecules().left_out(), 1U);
 }
 
+TEST_F(GuiDrawScene, ASurfaceFollowsItsLevelAtOnceHoweverShortTheFrame) {
+    const std::string path = folder_ + "/fine.tact";
+    fake::write_helix_scene(path, 64);
+    content_ = load_scene(path);
+    view_.emplace(content_, *programs_);
+    const std::uint32_t most = view_->vertices_max();
+    ASSERT_GT(most, 4 * MeshCut::kStepsMin);
+    view_->approach_vertices(most, 0.0);
+    view_->upload();
+    for (const std::uint32_t wanted : {most / 8, most, most / 3, most - 1, view_->vertices_min()}) {
+        view_->approach_vertices(wanted, 0.0);
+        EXPECT_EQ(view_->vertices(), wanted);
+        view_->upload();
+    }
+}
+
 TEST_F(GuiDrawScene, ContoursShareTheVerticesAndStayUntilBetterOnesCome) {
     const auto refine = [this](double level, const std::function<bool()>&) {
         return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
