@@ -66,6 +66,9 @@ public:
     // Of the person: button bits besides the ritual's own; the stylus in the inkwell.
     void press(std::uint16_t buttons) noexcept { pressed_ = buttons; }
 
+    // The hand goes there, device frame, and rests; none: it does as before.
+    void hold(const std::optional<Vec3>& at_dev_m) noexcept { hand_.hold(at_dev_m); }
+
     [[nodiscard]] const phantom::Amplifier& amplifier() const noexcept { return amplifier_; }
     [[nodiscard]] const ArmKinematics& arm() const noexcept { return arm_; }
     [[nodiscard]] Pose tool_pose() const noexcept;  // where the tip really is, device frame

@@ -128,6 +128,14 @@ void CanHead::set_link(bool up) {
 
 bool CanHead::obey(const Order& order) {
     if (row_of(order.deed).part != Part::tracker) return false;
+    if (order.deed == Deed::tracker_hold || order.deed == Deed::tracker_free) {
+        if (order.deed == Deed::tracker_hold)
+            bus_.hold(1e-3 * Vec3(order.numbers[0], order.numbers[1], order.numbers[2]));
+        else
+            bus_.let_go();
+        say("sensor", row_of(order.deed).words);
+        return true;
+    }
     flood_.store(order.deed == Deed::tracker_flood);
     switch (order.deed) {
         case Deed::link_down:

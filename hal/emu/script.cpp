@@ -20,6 +20,10 @@ constexpr std::array kJoint{NumberRange{"ENCODER", 0, 5}};
 constexpr std::array kJump{NumberRange{"ENCODER", 0, 5}, NumberRange{"COUNTS", -10'000'000, 10'000'000}};
 constexpr std::array kContact{NumberRange{"CONTACT", 0, 1}};
 constexpr std::array kButtons{NumberRange{"BITS", 0, 255}};
+constexpr std::array kHandPlace{NumberRange{"X_MM", -500, 500}, NumberRange{"Y_MM", -500, 500},
+                                NumberRange{"Z_MM", -500, 500}};
+constexpr std::array kSensorPlace{NumberRange{"X_MM", -5000, 5000}, NumberRange{"Y_MM", -5000, 5000},
+                                  NumberRange{"Z_MM", -5000, 5000}};
 constexpr std::span<const NumberRange> kNone{};
 
 constexpr std::array kDeeds{
@@ -43,6 +47,9 @@ constexpr std::array kDeeds{
     DeedRow{"restart", Deed::restart, Part::arm, kNone, "", "power off and on: another boot"},
     DeedRow{"press", Deed::press, Part::arm, kButtons, "", "buttons that are held down now, as bits"},
     DeedRow{"calibrate", Deed::calibrate, Part::arm, kNone, "", "back to its pose, button, and on"},
+    DeedRow{"hand hold", Deed::hand_hold, Part::arm, kHandPlace, "",
+            "goes there in the arm's frame, and rests"},
+    DeedRow{"hand free", Deed::hand_free, Part::arm, kNone, "", "does as it did before"},
     DeedRow{"well", Deed::well, Part::arm, kNone, "", "every fault that lasts is gone"},
     DeedRow{"tracker silent", Deed::tracker_silent, Part::tracker, kNone, "", "no frames"},
     DeedRow{"tracker corrupt", Deed::tracker_corrupt, Part::tracker, kNone, "", "a bit is wrong"},
@@ -50,6 +57,9 @@ constexpr std::array kDeeds{
     DeedRow{"tracker out-of-range", Deed::tracker_out_of_range, Part::tracker, kNone, "", "it jumps away"},
     DeedRow{"tracker flood", Deed::tracker_flood, Part::tracker, kNone, "",
             "as many frames as a bus carries"},
+    DeedRow{"tracker hold", Deed::tracker_hold, Part::tracker, kSensorPlace, "",
+            "a hand holds sensor 0 there, in the tracker's frame"},
+    DeedRow{"tracker free", Deed::tracker_free, Part::tracker, kNone, "", "it is on the head again"},
     DeedRow{"tracker well", Deed::tracker_well, Part::tracker, kNone, "", "ends all of these and bus-off"},
     DeedRow{"can bus-off", Deed::bus_off, Part::tracker, kNone, "", "error frame, then nothing"},
     DeedRow{"can down", Deed::link_down, Part::tracker, kNone, "", "the interface"},

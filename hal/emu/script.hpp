@@ -40,12 +40,16 @@ enum class Deed : std::uint8_t {
     restart,
     press,
     calibrate,
+    hand_hold,
+    hand_free,
     well,
     tracker_silent,
     tracker_corrupt,
     tracker_nan,
     tracker_out_of_range,
     tracker_flood,
+    tracker_hold,
+    tracker_free,
     tracker_well,
     bus_off,
     link_down,
@@ -81,7 +85,7 @@ struct DeedRow {
 struct Order {
     std::optional<Duration> at;  // after the start; none: at once
     Deed deed = Deed::status;
-    std::array<int, 2> numbers{};
+    std::array<int, 3> numbers{};
     std::string arm;  // empty: every arm
     bool operator==(const Order&) const = default;
 };

@@ -258,6 +258,12 @@ void UsbArm::fault_of(const Order& o) {
         case Deed::press:
             board_.press(static_cast<std::uint16_t>(n));
             break;
+        case Deed::hand_hold:
+            board_.hold(1e-3 * Vec3(o.numbers[0], o.numbers[1], o.numbers[2]));
+            break;
+        case Deed::hand_free:
+            board_.hold(std::nullopt);
+            break;
         case Deed::calibrate:
             board_.calibrate_again();
             break;

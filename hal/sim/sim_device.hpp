@@ -38,6 +38,8 @@ public:
     void relax() noexcept override;
 
     void inject(SimFault fault) noexcept { fault_ = fault; }
+    // The hand goes there, device frame, and rests; see SimHand.
+    void hold(const std::optional<Vec3>& at_dev_m) noexcept { hand_.hold(at_dev_m); }
     // What the motors do now, as someone at the device would measure it.
     [[nodiscard]] const Wrench& shown_dev() const noexcept { return shown_; }
     [[nodiscard]] const Pose& hand_pose() const noexcept { return hand_.pose(); }

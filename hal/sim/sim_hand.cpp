@@ -92,16 +92,18 @@ Wrench SimHand::pull() const noexcept {
 void SimHand::step(Duration dt, const Wrench& wrench_dev, bool powered) noexcept {
     const double h_all = std::min(to_s(dt), kPauseMaxS);
     if (h_all <= 0.0) return;
-    const int substeps = wanders_ || surgeon_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
+    const int substeps = wanders_ || surgeon_ || held_m_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
     const double h = h_all / substeps;
     for (int i = 0; i < substeps; ++i) {
         Wrench w = wrench_dev;
-        if (wanders_) {
+        if (held_m_) {
+            w.force_n += kPullStiffness * (*held_m_ - pose_.p_m);
+        } else if (wanders_) {
             const Wrench hand = pull();
             w.force_n += hand.force_n;
             w.torque_n_m += hand.torque_n_m;
         }
-        if (surgeon_) {
+        if (surgeon_ && !held_m_) {
             surgeon_->step(h, pose_.p_m, wrench_dev.force_n, powered);
             const Wrench hand = surgeon_->pull(pose_, twist_);
             w.force_n += hand.force_n;

@@ -44,6 +44,8 @@ public:
 
     // powered: the device's motors are on.
     void step(Duration dt, const Wrench& wrench_dev, bool powered = true) noexcept TACT_RT;
+    // From now on it goes to this place and rests there, whatever its script; none: the script again.
+    void hold(const std::optional<Vec3>& at_m) noexcept { held_m_ = at_m; }
     [[nodiscard]] std::uint32_t buttons() const noexcept { return surgeon_ ? surgeon_->buttons() : 0; }
     [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
     [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
@@ -62,6 +64,7 @@ private:
     Vec3 reach_m_;
     bool wanders_, strokes_, drills_;
     std::optional<SimSurgeon> surgeon_;
+    std::optional<Vec3> held_m_;
     Waves waves_{};
     double time_s_ = 0.0;
     Pose pose_;

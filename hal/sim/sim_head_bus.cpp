@@ -13,6 +13,7 @@ namespace tact {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kSensorsApartM = 0.1;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ Pose SimHead::at(unsigned sensor, Instant when) const noexcept {
         for (const Wave& w : waves_[axis]) v[axis] += w.weight * std::sin(w.rate_rad_s * t_s + w.phase_rad);
     const Pose T_tracker_head{rest_m_ + sway_m_ * Vec3(v[0], v[1], v[2]),
                               quat_from_rotation_vector(turn_rad_ * Vec3(v[3], v[4], v[5]))};
-    return T_tracker_head * Pose{Vec3(0.1 * sensor, 0.0, 0.0), Quat::Identity()};
+    return T_tracker_head * Pose{Vec3(kSensorsApartM * sensor, 0.0, 0.0), Quat::Identity()};
 }
 
 SimHeadBus::SimHeadBus(const SimHeadSettings& settings, Clock& clock)
@@ -60,6 +61,18 @@ bool SimHeadBus::reopen() noexcept {
     return true;
 }
 
+void SimHeadBus::hold(const Vec3& at_m) noexcept {
+    for (int i = 0; i < 3; ++i)
+        held_m_[static_cast<std::size_t>(i)].store(at_m[i], std::memory_order_relaxed);
+    held_.store(true, std::memory_order_relaxed);
+}
+
+Pose SimHeadBus::measured(unsigned sensor, Instant when) const noexcept {
+    if (!held_.load(std::memory_order_relaxed)) return head_.at(sensor, when);
+    const auto m = [this](std::size_t i) { return held_m_[i].load(std::memory_order_relaxed); };
+    return {Vec3(m(0) + kSensorsApartM * sensor, m(1), m(2)), Quat::Identity()};
+}
+
 Vec3 SimHeadBus::noise(double deviation) noexcept {
     const auto normal = [this] {  // Box, Muller
         const double size = std::sqrt(-2.0 * std::log(1.0 - random_.uniform()));
@@ -77,7 +90,7 @@ void SimHeadBus::measure(TrackerFault fault) noexcept {
     ++counter_;
     if (!fd) queue(encode(SyncFrame{static_cast<std::uint16_t>(counter_), time_us, TrackerStatus::ok}));
     for (std::uint8_t s = 0; s < settings_.can.fix.sensors; ++s) {
-        Pose pose = head_.at(s, measured_at);
+        Pose pose = measured(s, measured_at);
         const double far = pose.p_m.norm() / kNoiseAtM;
         const double grown = std::pow(far, 3.5);
         pose.p_m += noise(settings_.noise_m * grown);

@@ -4,7 +4,7 @@
 // Noise    as an electromagnetic tracker's: stated at kNoiseAt from its origin, growing with distance^3.5
 // Time     that of the clock it is given: one period's frames go out when they are due, `latency` after the
 //          measurement. A pause longer than kBacklog periods loses the older ones, as a kernel's queue does.
-// Thread   receive() and reopen() on one; inject() on any
+// Thread   receive() and reopen() on one; inject(), hold() and let_go() on any: a sample may mix two places
 #pragma once
 
 #include <array>
@@ -64,10 +64,14 @@ public:
     bool reopen() noexcept override;
     CanBatch receive(std::span<CanFrame> into, Duration patience) noexcept override;
 
+    // A hand carries sensor 0 there and rests, in the tracker's frame, as at the marks of a screen; the others beside it.
+    void hold(const Vec3& at_m) noexcept;
+    void let_go() noexcept { held_.store(false, std::memory_order_relaxed); }
     void inject(TrackerFault fault) noexcept { fault_.store(fault, std::memory_order_relaxed); }
     [[nodiscard]] const SimHead& head() const noexcept { return head_; }
 
 private:
+    [[nodiscard]] Pose measured(unsigned sensor, Instant when) const noexcept;
     [[nodiscard]] Vec3 noise(double deviation) noexcept;
     void measure(TrackerFault fault) noexcept;
     void queue(const CanFrame& frame) noexcept { frames_[queued_++] = frame; }
@@ -79,6 +83,8 @@ private:
     SeededRandom random_;
     Duration period_;
     std::atomic<TrackerFault> fault_{TrackerFault::none};
+    std::atomic<bool> held_{false};
+    std::array<std::atomic<double>, 3> held_m_{};
     TrackerFault told_ = TrackerFault::none;
     bool open_ = false;
     Instant start_{}, due_{};

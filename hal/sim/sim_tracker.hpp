@@ -17,6 +17,8 @@ public:
     [[nodiscard]] TrackerHealth health() const noexcept TACT_RT override;
 
     void inject(TrackerFault fault) noexcept { bus_.inject(fault); }
+    void hold(const Vec3& at_m) noexcept { bus_.hold(at_m); }
+    void let_go() noexcept { bus_.let_go(); }
     [[nodiscard]] const SimHead& head() const noexcept { return bus_.head(); }
     [[nodiscard]] CanReaderCounts counts() const noexcept { return reader_.counts(); }
 

@@ -24,7 +24,7 @@ std::string why_not(std::string_view line) {
 }
 
 TEST(Orders, AreReadWithTheirTimeNumbersAndArm) {
-    const auto order = [](std::optional<Duration> at, Deed deed, std::array<int, 2> numbers = {},
+    const auto order = [](std::optional<Duration> at, Deed deed, std::array<int, 3> numbers = {},
                           const char* arm = "") {
         return Order{at, deed, numbers, arm};
     };
@@ -37,6 +37,8 @@ TEST(Orders, AreReadWithTheirTimeNumbersAndArm) {
     EXPECT_EQ(parse_order("silence 20 L", ""), order({}, Deed::silence, {20, 0}, "L"));
     EXPECT_EQ(parse_order("encoder jump 2 -5000", ""), order({}, Deed::encoder_jump, {2, -5000}));
     EXPECT_EQ(parse_order("tracker out-of-range", ""), order({}, Deed::tracker_out_of_range));
+    EXPECT_EQ(parse_order("tracker hold -120 35 480", ""), order({}, Deed::tracker_hold, {-120, 35, 480}));
+    EXPECT_EQ(parse_order("hand hold 10 -20 30 LEFT", ""), order({}, Deed::hand_hold, {10, -20, 30}, "LEFT"));
     EXPECT_EQ(parse_order("can bus-off", ""), order({}, Deed::bus_off));
     EXPECT_FALSE(parse_order("", "").has_value());
     EXPECT_FALSE(parse_order("   # only a comment", "").has_value());
@@ -54,6 +56,8 @@ TEST(Orders, ThatAreWrongAreRefusedWithWhereWhyAndTheMend) {
     says("corrupt", "N is \"\"", "1 to 100000");
     says("corrupt 0", "\"0\"", "1 to 100000");
     says("corrupt 99999999999999999999", "999", "1 to 100000");
+    says("tracker hold 1 2", "Z_MM", "-5000 to 5000");
+    says("hand hold 1 2 900", "Z_MM", "-500 to 500");
     says("encoder stuck 6", "ENCODER", "0 to 5");
     says("encoder jump 2 1e9", "COUNTS", "encoder jump");
     says("unplug left right", "too many words", "unplug [ARM]");
