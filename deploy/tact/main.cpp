@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     add_drill(app, exit_code);
     add_touch(app, exit_code);
     add_run(app, exit_code);
+    add_calibrate(app, exit_code);
     add_record(app);
     add_replay(app, exit_code);
     add_status(app, exit_code);

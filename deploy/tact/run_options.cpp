@@ -148,6 +148,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     visual->add_option("--size", options.size, "of the window in pixels")
         ->type_name("WxH")
         ->capture_default_str();
+    visual->add_flag_callback(
+        "--test-picture", [&options] { options.visual.emplace_back("--test-picture"); },
+        "begin with the stereo test picture: are eyes, scale and tool where they should be?");
     for (const Passed& p : kVisual)
         visual
             ->add_option_function<std::string>(

@@ -47,13 +47,12 @@ GuiApp::GuiApp(const GuiOptions& options)
     }
     view_options_.depth_cue = options.depth_cue;
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
-    if (options.stage.mode != StereoMode::off)
-        stage_ = std::make_unique<Stage>(options.stage, window_.handle(), options.hidden,
-                                         window_.paced_by_display());
+    if (options.stage.mode != StereoMode::off) make_stage(options.stage);
     if (!options.scene.empty())
         start_loading(options.scene);
     else
         state_.scene.status = "No scene yet: it comes from the controller, or give one as an argument.";
+    if (options.calibrate || options.test_picture) open_calibration(options.test_picture);
     spdlog::info("drawing with {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
 }
 
@@ -91,6 +90,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     {
         const PassClock::Scope scope(&passes_, Pass::adapt);
         if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
+        follow_calibration(now_ns);
         obey_level();
         clock_.end_part(FramePart::adapt);
         if (view_) view_->upload();
@@ -109,7 +109,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     clock_.end_part(FramePart::panels);
     if (take_picture) {
         pictures_.save_at_end(window_.picture());
-        if (stage_ && view_) pictures_.save_stage(stage_->pictures());
+        if (stage_ && (view_ || calibration_.open())) pictures_.save_stage(stage_->pictures());
     }
     if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
     {

@@ -12,7 +12,7 @@ namespace tact {
 void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
     const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
-                                     middle_card(state_.scene), state_.strip == 1);
+                                     middle_card(state_), state_.strip == 1);
     const PixelRect& rect = layout.view;
     const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
     ViewFrame view{};
@@ -32,6 +32,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) state_.eye_axes[i][k] = axes(k, i);
     drawn_view_ = {view.x_px, view.y_px, view.width_px, view.height_px};
+    if (calibration_.open()) return draw_calibration(view, now_ns);
     if (!view_) return;
     follow_bodies(now_ns);
     shown_.clear();

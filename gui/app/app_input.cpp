@@ -8,10 +8,10 @@ namespace tact {
 
 void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantCaptureMouse) {
-        const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_.scene),
-                                        state_.strip == 1)
-                                 .view.height;
+    if (!io.WantCaptureMouse && !calibration_.open()) {
+        const float height =
+            layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_), state_.strip == 1)
+                .view.height;
         if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
@@ -20,9 +20,10 @@ void GuiApp::handle_input() {
             camera_.zoom(io.MouseWheel);
     }
     KeySituation& now = state_.situation;
-    now.bodies = content_ && state_.scene.placed();
-    now.bone = content_ && state_.scene.bone;
-    now.stereo = stage_ != nullptr;
+    now.calibrating = calibration_.open();
+    now.bodies = content_ && state_.scene.placed() && !now.calibrating;
+    now.bone = content_ && state_.scene.bone && !now.calibrating;
+    now.stereo = stage_ != nullptr && !now.calibrating;
     now.controller = controller_.attached();
     for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
@@ -90,6 +91,23 @@ void GuiApp::act(KeyAct what, std::size_t place) {
         case KeyAct::close_sheet:
             state_.situation.sheet = false;
             return;
+        case KeyAct::calibrate:
+            if (!calibration_.open()) open_calibration(false);
+            return;
+        case KeyAct::measure:
+            return calibration_.act(CalibrationAct::take);
+        case KeyAct::skip_point:
+            return calibration_.act(CalibrationAct::skip);
+        case KeyAct::redo_point:
+            return calibration_.act(CalibrationAct::redo_last);
+        case KeyAct::next_step:
+            return calibration_.act(CalibrationAct::next);
+        case KeyAct::leave_calibration:
+            return calibration_.act(CalibrationAct::leave);
+        case KeyAct::save_calibration:
+            return calibration_.act(CalibrationAct::save);
+        case KeyAct::swap_calibrated_eyes:
+            return calibration_.swap_eyes();
         case KeyAct::none:
         case KeyAct::count:
             return;

@@ -3,6 +3,7 @@
 // app.cpp      the frame, the controller, panels, the load that is reported
 // app_scene    what is shown: the scene, its levels, its bodies
 // app_draw     the three-dimensional view, for one eye or two
+// app_calibration  the screen of the stage while it is calibrated
 // app_input    mouse and keys
 #pragma once
 
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "gui/app/body_list.hpp"
+#include "gui/app/calibration_desk.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/controller.hpp"
 #include "gui/app/detail_desk.hpp"
@@ -27,6 +29,7 @@
 #include "gui/app/window.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/stage/picture_painter.hpp"
 #include "gui/stage/stage.hpp"
 namespace tact {
 
@@ -52,6 +55,11 @@ private:
     void draw_scene(std::int64_t now_ns);
     void begin_view(const ViewFrame& view);
     void draw_stage(ViewFrame view, std::int64_t now_ns);
+    void open_calibration(bool check_alone);
+    void follow_calibration(std::int64_t now_ns);
+    void leave_calibration();
+    void make_stage(const StageSettings& settings);
+    void draw_calibration(const ViewFrame& view, std::int64_t now_ns);
     void draw_panels();
     void publish_load();
     void publish_frames();
@@ -71,6 +79,8 @@ private:
     PassClock passes_{PassClock::possible(window_.software())};
     Instant frames_told_{};
     std::unique_ptr<Stage> stage_;  // of a stereo picture
+    std::unique_ptr<PicturePainter> calibration_painter_;
+    CalibrationDesk calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;

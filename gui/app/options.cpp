@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <map>
 
@@ -76,18 +77,25 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->check(CLI::Range(0, 100000));
     app.add_flag("--bench-particles", options.bench_particles,
                  "measure what moving particles costs, print it as JSON and end; opens no window");
-    std::string stage_file, stereo;
+    std::string stereo;
     bool swap_eyes = false;
-    app.add_option("--stage", stage_file,
+    app.add_option("--stage", options.stage_file,
                    "TOML file of the stereo picture: screen, eyes, monitors (gui/stage/README.md)");
     app.add_option("--stereo", stereo, "off, anaglyph, side-by-side, top-bottom, two-windows or quad-buffer")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(kStereoModes), std::end(kStereoModes))));
+    app.add_flag("--calibrate", options.calibrate,
+                 "begin with the calibration of the screen, as key K does; it is saved to --stage FILE");
+    app.add_flag("--test-picture", options.test_picture,
+                 "begin with the picture that tells whether screen, eyes and tool are where they should be");
     app.add_flag("--swap-eyes", swap_eyes, "the other eye's picture for each eye");
     app.add_option("--stage-screenshot", options.stage_screenshot,
                    "write a PNG of the stereo picture at the end; of two windows two: NAME-left, NAME-right");
     try {
         app.parse(argc, argv);
-        if (!stage_file.empty()) options.stage = read_stage_file(stage_file);
+        // A calibration may make the file.
+        if (!options.stage_file.empty() &&
+            !(options.calibrate && !std::filesystem::exists(options.stage_file)))
+            options.stage = read_stage_file(options.stage_file);
         if (!stereo.empty()) static_cast<void>(read_stereo_mode(stereo, options.stage.mode));
         if (swap_eyes) options.stage.eyes.swapped = !options.stage.eyes.swapped;
     } catch (const CLI::ParseError& e) {

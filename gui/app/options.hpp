@@ -25,10 +25,12 @@ struct GuiOptions {
     bool traces = false;    // in the place of the plots, at the start
     bool hidden = false;
     bool plain = false;
-    StageSettings stage;                  // of a stereo picture
-    std::string stage_screenshot;         // PNG of the stereo picture at the end; empty: none
-    MoleculeLook look;                    // of all bodies at the start
-    std::vector<ContourOption> contours;  // empty: the scene's own
+    StageSettings stage;     // of a stereo picture
+    std::string stage_file;  // that it was read from, and that a calibration is written to
+    bool calibrate = false, test_picture = false;  // at the start
+    std::string stage_screenshot;                  // PNG of the stereo picture at the end; empty: none
+    MoleculeLook look;                             // of all bodies at the start
+    std::vector<ContourOption> contours;           // empty: the scene's own
     bool depth_cue = true;
     bool near_burr = false;        // once it is in bone
     std::uint32_t particles = 0;   // that there always are over bone

@@ -7,7 +7,9 @@
 
 namespace tact {
 
-MiddleCard middle_card(const SceneFacts& scene) {
+MiddleCard middle_card(const DashboardState& state) {
+    if (state.calibration.open) return MiddleCard::calibration;
+    const SceneFacts& scene = state.scene;
     return scene.bone ? MiddleCard::drilling : scene.placed() ? MiddleCard::fit : MiddleCard::none;
 }
 
@@ -34,10 +36,15 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCar
         y += height + gap;
         return rect;
     };
-    l.health = card(health);
-    const bool any = middle != MiddleCard::none;
-    l.middle = any ? card(between) : PixelRect{gap, y, 0.0F, 0.0F};
-    l.scene = card(usable - health - between + (any ? 0.0F : gap));
+    if (middle == MiddleCard::calibration) {
+        l.middle = card(height_px - 2.0F * gap);
+        l.health = l.scene = {gap, gap, 0.0F, 0.0F};
+    } else {
+        l.health = card(health);
+        const bool any = middle != MiddleCard::none;
+        l.middle = any ? card(between) : PixelRect{gap, y, 0.0F, 0.0F};
+        l.scene = card(usable - health - between + (any ? 0.0F : gap));
+    }
 
     const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
     const float top = l.view.height, height = at_least_one(below - gap);
@@ -47,13 +54,14 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCar
 }
 
 void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, float height_px) {
-    const MiddleCard middle = middle_card(state.scene);
+    const MiddleCard middle = middle_card(state);
     const Layout layout = layout_for(theme, width_px, height_px, middle, state.strip == 1);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
-    draw_health(theme, state, layout.health);
+    if (middle == MiddleCard::calibration) draw_calibration(theme, state, layout.middle);
+    if (middle != MiddleCard::calibration) draw_health(theme, state, layout.health);
     if (middle == MiddleCard::fit) draw_fit(theme, state, layout.middle);
     if (middle == MiddleCard::drilling) draw_drilling(theme, state, layout.middle);
-    draw_scene(theme, state, layout.scene);
+    if (middle != MiddleCard::calibration) draw_scene(theme, state, layout.scene);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);
     ImGui::PopStyleVar();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gui/panels/calibration.hpp"
 #include "gui/panels/counter_rate.hpp"
 #include "gui/panels/keys.hpp"
 #include "gui/panels/knob_changes.hpp"
@@ -218,6 +219,7 @@ struct DashboardState {
     ContourFacts contours;
     DetailFacts detail;
     DrillingFacts drilling;
+    CalibrationFacts calibration;
     History history;
     TracesState traces;
     std::deque<EventLine> events;  // newest first
@@ -259,8 +261,9 @@ struct Layout {
     [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
 };
 // The card between the controller's and the scene's: of a fit, of drilling, or none, and its place goes to the scene.
-enum class MiddleCard : std::uint8_t { none, fit, drilling };
-[[nodiscard]] MiddleCard middle_card(const SceneFacts& scene);
+// While a screen is calibrated, its card takes the whole column.
+enum class MiddleCard : std::uint8_t { none, fit, drilling, calibration };
+[[nodiscard]] MiddleCard middle_card(const DashboardState& state);
 // traces: the strip below is as high as they need.
 [[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle,
                                 bool traces = false);

@@ -32,6 +32,15 @@ constexpr auto kKeyRows = [] {
         {typed_key('r'), 0, bodies, KeyAct::refine, "R", "refine the body in the hand"},
         {named_key(KeyCode::enter), 0, bodies, KeyAct::accept, "Enter", "accept: undo goes back no farther"},
         {named_key(KeyCode::escape), 0, bodies, KeyAct::revert, "Esc", "back to the last accepted places"},
+        {typed_key('k'), 0, always, KeyAct::calibrate, "K", "calibrate the stereo screen"},
+        {typed_key('t'), 0, calibrating, KeyAct::measure, "T", "take the point, or stop"},
+        {typed_key('n'), 0, calibrating, KeyAct::skip_point, "N", "the next point"},
+        {typed_key('b'), 0, calibrating, KeyAct::redo_point, "B", "back: the last point again"},
+        {named_key(KeyCode::enter), 0, calibrating, KeyAct::next_step, "Enter", "next step"},
+        {control_key('s'), 0, calibrating, KeyAct::save_calibration, "Ctrl+S", "save the calibration"},
+        {typed_key('x'), 0, calibrating, KeyAct::swap_calibrated_eyes, "X", "swap the eyes"},
+        {named_key(KeyCode::escape), 0, calibrating, KeyAct::leave_calibration, "Esc",
+         "leave the calibration"},
         {typed_key('p'), 0, always, KeyAct::picture, "P", "save a picture"},
         {typed_key('m'), 0, controller, KeyAct::mark, "M", "mark this moment: a flight recorder saves it"},
         {typed_key('?'), 0, always, KeyAct::help, "?", "this table"},
@@ -61,6 +70,8 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
             return now.stereo;
         case controller:
             return now.controller;
+        case calibrating:
+            return now.calibrating;
     }
     return false;
 }
@@ -86,6 +97,9 @@ bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     if ((a.when == sheet) != (b.when == sheet)) return false;  // the sheet's comes first
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both
+    const auto of_picture = [](KeyWhen when) { return when == bodies || when == bone || when == stereo; };
+    if ((a.when == calibrating && of_picture(b.when)) || (b.when == calibrating && of_picture(a.when)))
+        return false;  // it takes the picture's place
     const KeyStroke &p = a.stroke, &q = b.stroke;
     return p.code == q.code && p.control == q.control && p.shift == q.shift &&
            p.character <= last_character(b) && q.character <= last_character(a);

@@ -42,18 +42,27 @@ enum class KeyAct : std::uint8_t {
     picture,
     mark,
     help,
+    calibrate,
+    measure,
+    skip_point,
+    redo_point,
+    next_step,
+    leave_calibration,
+    save_calibration,
+    swap_calibrated_eyes,
     count
 };
 
 // When a row applies. The sheet comes first: what it takes reaches nothing below it.
-enum class KeyWhen : std::uint8_t { always, sheet, bodies, bone, stereo, controller };
+enum class KeyWhen : std::uint8_t { always, sheet, bodies, bone, stereo, controller, calibrating };
 
 struct KeySituation {
-    bool sheet = false;       // `?` is shown
-    bool bodies = false;      // the scene has a map and bodies to place
-    bool bone = false;        // the scene is drilled
-    bool stereo = false;      // the picture is for two eyes
-    bool controller = false;  // attached
+    bool sheet = false;        // `?` is shown
+    bool bodies = false;       // the scene has a map and bodies to place
+    bool bone = false;         // the scene is drilled
+    bool stereo = false;       // the picture is for two eyes
+    bool controller = false;   // attached
+    bool calibrating = false;  // then none of scene and stereo
 };
 
 struct KeyRow {

@@ -209,12 +209,14 @@ void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
 void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view) {
     const Pen pen{theme, ImGui::GetBackgroundDrawList()};
     pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
-    legend(pen, state, view);
-    axes(pen, state, view);
-    scale_bar(pen, state, view);
-    detail_scale(pen, state, view);
-    if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
-    message(pen, state, view);
+    if (!state.calibration.open) {
+        legend(pen, state, view);
+        axes(pen, state, view);
+        scale_bar(pen, state, view);
+        detail_scale(pen, state, view);
+        if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
+        message(pen, state, view);
+    }
     stop_banner(pen, state, view);
     if (state.situation.sheet) keys(pen, state.situation, view);
     pen.draw->PopClipRect();

@@ -13,6 +13,8 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
 void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card);
 void draw_drilling(const Theme& theme, const DashboardState& state, const PixelRect& card);
 void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card);
+// In place of the column's cards while a screen is calibrated.
+void draw_calibration(const Theme& theme, DashboardState& state, const PixelRect& card);
 // Inside the scene's card.
 void draw_bodies_tab(const Theme& theme, DashboardState& state);
 void draw_contours_tab(const Theme& theme, DashboardState& state);

@@ -35,6 +35,24 @@ EyeView Stage::eye(std::size_t eye, const Camera& camera, double world_per_model
                           static_cast<double>(radius_a), target_a);
 }
 
+EyeView Stage::eye_on_glass(std::size_t eye, double reach_mm) const {
+    const ScreenPlace on = screen();
+    Eigen::Matrix3d axes;
+    axes << on.right(), on.towards_viewer().cross(on.right()), on.towards_viewer();
+    return through_screen(on, {1e-3, Quat(axes), on.centre_m()}, eyes_of(head_.pose(), settings_.eyes)[eye],
+                          reach_mm, Vec3::Zero());
+}
+
+void Stage::place(const StageSettings& settings) {
+    settings_.screen = settings.screen;
+    settings_.screen_measured = settings.screen_measured;
+    settings_.eyes = settings.eyes;
+    settings_.rest_screen_m = settings.rest_screen_m;
+    settings_.T_screen_world = settings.T_screen_world;
+    settings_.in_workspace = settings.in_workspace;
+    settings_.latency_s = settings.latency_s;
+}
+
 void Stage::show(GLuint dashboard_frame) {
     if (!windows_) {
         pictures_.compose(dashboard_frame, view_.x_px, view_.y_px);

@@ -29,6 +29,12 @@ public:
     // centre_world_m: the scene's origin; radius_a: of a ball about it that holds the scene.
     [[nodiscard]] EyeView eye(std::size_t eye, const Camera& camera, double world_per_model,
                               const Vec3& centre_world_m, float radius_a) const;
+    // Of a scene in millimetres on the glass, see picture_pen.hpp; reach_mm: how far from its middle anything may lie.
+    [[nodiscard]] EyeView eye_on_glass(std::size_t eye, double reach_mm) const;
+    // The picture as large as it is taken to be, and where it is.
+    [[nodiscard]] ScreenPlace screen() const;
+    // From now on; the mode, the monitors and the size of windows stay as they are.
+    void place(const StageSettings& settings);
     void begin(std::size_t eye, const Eigen::Vector3f& ground) { pictures_.begin(eye, ground); }
     [[nodiscard]] int eye_width_px() const { return pictures_.eye_width_px(); }
     [[nodiscard]] int eye_height_px() const { return pictures_.eye_height_px(); }
@@ -38,7 +44,6 @@ public:
     [[nodiscard]] std::vector<Image> pictures();
 
 private:
-    [[nodiscard]] ScreenPlace screen() const;
     [[nodiscard]] bool two_pictures() const {
         return settings_.mode == StereoMode::two_windows || settings_.mode == StereoMode::quad_buffer;
     }

@@ -115,6 +115,7 @@ StageSettings read_stage_text(std::string_view text, const std::string& name) {
         {"eyes.rest_screen_m", place(s.rest_screen_m), -10.0, 10.0},
         {"workspace.position_screen_m", place(s.T_screen_world.p_m), -10.0, 10.0},
         {"workspace.quat_screen_world_xyzw", std::span<double>(quat), -1.0, 1.0},
+        {"wand.tip_sensor_m", place(s.wand_tip_sensor_m), -1.0, 1.0},
     };
     reader.read(table, "", keys);
     if (!read_stereo_mode(mode, s.mode)) {

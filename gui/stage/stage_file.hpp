@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct StageSettings {
     EyesOfHead eyes;
     Vec3 rest_screen_m = Vec3(0.0, 0.0, 0.6);
     Pose T_screen_world{Vec3(0.0, 0.0, 0.1), Quat::Identity()};
+    Vec3 wand_tip_sensor_m = Vec3::Zero();  // of the pointer that calibration touches with
 
     // In windows of its own.
     [[nodiscard]] bool own_windows() const {
@@ -43,5 +45,13 @@ struct StageSettings {
 
 [[nodiscard]] StageSettings read_stage_text(std::string_view text, const std::string& name);
 [[nodiscard]] StageSettings read_stage_file(const std::filesystem::path& path);
+
+// All keys, and the remarks as comments in front; read again it is the same stage, to the nanometre.
+[[nodiscard]] std::string stage_text(const StageSettings& settings,
+                                     std::span<const std::string> remarks = {});
+// Whole or not at all; a file that was there is kept beside it under the returned name (empty: there was none). What is
+// written is read again before it takes the place of the old one. Throws StartupError.
+std::filesystem::path write_stage_file(const std::filesystem::path& path, const StageSettings& settings,
+                                       std::span<const std::string> remarks = {});
 
 }  // namespace tact

@@ -17,6 +17,13 @@ if(TACT_GUI)
     tact_test(unit/gui_bone_test.cpp USES gui_app gui_render topics shm assets base)
     tact_test(unit/gui_bone_draw_test.cpp USES gui_app gui_panels gui_render launch assets base TIMEOUT 300)
     tact_test(unit/gui_view_test.cpp USES gui_render prep_mesh topics shm assets base)
+    tact_test(unit/gui_registration_test.cpp USES gui_stage base SYSTEM rapidcheck)
+    tact_test(unit/gui_calibration_test.cpp USES gui_stage gui_render base)
+    tact_test(unit/gui_calibration_window_test.cpp USES gui_stage gui_render launch hal tracker loop topics shm base
+        TIMEOUT 900)
+    target_compile_definitions(gui_calibration_window_test PRIVATE TACT_GUI_PROGRAM="$<TARGET_FILE:tact-gui>")
+    add_dependencies(gui_calibration_window_test tact-gui)
+    set_tests_properties(gui_calibration_window_test PROPERTIES RUN_SERIAL ON)
     tact_test(unit/gui_stage_test.cpp USES gui_stage gui_render topics base)
     tact_test(unit/gui_frames_test.cpp USES gui_app gui_panels gui_render launch shm topics assets base
         SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)

@@ -9,7 +9,6 @@ tact_test(unit/hal_tracker_dbc_test.cpp USES base tracker)
 tact_test(unit/hal_tracker_filter_test.cpp USES base tracker)
 tact_test(unit/hal_tracker_frames_test.cpp USES base tracker SYSTEM rapidcheck)
 tact_test(unit/hal_tracker_reader_test.cpp USES base tracker)
-tact_test(unit/hal_tracker_registration_test.cpp USES base tracker SYSTEM rapidcheck)
 tact_test(unit/hal_emu_board_test.cpp USES base arm phantom emu_board)
 tact_test(unit/hal_emu_script_test.cpp USES base arm tracker emu_script)
 # Parts and faults are read without a kernel that has them; wrong usage and what cannot start have codes of their own.

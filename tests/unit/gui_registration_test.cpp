@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "hal/tracker/registration.hpp"
+#include "gui/stage/registration.hpp"
 #include "ipc/base/random.hpp"
 
 namespace tact {

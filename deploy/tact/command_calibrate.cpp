@@ -1,0 +1,27 @@
+// tact calibrate --stage lab.toml: where the stereo screen, the eyes and the hand's world are, step by step, into that file.
+#include <memory>
+
+#include "deploy/tact/commands.hpp"
+#include "deploy/tact/run.hpp"
+#include "deploy/tact/scene_cache.hpp"
+
+namespace tact::launch {
+
+void add_calibrate(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand(
+        "calibrate",
+        "measure where the stereo screen, the eyes and the hand's world are; written to --stage FILE.toml");
+    const auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    command->callback([options, &exit_code] {
+        options->visual.emplace_back("--calibrate");
+        // Devices are read as in any run, and whatever the hand meets, nothing pushes it while it measures.
+        if (!options->has_controller_option("--force-scale"))
+            options->controller.insert(options->controller.end(), {"--force-scale", "0"});
+        const auto scene = baked_scene(
+            {.inputs = {}, .words = {"demo", "touch", "--shape", "smooth-sphere"}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,306 @@
+#include "gui/app/calibration_desk.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "gui/panels/widgets.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::int64_t kOldNs = 100'000'000;
+constexpr std::uint8_t kFresh = 2;  // TrackerState of the hardware layer, which is out of sight here
+constexpr std::uint8_t kReady = 1, kFault = 4;  // DeviceState, likewise
+constexpr double kToolShownMm = 3000.0;
+constexpr int kModes = static_cast<int>(std::size(kStereoModes)) - 1;  // all but "off"
+
+Grade grade_of(FitGrade grade) {
+    switch (grade) {
+        case FitGrade::green:
+            return Grade::good;
+        case FitGrade::amber:
+            return Grade::watch;
+        case FitGrade::red:
+            return Grade::bad;
+        case FitGrade::none:
+            break;
+    }
+    return Grade::unknown;
+}
+
+CalibrationInput input_of(const Controller& c, std::int64_t now_ns) {
+    CalibrationInput in;
+    in.now_s = 1e-9 * static_cast<double>(now_ns);
+    if (!c.attached()) return in;
+    const HeadTopic& h = c.head;
+    in.sensor_good =
+        c.have_head && h.sequence > 0 && h.state == kFresh && std::abs(now_ns - h.taken_at_ns) < kOldNs;
+    in.sensor_at_ns = h.taken_at_ns;
+    const double* const q = h.quat_screen_head_xyzw;
+    in.T_screen_sensor = {Vec3(h.pos_screen_m[0], h.pos_screen_m[1], h.pos_screen_m[2]),
+                          Quat(q[3], q[0], q[1], q[2]).normalized()};
+    const ToolTopic& t = c.tool;
+    in.hand_good = c.have_tool && t.device_state >= kReady && t.device_state < kFault &&
+                   std::abs(now_ns - t.taken_at_ns) < kOldNs;
+    in.hand_at_ns = t.taken_at_ns;
+    in.stylus_world_m = Vec3(t.pos_world_m[0], t.pos_world_m[1], t.pos_world_m[2]);
+    in.button = t.buttons != 0;
+    return in;
+}
+
+template <std::size_t n>
+void put_mm(std::array<double, n>& to, const double* from_m) {
+    for (std::size_t i = 0; i < n; ++i) to[i] = 1e3 * from_m[i];
+}
+
+Vec3 metres(const std::array<double, 3>& mm) { return 1e-3 * Vec3(mm[0], mm[1], mm[2]); }
+
+}  // namespace
+
+void CalibrationDesk::begin(const StageSettings& now, bool check_alone) {
+    kept_ = now;
+    calibration_.emplace(now);
+    if (check_alone) calibration_->go(CalibrationStep::check);
+    leave_ = false;
+    saved_.clear();
+    logged_.clear();
+    spdlog::info("calibration: begins; its file is {}", file_.string());
+}
+
+void CalibrationDesk::end(CalibrationFacts& facts) {
+    calibration_.reset();
+    facts = {};
+    spdlog::info("calibration: left");
+}
+
+void CalibrationDesk::swap_eyes() {
+    EyesOfHead eyes = calibration_->draft().eyes;
+    eyes.swapped = !eyes.swapped;
+    calibration_->set_eyes(eyes);
+}
+
+void CalibrationDesk::act(CalibrationAct what, std::size_t number) {
+    Calibration& c = *calibration_;
+    const CalibrationStep before = c.step();
+    switch (what) {
+        case CalibrationAct::go:
+            if (number < kCalibrationSteps) c.go(static_cast<CalibrationStep>(number));
+            break;
+        case CalibrationAct::next:
+            c.next();
+            break;
+        case CalibrationAct::back:
+            c.back();
+            break;
+        case CalibrationAct::take:
+            c.take();
+            break;
+        case CalibrationAct::skip:
+            c.skip();
+            break;
+        case CalibrationAct::redo:
+            c.redo(number);
+            break;
+        case CalibrationAct::redo_last:
+            c.redo_last();
+            break;
+        case CalibrationAct::clear:
+            c.clear();
+            break;
+        case CalibrationAct::measured_size:
+            c.use_measured_size();
+            break;
+        case CalibrationAct::save:
+            save();
+            break;
+        case CalibrationAct::leave:
+            leave_ = true;
+            break;
+    }
+    if (c.step() != before) {
+        const Calibration::Verdict verdict = c.verdict(before);
+        if (!verdict.words.empty())
+            spdlog::info("calibration: {}: {}", calibration_step_title(before), verdict.words);
+        spdlog::info("calibration: step {}, {}", static_cast<int>(c.step()) + 1,
+                     calibration_step_title(c.step()));
+    }
+}
+
+void CalibrationDesk::save() {
+    try {
+        const std::filesystem::path old =
+            write_stage_file(file_, calibration_->draft(), calibration_->remarks());
+        const StageSettings again = read_stage_file(file_);
+        if (stage_text(again) != stage_text(calibration_->draft()))
+            throw StartupError("reading the stage file '" + file_.string() + "' again",
+                               "it is not what was written", "save it again, elsewhere (--stage FILE)");
+        kept_ = again;
+        saved_ = "Written to " + file_.string() + " and read back." +
+                 (old.empty() ? std::string() : " The old one is kept as " + old.filename().string() + ".");
+        saved_grade_ = Grade::good;
+    } catch (const StartupError& e) {
+        saved_ = e.what();
+        saved_grade_ = Grade::bad;
+    }
+    spdlog::info("calibration: {}", saved_);
+}
+
+bool CalibrationDesk::follow(const Controller& controller, std::int64_t now_ns, CalibrationFacts& facts) {
+    const std::string before = stage_text(draft());
+    calibration_->follow(input_of(controller, now_ns));
+    take_typed(facts);
+    for (const auto& [what, number] : facts.wishes) act(what, number);
+    facts.wishes.clear();
+    if (stage_text(draft()) != before) saved_.clear();
+    if (calibration_->said() != logged_) {
+        logged_ = calibration_->said();
+        if (!logged_.empty()) spdlog::info("calibration: {}", logged_);
+    }
+    tell(facts);
+    return leave_;
+}
+
+void CalibrationDesk::take_typed(CalibrationFacts& f) {
+    using Typed = CalibrationFacts::Typed;
+    Calibration& c = *calibration_;
+    switch (std::exchange(f.edited, Typed::none)) {
+        case Typed::none:
+            break;
+        case Typed::size:
+            c.set_picture_size(1e-3 * f.width_mm[0], 1e-3 * f.height_mm[0]);
+            break;
+        case Typed::tip:
+            c.set_wand_tip(metres(f.tip_mm));
+            break;
+        case Typed::corners:
+            c.set_screen({metres(f.corners_mm[0]), metres(f.corners_mm[1]), metres(f.corners_mm[2])});
+            break;
+        case Typed::eyes:
+            c.set_eyes({.apart_m = 1e-3 * f.apart_mm[0],
+                        .middle_head_m = metres(f.middle_mm),
+                        .swapped = f.swapped});
+            break;
+        case Typed::mode:
+            c.set_mode(static_cast<StereoMode>(std::clamp(f.mode, 0, kModes - 1) + 1));
+            break;
+        case Typed::place:
+            c.set_in_workspace(f.place == 1);
+            break;
+        case Typed::touched_with:
+            c.set_workspace_by_wand(f.touched_with == 1);
+            break;
+    }
+}
+
+void CalibrationDesk::tell(CalibrationFacts& f) const {
+    const Calibration& c = *calibration_;
+    f.open = true;
+    f.step = static_cast<std::size_t>(c.step());
+    f.steps.resize(kCalibrationSteps);
+    for (std::size_t i = 0; i < kCalibrationSteps; ++i) {
+        const auto step = static_cast<CalibrationStep>(i);
+        const Calibration::Verdict v = c.verdict(step);
+        f.steps[i] = {calibration_step_title(step), v.words, grade_of(v.grade)};
+    }
+    const Calibration::Verdict verdict = c.verdict();
+    f.verdict = {grade_of(verdict.grade), verdict.words};
+    f.instruction = c.instruction();
+    f.live = c.live();
+    f.said = c.said();
+    f.measuring = c.measuring();
+    f.progress = static_cast<float>(c.progress());
+    f.size_offered = c.measured_size_m().x() > 0.0;
+    f.points.resize(kMarks);
+    for (std::size_t i = 0; i < kMarks; ++i) {
+        const Calibration::Mark& mark = c.marks().mark[i];
+        const auto left = c.marks().residual_m(i);
+        CalibrationFacts::Point& p = f.points[i];
+        p.taken = mark.taken;
+        p.current = c.marks().current == i;
+        p.grade = !left                      ? Grade::unknown
+                  : c.marks().outlier() == i ? Grade::bad
+                  : *left <= kGreenWorstM    ? Grade::good
+                  : *left <= kAmberWorstM    ? Grade::watch
+                                             : Grade::bad;
+        p.words = !mark.taken ? std::string(p.current ? "now" : "-")
+                  : left      ? format("%.1f mm left, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
+                              : format("taken, spread %.1f mm", 1e3 * mark.spread_m);
+    }
+    f.file = file_.filename().string();
+    f.saved = saved_;
+    f.saved_grade = saved_grade_;
+    f.changed = stage_text(c.draft()) != stage_text(kept_);
+    f.modes.assign(std::begin(kStereoModes) + 1, std::end(kStereoModes));
+    if (f.editing) return;
+    const StageSettings& s = c.draft();
+    f.width_mm = {1e3 * s.screen.width_m()};
+    f.height_mm = {1e3 * s.screen.height_m()};
+    put_mm(f.tip_mm, s.wand_tip_sensor_m.data());
+    put_mm(f.corners_mm[0], s.screen.lower_left_m.data());
+    put_mm(f.corners_mm[1], s.screen.lower_right_m.data());
+    put_mm(f.corners_mm[2], s.screen.upper_left_m.data());
+    f.apart_mm = {1e3 * s.eyes.apart_m};
+    put_mm(f.middle_mm, s.eyes.middle_head_m.data());
+    f.swapped = s.eyes.swapped;
+    f.mode = static_cast<int>(s.mode) - 1;
+    f.place = s.in_workspace ? 1 : 0;
+    f.touched_with = c.workspace_by_wand() ? 1 : 0;
+}
+
+void CalibrationDesk::refuse_mode(StereoMode back_to, const std::string& why) {
+    calibration_->set_mode(back_to);
+    saved_ = why;
+    saved_grade_ = Grade::bad;
+}
+
+std::optional<Eigen::Vector3d> CalibrationDesk::tool_mm() const {
+    const auto tip = calibration_->stylus_screen_m();
+    if (!tip) return std::nullopt;
+    const ScreenPlace& s = draft().screen;
+    const Vec3 right = s.right(), towards = s.towards_viewer(), from = *tip - s.centre_m();
+    const Eigen::Vector3d at =
+        1e3 * Eigen::Vector3d(right.dot(from), towards.cross(right).dot(from), towards.dot(from));
+    if (!(at.norm() <= kToolShownMm)) return std::nullopt;
+    return at;
+}
+
+double CalibrationDesk::reach_mm(const GlassSize& glass) const {
+    const auto tool = tool_mm();
+    return std::max(0.6 * std::hypot(glass.width_mm, glass.height_mm), tool ? tool->norm() : 0.0);
+}
+
+std::string CalibrationDesk::words_on_glass() const {
+    const Calibration& c = *calibration_;
+    const std::size_t now = c.marks().current;
+    const std::string point = std::to_string(now + 1);
+    if (c.measuring())
+        return c.step() == CalibrationStep::wand ? "TILT THE WAND TO ALL SIDES"
+                                                 : "HOLD STILL: POINT " + point;
+    if (c.step() == CalibrationStep::wand) return "WAND: PUT ITS TIP INTO A HOLLOW";
+    if (now >= kMarks) return "ALL POINTS ARE TAKEN";
+    if (c.step() == CalibrationStep::workspace)
+        return c.workspace_by_wand() ? "STYLUS TO WAND: POINT " + point : "STYLUS: TOUCH MARK " + point;
+    return "WAND: TOUCH MARK " + point;
+}
+
+std::vector<PictureVertex> CalibrationDesk::picture(const GlassSize& glass, std::size_t eye) const {
+    const Calibration& c = *calibration_;
+    if (c.step() == CalibrationStep::picture) return frame_picture(glass);
+    if (c.step() >= CalibrationStep::eyes) return test_picture(glass, {eye, tool_mm()});
+    MarksPicture what;
+    what.marks = c.step() == CalibrationStep::screen ||
+                 (c.step() == CalibrationStep::workspace && !c.workspace_by_wand());
+    for (std::size_t i = 0; i < kMarks; ++i)
+        what.look[i] = i == c.marks().current    ? MarkLook::current
+                       : c.marks().mark[i].taken ? MarkLook::taken
+                                                 : MarkLook::open;
+    what.progress = c.progress();
+    what.words = words_on_glass();
+    return marks_picture(glass, what);
+}
+
+}  // namespace tact

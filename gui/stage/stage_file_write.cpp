@@ -1,0 +1,145 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "gui/stage/stage_file.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kRemarksMost = 64, kRemarkMost = 200;
+
+// Nine digits behind the point: nanometres, and less than a pixel of any quaternion.
+std::string number(double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, "%.9f", value);
+    std::string out = text;
+    out.erase(out.find_last_not_of('0') + 1);
+    if (out.back() == '.') out += '0';
+    return out == "-0.0" ? "0.0" : out;
+}
+
+std::string list(const auto& values) {
+    std::string out;
+    for (const double v : values) out += (out.empty() ? "" : ", ") + number(v);
+    return "[" + out + "]";
+}
+
+// One line of a comment: a remark may hold what came from elsewhere.
+std::string remark(const std::string& text) {
+    std::string out = "# ";
+    for (const char c : text.substr(0, kRemarkMost)) out += c >= ' ' && c <= '~' ? c : ' ';
+    return out + "\n";
+}
+
+// Closes and removes what is half written, however the function is left.
+struct Partial {
+    std::string path;
+    int fd = -1;
+    bool kept = false;
+    explicit Partial(std::string at) : path(std::move(at)) {}
+    Partial(const Partial&) = delete;
+    Partial& operator=(const Partial&) = delete;
+    ~Partial() {
+        if (fd >= 0) ::close(fd);
+        if (!kept) ::unlink(path.c_str());
+    }
+};
+
+std::string moment_text() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    return {text, std::strftime(text, sizeof text, "%Y%m%dT%H%M%SZ", &utc)};
+}
+
+// The old file under another name as well, so that there is no moment without a stage file.
+std::filesystem::path keep_old(const std::filesystem::path& path, const auto& fail) {
+    const std::string stem = path.string() + "." + moment_text();
+    for (int i = 0; i < 100; ++i) {
+        const std::string kept = stem + (i == 0 ? "" : "-" + std::to_string(i)) + ".old";
+        if (::link(path.c_str(), kept.c_str()) == 0) return kept;
+        if (errno == ENOENT) return {};
+        if (errno == EEXIST) continue;
+        // A file system without second names.
+        std::error_code error;
+        if (std::filesystem::copy_file(path, kept, error)) return kept;
+        fail("the old file cannot be kept: " + error.message());
+    }
+    fail("there are a hundred old files of this second");
+    return {};
+}
+
+}  // namespace
+
+std::string stage_text(const StageSettings& s, std::span<const std::string> remarks) {
+    std::string out;
+    for (const std::string& each : remarks.first(std::min(remarks.size(), kRemarksMost))) out += remark(each);
+    out += "mode = \"" + std::string(stereo_mode_text(s.mode)) + "\"\n";
+    std::string monitors;
+    for (const int m : s.monitors) monitors += (monitors.empty() ? "" : ", ") + std::to_string(m);
+    out += "monitors = [" + monitors + "]\n";
+    out += "size_px = [" + std::to_string(s.width_px) + ", " + std::to_string(s.height_px) + "]\n";
+    out += std::string("place = \"") + (s.in_workspace ? "workspace" : "orbit") + "\"\n";
+    out += "latency_ms = " + number(1e3 * s.latency_s) + "\n";
+    const auto vector = [&](const char* key, const Vec3& v) {
+        out += std::string(key) + " = " + list(std::span<const double>(v.data(), 3)) + "\n";
+    };
+    if (s.screen_measured) {
+        out += "\n[screen]\n";
+        vector("lower_left_m", s.screen.lower_left_m);
+        vector("lower_right_m", s.screen.lower_right_m);
+        vector("upper_left_m", s.screen.upper_left_m);
+    }
+    out += "\n[eyes]\napart_m = " + number(s.eyes.apart_m) + "\n";
+    out += std::string("swapped = ") + (s.eyes.swapped ? "true" : "false") + "\n";
+    vector("middle_head_m", s.eyes.middle_head_m);
+    vector("rest_screen_m", s.rest_screen_m);
+    out += "\n[workspace]\n";
+    vector("position_screen_m", s.T_screen_world.p_m);
+    out +=
+        "quat_screen_world_xyzw = " + list(std::span<const double>(s.T_screen_world.q.coeffs().data(), 4)) +
+        "\n";
+    out += "\n[wand]\n";
+    vector("tip_sensor_m", s.wand_tip_sensor_m);
+    return out;
+}
+
+std::filesystem::path write_stage_file(const std::filesystem::path& path, const StageSettings& settings,
+                                       std::span<const std::string> remarks) {
+    const std::string text = stage_text(settings, remarks);
+    // What cannot be read again is no stage: said before anything is written.
+    static_cast<void>(read_stage_text(text, path.string()));
+    const auto fail = [&](const std::string& why) {
+        throw StartupError("writing the stage file '" + path.string() + "'", why,
+                           "choose a folder that exists and can be written, with space left (--stage FILE)");
+    };
+    const auto system = [](int error) { return std::string(std::generic_category().message(error)); };
+    Partial partial(path.string() + "." + std::to_string(::getpid()) + ".partial");
+    partial.fd = ::open(partial.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (partial.fd < 0) {
+        const int error = errno;
+        partial.kept = true;  // not ours
+        fail(system(error));
+    }
+    for (std::size_t done = 0; done < text.size();) {
+        const ssize_t n = ::write(partial.fd, text.data() + done, text.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) fail(system(errno));
+        done += static_cast<std::size_t>(n);
+    }
+    if (::fsync(partial.fd) != 0) fail(system(errno));
+    std::filesystem::path old = keep_old(path, fail);
+    if (::rename(partial.path.c_str(), path.c_str()) != 0) fail(system(errno));
+    partial.kept = true;
+    return old;
+}
+
+}  // namespace tact

@@ -1,0 +1,4 @@
+# Fuzz targets of gui: replayed wherever the window is built; the preset that looks for more leaves the window out.
+if(TACT_GUI)
+    tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp USES base gui_render gui_stage)
+endif()

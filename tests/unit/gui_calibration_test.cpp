@@ -1,0 +1,460 @@
+// The calibration of a stage without a window: measuring at rest, the steps, the file, and what is shown.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "gui/stage/calibration.hpp"
+#include "gui/stage/test_picture.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/random.hpp"
+
+namespace tact {
+namespace {
+
+double normal(SeededRandom& random) {
+    return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) *
+           std::cos(2.0 * std::numbers::pi * random.uniform());
+}
+Vec3 noise(SeededRandom& random, double m) {
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return m * Vec3(x, y, z);
+}
+
+// A leaning wall, an arm turned against the tracker, a wand: what the calibration is to find.
+struct Lab {
+    Pose T_screen_glass{Vec3(0.12, -0.08, -0.4), quat_from_rotation_vector(Vec3(-0.3, 0.2, 0.05))};
+    double width_m = 0.8, height_m = 0.45;
+    Pose T_screen_world{Vec3(0.05, -0.2, 0.15), quat_from_rotation_vector(Vec3(0.1, 1.2, -0.2))};
+    Vec3 tip_sensor_m{0.01, -0.02, 0.11};
+
+    [[nodiscard]] Vec3 mark_screen_m(std::size_t i) const {
+        return T_screen_glass *
+               Vec3((kMarkPlaces[i][0] - 0.5) * width_m, (kMarkPlaces[i][1] - 0.5) * height_m, 0.0);
+    }
+    [[nodiscard]] ScreenPlace screen() const {
+        const ScreenPlace flat = ScreenPlace::of_size(width_m, height_m);
+        return {T_screen_glass * flat.lower_left_m, T_screen_glass * flat.lower_right_m,
+                T_screen_glass * flat.upper_left_m};
+    }
+};
+
+// A person before the screen, a picture every 20 ms.
+class Person {
+public:
+    Person(const Lab& lab, Calibration& calibration) : lab_(lab), calibration_(calibration) {}
+
+    double noise_m = 1e-3;
+    bool seen = true, arm = true, button = false;
+
+    void frame(const Vec3& wand_screen_m, const Vec3& stylus_world_m, const Quat& turn = Quat::Identity()) {
+        time_s_ += 0.02;
+        CalibrationInput in;
+        in.now_s = time_s_;
+        in.sensor_good = seen;
+        in.sensor_at_ns = in.hand_at_ns = static_cast<std::int64_t>(1e9 * time_s_);
+        in.T_screen_sensor = {wand_screen_m - turn * lab_.tip_sensor_m + noise(random_, noise_m), turn};
+        in.hand_good = arm;
+        in.stylus_world_m = stylus_world_m + noise(random_, 0.3 * noise_m);
+        in.button = button;
+        calibration_.follow(in);
+    }
+    void touch(const Vec3& wand_screen_m, const Vec3& stylus_world_m = Vec3::Zero(), int frames = 60) {
+        frame(wand_screen_m, stylus_world_m);
+        calibration_.take();
+        for (int i = 0; i < frames && calibration_.measuring(); ++i) frame(wand_screen_m, stylus_world_m);
+    }
+    SeededRandom& random() { return random_; }
+
+private:
+    const Lab& lab_;
+    Calibration& calibration_;
+    SeededRandom random_{7};
+    double time_s_ = 10.0;
+};
+
+StageSettings start_of(const Lab& lab) {
+    StageSettings s;
+    s.wand_tip_sensor_m = lab.tip_sensor_m;
+    return s;
+}
+
+void touch_screen(Person& person, Calibration& calibration, const Lab& lab) {
+    calibration.set_picture_size(lab.width_m, lab.height_m);
+    calibration.go(CalibrationStep::screen);
+    for (std::size_t i = 0; i < kMarks; ++i) {
+        ASSERT_EQ(calibration.marks().current, i);
+        person.touch(lab.mark_screen_m(i));
+        ASSERT_TRUE(calibration.marks().mark[i].taken) << calibration.live() << calibration.said();
+    }
+}
+
+double apart_rad(const Quat& a, const Quat& b) { return rotation_vector_rad(a * b.conjugate()).norm(); }
+
+TEST(RestWindow, TakesTheMeanOfASecondAtRestAndSaysTheSpread) {
+    SeededRandom random(3);
+    RestWindow window(4e-3);
+    window.start(0.0);
+    const Vec3 at(0.1, 0.2, 0.3);
+    double t = 0.0;
+    // Moving at 0.2 m/s: a second of it is never within 4 mm.
+    for (int i = 0; i < 100; ++i, t += 0.02) {
+        window.add(t, i + 1, at + Vec3(0.2 * (t - 2.0), 0.0, 0.0), true);
+        ASSERT_NE(window.state(), RestWindow::State::done);
+    }
+    EXPECT_NE(window.words("the wand").find("hold the wand still"), std::string::npos);
+    int frames = 0;
+    for (; window.state() != RestWindow::State::done && frames < 200; ++frames, t += 0.02)
+        window.add(t, 200 + frames, at + noise(random, 1e-3), true);
+    EXPECT_GE(frames, 45);  // what was moved a second ago is no longer among them
+    EXPECT_LT((window.mean_m() - at).norm(), 1e-3);
+    // A hand that sinks by 4 mm a second has no place, however little it spreads.
+    RestWindow sinking(4e-3);
+    sinking.start(0.0);
+    for (int i = 0; i < 200; ++i) {
+        sinking.add(0.02 * i, i + 1, Vec3(0.0, -4e-3 * 0.02 * i, 0.0), true);
+        ASSERT_NE(sinking.state(), RestWindow::State::done);
+    }
+    EXPECT_NEAR(window.spread_m(), std::sqrt(3.0) * 1e-3, 0.8e-3);
+}
+
+TEST(RestWindow, ASampleThatIsRepeatedOrNoNumberIsNotCountedAndSilenceBeginsAnew) {
+    RestWindow window(2e-3);
+    window.start(0.0);
+    const Vec3 at(0.1, 0.0, 0.0);
+    for (int i = 0; i < 40; ++i) window.add(0.02 * i, 5, at, true);  // one sample, again and again
+    EXPECT_LE(window.samples(), 1U);
+    EXPECT_TRUE(window.silent());
+    EXPECT_NE(window.words("the wand").find("lost"), std::string::npos);
+    double t = 0.8;
+    for (int i = 0; i < 30; ++i, t += 0.02) window.add(t, 100 + i, at, true);
+    EXPECT_EQ(window.state(), RestWindow::State::resting);
+    for (int i = 0; i < 20; ++i, t += 0.02) window.add(t, 200 + i, Vec3(NAN, 0.0, 0.0), true);
+    for (int i = 0; i < 20; ++i, t += 0.02) window.add(t, 300 + i, at, false);
+    EXPECT_EQ(window.samples(), 0U);
+    for (int i = 0; i < 1200; ++i, t += 0.02) window.add(t, 400 + i, at, false);
+    EXPECT_EQ(window.state(), RestWindow::State::failed);
+    EXPECT_NE(window.words("the wand").find("nothing is heard"), std::string::npos);
+}
+
+TEST(Calibration, FindsScreenAndWorkspaceFromNoisyTouchesAndItsResidualIsOfTheNoise) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    touch_screen(person, calibration, lab);
+    EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+    // 1 mm an axis, the mean of some fifty: a seventh of it.
+    EXPECT_LT(calibration.marks().fit.residual_m_rms, 0.6e-3);
+    EXPECT_GT(calibration.marks().fit.residual_m_rms, 0.02e-3);
+    const ScreenPlace truth = lab.screen(), found = calibration.draft().screen;
+    EXPECT_LT((found.lower_left_m - truth.lower_left_m).norm(), 1e-3);
+    EXPECT_LT((found.lower_right_m - truth.lower_right_m).norm(), 1e-3);
+    EXPECT_LT((found.upper_left_m - truth.upper_left_m).norm(), 1e-3);
+    EXPECT_NEAR(calibration.measured_size_m().x(), lab.width_m, 2e-3);
+    EXPECT_NEAR(calibration.measured_size_m().y(), lab.height_m, 2e-3);
+
+    calibration.next();
+    ASSERT_EQ(calibration.step(), CalibrationStep::workspace);
+    for (const bool by_wand : {false, true}) {
+        calibration.set_workspace_by_wand(by_wand);
+        for (std::size_t i = 0; i < kMarks; ++i) {
+            static const std::array<Vec3, kMarks> kPlaces{Vec3(0.0, 0.0, 0.0), Vec3(0.1, 0.0, 0.0),
+                                                          Vec3(0.0, 0.1, 0.0), Vec3(0.1, 0.1, 0.03),
+                                                          Vec3(0.0, 0.0, 0.1), Vec3(0.1, 0.0, 0.1)};
+            const Vec3 at_screen_m =
+                by_wand ? Vec3(lab.T_screen_world * kPlaces.at(i)) : lab.mark_screen_m(i);
+            person.touch(at_screen_m, lab.T_screen_world.inverse() * at_screen_m);
+        }
+        EXPECT_EQ(calibration.marks().taken(), kMarks);
+        EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+        EXPECT_LT((calibration.draft().T_screen_world.p_m - lab.T_screen_world.p_m).norm(), 1.5e-3);
+        EXPECT_LT(apart_rad(calibration.draft().T_screen_world.q, lab.T_screen_world.q), 0.01);
+        EXPECT_TRUE(calibration.draft().in_workspace);
+    }
+}
+
+TEST(Calibration, AMarkThatWasMissedIsNamedAndTakenAgainItIsGreen) {
+    const Lab lab;
+    for (const std::size_t missed : {std::size_t{0}, std::size_t{3}, std::size_t{4}}) {
+        Calibration calibration(start_of(lab));
+        Person person(lab, calibration);
+        calibration.set_picture_size(lab.width_m, lab.height_m);
+        calibration.go(CalibrationStep::screen);
+        const ScreenPlace before = calibration.draft().screen;
+        for (std::size_t i = 0; i < kMarks; ++i)
+            person.touch(lab.mark_screen_m(i) + (i == missed ? Vec3(0.02, -0.02, 0.03) : Vec3(Vec3::Zero())));
+        EXPECT_EQ(calibration.marks().outlier(), missed) << calibration.verdict().words;
+        EXPECT_NE(calibration.verdict().grade, FitGrade::green);
+        EXPECT_NE(calibration.verdict().words.find("Point " + std::to_string(missed + 1)), std::string::npos)
+            << calibration.verdict().words;
+        if (missed < kMarksMin && calibration.verdict().grade == FitGrade::red) {
+            EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
+        }
+        calibration.redo(missed);
+        EXPECT_EQ(calibration.marks().current, missed);
+        person.touch(lab.mark_screen_m(missed));
+        EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+        EXPECT_FALSE(calibration.marks().outlier());
+    }
+}
+
+TEST(Calibration, GoodMarksHaveNoOutlier) {
+    const Lab lab;
+    int named = 0;
+    SeededRandom random(21);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<PointPair> pairs;
+        for (std::size_t i = 0; i < kMarks; ++i)
+            pairs.push_back(
+                {Vec3((kMarkPlaces[i][0] - 0.5) * lab.width_m, (kMarkPlaces[i][1] - 0.5) * lab.height_m, 0.0),
+                 lab.mark_screen_m(i) + noise(random, 0.7e-3)});
+        named += register_points(pairs).outlier ? 1 : 0;
+    }
+    EXPECT_LE(named, 15);
+}
+
+TEST(Calibration, DegeneratePointsAreRefusedInWordsAndChangeNothing) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    const Pose before = calibration.draft().T_screen_world;
+    calibration.go(CalibrationStep::workspace);
+    calibration.set_workspace_by_wand(true);
+    for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.0));
+    EXPECT_EQ(calibration.verdict().grade, FitGrade::red);
+    EXPECT_NE(calibration.verdict().words.find("of each other"), std::string::npos)
+        << calibration.verdict().words;
+    calibration.clear();
+    for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1 * i, 0.0, 0.0), Vec3(0.0, 0.1 * i, 0.0));
+    EXPECT_EQ(calibration.verdict().grade, FitGrade::red);
+    EXPECT_NE(calibration.verdict().words.find("on a line"), std::string::npos);
+    EXPECT_EQ(before.p_m, calibration.draft().T_screen_world.p_m);
+    EXPECT_FALSE(calibration.draft().in_workspace);
+}
+
+TEST(Calibration, AWrongSizeIsToldAndTheMeasuredOneCanBeTaken) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    person.noise_m = 0.3e-3;
+    calibration.set_picture_size(1.02 * lab.width_m, 0.98 * lab.height_m);
+    calibration.go(CalibrationStep::screen);
+    for (std::size_t i = 0; i < kMarks; ++i) person.touch(lab.mark_screen_m(i));
+    EXPECT_NE(calibration.verdict().grade, FitGrade::green);
+    EXPECT_NE(calibration.verdict().words.find("off what was typed"), std::string::npos)
+        << calibration.verdict().words;
+    calibration.use_measured_size();
+    EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+    EXPECT_NEAR(calibration.draft().screen.width_m(), lab.width_m, 1e-3);
+    EXPECT_NEAR(calibration.draft().screen.height_m(), lab.height_m, 1e-3);
+}
+
+TEST(Calibration, AHandThatMovesOrATrackerThatIsLostIsWaitedForAndGivenUpInWords) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    calibration.set_picture_size(lab.width_m, lab.height_m);
+    calibration.go(CalibrationStep::screen);
+    person.seen = false;
+    for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
+    calibration.take();
+    EXPECT_FALSE(calibration.measuring());
+    EXPECT_NE(calibration.said().find("Nothing is heard of the tracker"), std::string::npos);
+    person.seen = true;
+    person.frame(Vec3::Zero(), Vec3::Zero());
+    calibration.take();
+    for (int i = 0; i < 200; ++i) person.frame(Vec3(0.01 * i, 0.0, 0.0), Vec3::Zero());
+    EXPECT_TRUE(calibration.measuring());
+    EXPECT_EQ(calibration.marks().taken(), 0U);
+    person.seen = false;
+    for (int i = 0; i < 50; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
+    EXPECT_NE(calibration.live().find("lost"), std::string::npos);
+    for (int i = 0; i < 1000; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
+    EXPECT_FALSE(calibration.measuring());
+    EXPECT_NE(calibration.said().find("Not taken"), std::string::npos);
+    // A pose that is no number is as good as none.
+    CalibrationInput in;
+    in.now_s = 1e3;
+    in.sensor_good = in.hand_good = true;
+    in.T_screen_sensor.p_m.x() = NAN;
+    in.stylus_world_m.z() = INFINITY;
+    calibration.follow(in);
+    EXPECT_FALSE(calibration.wand_tip_screen_m());
+    EXPECT_FALSE(calibration.stylus_screen_m());
+}
+
+TEST(Calibration, StylusAndWandHaveToRestTogether) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    calibration.go(CalibrationStep::workspace);
+    calibration.set_workspace_by_wand(true);
+    person.frame(Vec3::Zero(), Vec3::Zero());
+    calibration.take();
+    for (int i = 0; i < 100; ++i) person.frame(Vec3::Zero(), Vec3(0.01 * i, 0.0, 0.0));
+    EXPECT_EQ(calibration.marks().taken(), 0U);  // the wand alone rested for long
+    for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3(1.0, 0.0, 0.0));
+    EXPECT_EQ(calibration.marks().taken(), 1U);
+}
+
+TEST(Calibration, TheStylusButtonTakesOncePerPress) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    calibration.set_picture_size(lab.width_m, lab.height_m);
+    calibration.go(CalibrationStep::screen);
+    person.frame(lab.mark_screen_m(0), Vec3::Zero());
+    person.button = true;
+    for (int i = 0; i < 150; ++i) person.frame(lab.mark_screen_m(0), Vec3::Zero());
+    EXPECT_EQ(calibration.marks().taken(), 1U);
+    EXPECT_EQ(calibration.marks().current, 1U);
+    EXPECT_FALSE(calibration.measuring());
+}
+
+TEST(Calibration, TheTipOfTheWandIsFoundByTurningAboutIt) {
+    const Lab lab;
+    Calibration calibration{StageSettings{}};
+    Person person(lab, calibration);
+    calibration.go(CalibrationStep::wand);
+    for (const bool well : {false, true}) {
+        person.frame(Vec3(0.2, 0.1, 0.3), Vec3::Zero());
+        calibration.take();
+        for (int i = 0; i < 500 && calibration.measuring(); ++i)
+            person.frame(Vec3(0.2, 0.1, 0.3), Vec3::Zero(),
+                         quat_from_rotation_vector(
+                             0.4 * Vec3(std::sin(0.05 * i), well ? std::cos(0.07 * i) : 0.0, 0.0)));
+        EXPECT_FALSE(calibration.measuring());
+        if (!well) {  // about one axis the tip may be anywhere along it
+            EXPECT_NE(calibration.said().find("turned too little"), std::string::npos) << calibration.said();
+        } else {
+            EXPECT_LT((calibration.draft().wand_tip_sensor_m - lab.tip_sensor_m).norm(), 1e-3)
+                << calibration.said();
+        }
+    }
+}
+
+TEST(Calibration, WhatIsTypedIsChecked) {
+    Calibration calibration{StageSettings{}};
+    calibration.set_picture_size(NAN, 0.3);
+    EXPECT_FALSE(calibration.draft().screen_measured);
+    EXPECT_NE(calibration.said(), "");
+    calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.3, 0.3, 0)});
+    EXPECT_NE(calibration.said().find("no rectangle"), std::string::npos);
+    calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, INFINITY, 0), Vec3(0, 0.3, 0)});
+    EXPECT_FALSE(calibration.draft().screen_measured);
+    calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.3, 0)});
+    EXPECT_TRUE(calibration.draft().screen_measured);
+    calibration.set_eyes({.apart_m = 0.5});
+    calibration.set_eyes({.apart_m = 0.06, .middle_head_m = Vec3(0, NAN, 0)});
+    EXPECT_EQ(calibration.draft().eyes.apart_m, EyesOfHead{}.apart_m);
+    calibration.set_eyes({.apart_m = 0.06, .swapped = true});
+    EXPECT_TRUE(calibration.draft().eyes.swapped);
+    calibration.set_wand_tip(Vec3(0, 0, 3));
+    EXPECT_EQ(calibration.draft().wand_tip_sensor_m, Vec3(0, 0, 0));
+}
+
+class StageFileWritten : public testing::Test {
+protected:
+    void SetUp() override {
+        char name[] = "/tmp/tact-stage-XXXXXX";
+        folder_ = mkdtemp(name);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::filesystem::path folder_;
+};
+
+void same(const StageSettings& a, const StageSettings& b) {
+    EXPECT_EQ(a.mode, b.mode);
+    EXPECT_EQ(a.monitors, b.monitors);
+    EXPECT_EQ(a.width_px, b.width_px);
+    EXPECT_EQ(a.height_px, b.height_px);
+    EXPECT_EQ(a.in_workspace, b.in_workspace);
+    EXPECT_NEAR(a.latency_s, b.latency_s, 1e-9);
+    EXPECT_EQ(a.screen_measured, b.screen_measured);
+    const auto close = [](const Vec3& x, const Vec3& y) { EXPECT_LT((x - y).norm(), 2e-9); };
+    close(a.screen.lower_left_m, b.screen.lower_left_m);
+    close(a.screen.lower_right_m, b.screen.lower_right_m);
+    close(a.screen.upper_left_m, b.screen.upper_left_m);
+    EXPECT_NEAR(a.eyes.apart_m, b.eyes.apart_m, 1e-9);
+    EXPECT_EQ(a.eyes.swapped, b.eyes.swapped);
+    close(a.eyes.middle_head_m, b.eyes.middle_head_m);
+    close(a.rest_screen_m, b.rest_screen_m);
+    close(a.T_screen_world.p_m, b.T_screen_world.p_m);
+    EXPECT_LT(apart_rad(a.T_screen_world.q, b.T_screen_world.q), 1e-8);
+    close(a.wand_tip_sensor_m, b.wand_tip_sensor_m);
+}
+
+TEST_F(StageFileWritten, IsReadBackAsTheSameStageAndTheOldOneIsKept) {
+    const Lab lab;
+    StageSettings s = start_of(lab);
+    s.mode = StereoMode::two_windows;
+    s.monitors = {1, 2};
+    s.in_workspace = true;
+    s.screen = lab.screen();
+    s.screen_measured = true;
+    s.eyes = {.apart_m = 0.0613, .middle_head_m = Vec3(0.001, -0.042, -0.03), .swapped = true};
+    s.T_screen_world = lab.T_screen_world;
+    const auto path = folder_ / "lab.toml";
+    std::ofstream(path) << "# by hand\nmode = \"anaglyph\"\n";
+    const std::vector<std::string> remarks{"screen: green\nmode = \"off\"", std::string(500, 'x')};
+    const auto old = write_stage_file(path, s, remarks);
+    same(s, read_stage_file(path));
+    ASSERT_TRUE(std::filesystem::exists(old));
+    std::ifstream in(old);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "# by hand\nmode = \"anaglyph\"\n");
+    // Again at once: both old ones stay.
+    const auto second = write_stage_file(path, StageSettings{});
+    EXPECT_NE(second, old);
+    same(StageSettings{}, read_stage_file(path));
+    same(s, read_stage_file(second));
+    EXPECT_TRUE(write_stage_file(folder_ / "new.toml", s).empty());
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        EXPECT_NE(entry.path().extension(), ".partial");
+}
+
+TEST_F(StageFileWritten, WhatCannotBeReadAgainIsNotWrittenAndAFolderThatIsNotThereIsTold) {
+    StageSettings s;
+    const auto path = folder_ / "lab.toml";
+    std::ofstream(path) << "mode = \"anaglyph\"\n";
+    s.eyes.apart_m = NAN;
+    EXPECT_THROW(write_stage_file(path, s), StartupError);
+    EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
+    EXPECT_THROW(write_stage_file(folder_ / "none" / "lab.toml", StageSettings{}), StartupError);
+}
+
+TEST(TestPicture, ItsStepsStandWhereTheySayAndTheToolIsWhereTheHandIs) {
+    const GlassSize glass{530.0, 300.0, 0.28};
+    const auto depths = stair_depths_mm(glass);
+    EXPECT_DOUBLE_EQ(depths[2], 0.0);
+    for (std::size_t i = 1; i < 5; ++i) EXPECT_GT(depths[i], depths[i - 1]);
+    EXPECT_GT(grid_spacing_mm(glass), 10.0);
+    const Eigen::Vector3d tool(40.0, -30.0, 55.0);
+    std::set<float> levels;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double count = 0.0;
+    const auto plain = test_picture(glass, {0, {}}), with_tool = test_picture(glass, {0, tool});
+    for (const PictureVertex& v : plain) levels.insert(v.z_mm);
+    for (const double d : depths) EXPECT_TRUE(levels.count(static_cast<float>(d))) << d;
+    for (const PictureVertex& v : plain) {
+        EXPECT_LE(std::abs(v.x_mm), 266.0F);
+        EXPECT_LE(std::abs(v.y_mm), 151.0F);
+    }
+    ASSERT_GT(with_tool.size(), plain.size());
+    // The cross comes last: first its three bars.
+    for (std::size_t i = plain.size(); i < plain.size() + 6 * 4; ++i, count += 1.0)
+        middle +=
+            Eigen::Vector3d(static_cast<double>(with_tool[i].x_mm), static_cast<double>(with_tool[i].y_mm),
+                            static_cast<double>(with_tool[i].z_mm));
+    EXPECT_LT((middle / count - tool).norm(), 1e-3);
+    // Each eye has a word of its own.
+    const auto right = test_picture(glass, {1, {}});
+    EXPECT_NE(plain.size(), right.size());
+}
+
+}  // namespace
+}  // namespace tact
