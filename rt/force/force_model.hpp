@@ -137,7 +137,8 @@ public:
     [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
     // True: tend() has something to do. Such a model stays until the run ends.
     [[nodiscard]] virtual bool tended() const noexcept { return false; }
-    // Slow half, own thread, tens of hertz or more: prepares what the next steps will need.
+    // Slow half, own thread, tens of hertz or more: prepares what the next steps will need. When its turns come
+    // changes the time of a step and never its force: a replay has none.
     virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
     [[nodiscard]] virtual double tend_s() const noexcept TACT_RT { return 0.0; }

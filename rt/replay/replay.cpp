@@ -187,8 +187,6 @@ void Replay::build_models() {
     std::unique_ptr<ForceModel> model = load_model(scene_, bone, options_, config_);
     std::unique_ptr<ForceModel> second;
     if (about.start.hands > 1) second = load_second(scene_, bone, options_, config_);
-    if (model->tended() && obstacle_.empty())
-        obstacle_ = "its model has a slow half, whose turns are not recorded";
 
     std::vector<HandParts> hands;
     for (std::uint32_t i = 0; i < about.start.hands; ++i) {

@@ -86,6 +86,7 @@ def main():
                   "--hand", "wander", "--start-offset-a", 2)
         s.must("tact-prep", "demo", "touch", "--parts", 60, "-o", s.path("ground.tact"))
         s.session("surface", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1)
+        s.session("surface, adaptive", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1, "--mode", "chr")
         s.must("tact-prep", "drill", "--synthetic", "--voxels", 64, "-o", s.path("bone.tact"))
         s.seconds = max(s.seconds, 8.0)  # the surgeon first has to find the bone
         _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "sucker", "--hand-at-mm", "-6,-1.5")
