@@ -48,11 +48,7 @@ std::unique_ptr<ForceModel> load_model(const SceneFile& scene, SceneBone* bone, 
         settings.radius_m = 1e-3 * o.tool_radius_mm;
         for (std::size_t i = 0; i < kSurfaceModeNames.size(); ++i)
             if (config.surface.mode == kSurfaceModeNames[i]) settings.mode = static_cast<SurfaceMode>(i);
-        const bool tool = has_touch_tool(scene);
-        if (tool && settings.mode != SurfaceMode::off_tree)
-            throw StartupError("touching with a tool that is a mesh", "it is looked up in the tree alone",
-                               "choose mode off-tree");
-        if (tool) return load_tool_model(scene, settings);
+        if (has_touch_tool(scene)) return load_tool_model(scene, settings);
         return load_surface_model(scene, settings);
     }
     if (bone != nullptr) return load_tool_in_bone(scene, *bone, burr_settings(config, o.seed));

@@ -58,14 +58,14 @@ std::vector<Vec3> touch_path_m(const SurfaceMesh& surface, TouchWay way, double 
 
 // The foot of the hand goes along the surface; the hand is below it, along the smoothed normal of the last steps, so
 // that it does not leap at edges.
-std::vector<Vec3> wander_m(const SurfaceMesh& surface, const Wander& how, std::size_t samples) {
+std::vector<WanderPlace> wander(const SurfaceMesh& surface, const Wander& how, std::size_t samples) {
     SeededRandom random(how.seed);
     const auto any =
         static_cast<std::uint32_t>(random.uniform() * static_cast<double>(surface.triangles() - 1));
     SurfacePoint foot = surface.nearest(surface.position_m(surface.corners(any)[0]), 1e9);
     const double step_m = kTouchStepS * how.speed_m_s;
     Vec3 along = random.direction(), normal = surface.normal_at(foot);
-    std::vector<Vec3> path;
+    std::vector<WanderPlace> path;
     path.reserve(samples);
     for (std::size_t i = 0; i < samples; ++i) {
         const double t = kTouchStepS * static_cast<double>(i);
@@ -77,11 +77,17 @@ std::vector<Vec3> wander_m(const SurfaceMesh& surface, const Wander& how, std::s
         if ((foot.point_m - before_m).norm() < 0.3 * step_m) along = -along + 0.5 * normal.cross(along);
         Vec3 wanted = surface.normal_at(foot);
         if (wanted.dot(normal) < 0.0) wanted = -wanted;  // a sheet's other side
-        normal = (normal + step_m / how.depth_m * wanted).normalized();
+        normal = (normal + step_m / how.even_m * wanted).normalized();
         const double since_lift_s = std::fmod(t, kTouchS);
         const double in = std::min(1.0, std::min(since_lift_s, kTouchS - since_lift_s) / kInS);
-        path.push_back(foot.point_m - (how.depth_m * in - 2.0 * how.depth_m * (1.0 - in)) * normal);
+        path.push_back({foot.point_m - (how.depth_m * in - 2.0 * how.depth_m * (1.0 - in)) * normal, normal});
     }
+    return path;
+}
+
+std::vector<Vec3> wander_m(const SurfaceMesh& surface, const Wander& how, std::size_t samples) {
+    std::vector<Vec3> path;
+    for (const WanderPlace& place : wander(surface, how, samples)) path.push_back(place.point_m);
     return path;
 }
 

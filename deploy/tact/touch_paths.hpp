@@ -27,7 +27,12 @@ std::vector<Vec3> touch_path_m(const SurfaceMesh& surface, TouchWay way, double 
 struct Wander {
     double speed_m_s = 0.055, depth_m = 1.5e-3;
     std::uint64_t seed = 1;  // of where it begins and how it turns
+    double even_m = 1.5e-3;  // over so much of the way the normal is a mean
 };
+struct WanderPlace {
+    Vec3 point_m, outward;  // unit: the side that the hand is on
+};
+std::vector<WanderPlace> wander(const SurfaceMesh& surface, const Wander& how, std::size_t samples);
 std::vector<Vec3> wander_m(const SurfaceMesh& surface, const Wander& how, std::size_t samples);
 
 }  // namespace tact::launch

@@ -15,12 +15,6 @@ namespace tact::launch {
 
 using nlohmann::json;
 
-namespace {
-
-constexpr std::size_t kTendEvery = 4;  // steps: 250 times a second, as its thread does
-
-}  // namespace
-
 json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene) {
     const auto log = scene.parent_path() / "bake.json";
     const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);

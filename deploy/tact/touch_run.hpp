@@ -25,6 +25,7 @@ struct TouchStep {
 };
 
 inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand are a jam
+inline constexpr std::size_t kTendEvery = 4;    // steps: 250 times a second, as the thread that tends does
 
 // Baked by tact-prep with the given words before -o, without a picture; what it said as JSON.
 nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);

@@ -23,35 +23,43 @@ TouchTool bake_tool_to_measure(const std::string& name) {
     return read_touch_tool(SceneFile::open(scene));
 }
 
-std::vector<Pose> tool_path(const std::vector<Vec3>& path_model_m, const TouchTool& tool) {
+std::vector<Pose> tool_path(const std::vector<WanderPlace>& places, const TouchTool& tool) {
     double lowest_m = 0.0;
     for (std::size_t i = 0; i < tool.points(); ++i) lowest_m = std::min(lowest_m, tool.at_m(i).y());
     std::vector<Pose> path;
-    path.reserve(path_model_m.size());
-    for (const Vec3& p : path_model_m) {
-        const Vec3 up = p.normalized();
+    path.reserve(places.size());
+    for (const auto& [p, up] : places) {
         const Quat turned(Eigen::AngleAxisd(kTurnRadStep * static_cast<double>(path.size()), Vec3::UnitY()));
         path.push_back({p - lowest_m * up, Quat::FromTwoVectors(Vec3::UnitY(), up) * turned});
     }
     return path;
 }
 
+std::vector<Pose> tool_path(const std::vector<Vec3>& path_model_m, const TouchTool& tool) {
+    std::vector<WanderPlace> places;
+    for (const Vec3& p : path_model_m) places.push_back({p, p.normalized()});
+    return tool_path(places, tool);
+}
+
 std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchTool& tool,
                                         const std::vector<Pose>& path, const SurfaceSettings& settings,
-                                        int passes) {
+                                        int passes, const VertexForest* forest) {
     SceneMeta meta{};
     meta.kind = SceneKind::surface;
     meta.world_per_model = 1.0;
     std::vector<TouchStep> steps(path.size());
     for (int pass = 0; pass < passes && !path.empty(); ++pass) {
-        ToolModel model(meta, surface, tool, settings);
+        ToolModel model(meta, surface, tool, settings, forest);
         ToolState hand;
         hand.T_world_tool = path.front();
         model.reset(hand);
-        for (int i = 0; i < ToolContact::kSeatingMost + ForceFade::kRampSteps; ++i)
+        for (int seated = 0; seated < ForceFade::kRampSteps; seated += model.contact().seating() ? 0 : 1) {
             (void)model.step(hand, {});
+            model.tend(hand, {});
+        }
         for (std::size_t i = 0; i < path.size(); ++i) {
             hand.T_world_tool = path[i];
+            if (i > 0) hand.twist_world.linear_m_s = (path[i].p_m - path[i - 1].p_m) / kTouchStepS;
             const double before_m = model.contact().way_m(path[i], model.contact().proxy()).norm();
             const Instant begin = Monotonic::now();
             const StepResult result = model.step(hand, {});
@@ -60,6 +68,8 @@ std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchT
             const double left_m = model.contact().way_m(path[i], model.contact().proxy()).norm();
             steps[i] = {result.wrench_world.force_n, std::min(us, steps[i].us), settled,
                         !settled && left_m > before_m - 1e-7};
+            steps[i].adaptive = model.regime() == SurfaceRegime::adaptive;
+            if (i % kTendEvery == 0) model.tend(hand, {});
         }
     }
     return steps;

@@ -10,6 +10,7 @@
 #include "deploy/tact/reproduce/summary.hpp"
 #include "deploy/tact/reproduce/surface_direction.hpp"
 #include "deploy/tact/reproduce/surface_rows.hpp"
+#include "deploy/tact/reproduce/surface_touch.hpp"
 #include "deploy/tact/reproduce/text.hpp"
 #include "deploy/tact/touch_paths.hpp"
 #include "ipc/assets/refine_filter.hpp"
@@ -35,74 +36,6 @@ constexpr Size kSizes[] = {
     {"2 M", "sphere", 316, 1'997'120, "", ""},
     {"10 M", "sphere", 707, 9'996'980, "", ""},
 };
-struct Tool {
-    const char* name;
-    double radius_m;
-};
-constexpr Tool kTools[] = {{"point", 0.0}, {"1 mm", 1e-3}, {"3 mm", 3e-3}};
-struct Hand {
-    const char* name;
-    double speed_m_s;
-};
-constexpr Hand kHands[] = {{"slow", 0.055}, {"fast", 0.22}};
-constexpr int kPasses = 3;
-constexpr std::size_t kBruteMost = 600'000;  // triangles: beyond, a step takes tens of milliseconds and more
-
-SurfaceSettings measured(double radius_m) {
-    return {.radius_m = radius_m,
-            .stiffness_n_m = 500.0,
-            .damping_n_s_m = 0.0,
-            .friction = 0.2,
-            .shading = true,
-            .force_n_max = 100.0};
-}
-
-// As many steps as all triangles can be looked at in some seconds, three times each.
-std::size_t brute_steps(std::size_t triangles, std::size_t most) {
-    return std::clamp<std::size_t>(100'000'000 / std::max<std::size_t>(triangles, 1), 10, most);
-}
-
-// All tools, hands and modes on one mesh.
-std::vector<TouchRow> touch(const std::string& name, const std::filesystem::path& scene, bool quick) {
-    const SceneFile file = SceneFile::open(scene);
-    const SurfaceMesh surface = read_surface(file);
-    const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
-    const double world_per_model = read_meta(file).world_per_model;
-    std::vector<TouchRow> rows;
-    for (const Hand& hand : kHands) {
-        const std::vector<Vec3> path = wander_m(
-            surface, {hand.speed_m_s / world_per_model, 1.5e-3 / world_per_model, 7}, quick ? 2000 : 20000);
-        for (const Tool& tool : kTools) {
-            std::vector<TouchStep> by_tree;
-            for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
-                SurfaceSettings settings = measured(tool.radius_m);
-                settings.mode = mode;
-                std::vector<Vec3> way = path;
-                const bool brute = mode == SurfaceMode::off_brute;
-                if (brute && surface.triangles() > kBruteMost) continue;
-                if (brute) way.resize(brute_steps(surface.triangles(), path.size()));
-                const std::vector<TouchStep> steps = touch_along(
-                    surface, way, settings, quick || brute ? 1 : kPasses, world_per_model, &forest);
-                TouchRow row = row_of(steps);
-                if (mode == SurfaceMode::off_tree)
-                    by_tree = steps;
-                else
-                    compare(row, steps, by_tree);
-                row.mesh = name;
-                row.triangles = surface.triangles();
-                row.tool = tool.name;
-                row.hand = hand.name;
-                row.mode = kSurfaceModeNames[static_cast<std::size_t>(mode)];
-                rows.push_back(row);
-                std::printf("  %-24s %9zu  %-6s %-5s %-9s %8.0f Hz, %s\n", name.c_str(), row.triangles,
-                            tool.name, hand.name, row.mode.c_str(), row.rate_hz, quality(row).c_str());
-                std::fflush(stdout);
-            }
-        }
-    }
-    return rows;
-}
-
 // On smooth spheres of the seed's smallest size and of one that is dense.
 constexpr int kSmoothParts[] = {10, 158};
 
@@ -113,9 +46,9 @@ std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool qu
     std::vector<DirectionRow> rows;
     for (const double pace : {1.0, 4.0}) {
         const std::vector<Vec3> path = touch_path_m(surface, TouchWay::slide, pace, quick ? 2000 : 10000);
-        for (const Tool& tool : kTools) {
+        for (const TouchBall& tool : kTouchBalls) {
             for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::chr}) {
-                SurfaceSettings settings = measured(tool.radius_m);
+                SurfaceSettings settings = settings_to_measure(tool.radius_m);
                 settings.mode = mode;
                 settings.friction = 0.0;
                 DirectionRow row = direction_of(touch_along(surface, path, settings, 1, 1.0, &forest), path);
@@ -141,13 +74,13 @@ plot::Plot table_figure(const std::vector<TouchRow>& rows) {
     int colour = 0;
     for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
         const char* const mode_name = kSurfaceModeNames[static_cast<std::size_t>(mode)];
-        for (const Tool* const tool : {&kTools[0], &kTools[2]}) {
+        for (const TouchBall* const tool : {&kTouchBalls[0], &kTouchBalls[2]}) {
             plot::Curve rate{.name = std::string(mode_name) + ", " + tool->name,
                              .colour = colour++,
                              .dashed = mode != SurfaceMode::off_tree},
                 time = rate;
             for (const TouchRow& r : rows) {
-                if (r.mode != mode_name || r.tool != tool->name || r.hand != kHands[0].name) continue;
+                if (r.mode != mode_name || r.tool != tool->name || r.hand != kSlowHand) continue;
                 const double x = std::log10(static_cast<double>(r.triangles));
                 rate.points.push_back({x, std::log10(r.rate_hz)});
                 if (mode != SurfaceMode::off_brute) time.points.push_back({x, r.p999_us});
@@ -192,7 +125,7 @@ std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz,
 std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     std::vector<SummaryRow> table;
     for (const TouchRow& r : rows) {
-        if (r.hand != kHands[0].name || r.tool != kTools[0].name) continue;
+        if (r.hand != kSlowHand || r.tool != kTouchBalls[0].name) continue;
         if (table.empty() || table.back().quantity != r.mesh) {
             SummaryRow row{.figure = "T1", .quantity = r.mesh};
             for (const Size& size : kSizes) {
@@ -236,7 +169,7 @@ int reproduce_surface(const SurfaceExperiment& e) {
     std::vector<TouchRow> rows;
     const auto add = [&](const std::string& name, const std::vector<std::string>& words) {
         static_cast<void>(bake_to_measure(words, scene));
-        const std::vector<TouchRow> more = touch(name, scene, e.quick);
+        const std::vector<TouchRow> more = touch_in_all_modes(name, scene, e.quick);
         rows.insert(rows.end(), more.begin(), more.end());
     };
     for (const auto& mesh : e.meshes)

@@ -3,7 +3,8 @@
 // Meshes   a rough sphere and a rough terrain made here, by number of triangles the seed's 2 K, 8 K, 20 K and 92 K, and
 //          beyond; or those that are given
 // Hand     0.055 m/s, 1.5 mm deep, lifted every two seconds; fast: 0.22 m/s
-// Modes    off-tree, off-brute (to 0.6 million triangles, and fewer steps the more there are) and chr
+// Tools    a point, balls of 1 and 3 mm, and a block of 1000 points, 16 mm long, on the mesh as large as in its file
+// Modes    off-tree, off-brute (to 0.6 million triangles, 0.1 with the block, and fewer steps the more there are), chr
 // Rate     what one core could do: one over the mean time of a step. The time of a step is the least of three
 //          passes, so what other programs of the machine take does not count.
 // Direction  of the force, against the true normal of smooth spheres (surface_direction.hpp)

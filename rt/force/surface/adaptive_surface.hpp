@@ -38,11 +38,9 @@ public:
     // Slow thread, 200 times a second or more.
     RefineStep tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
                     const FilterForm& form = {}) noexcept;
-    // Servo. Whether a ball lies in what was built, the one of before or a newer one; then mesh() is it.
+    // Servo. Whether a ball lies in what was built, the one of before or a newer one; then near() is it.
     [[nodiscard]] bool around(const Vec3& centre_m, double radius_m) noexcept TACT_RT;
-    [[nodiscard]] const SurfaceMesh& mesh() const noexcept TACT_RT { return surface_.same().mesh(); }
-    // Rises with every other mesh().
-    [[nodiscard]] std::uint64_t version() const noexcept TACT_RT { return surface_.same().version(); }
+    [[nodiscard]] const NearSurface& near() const noexcept TACT_RT { return surface_.same(); }
 
     [[nodiscard]] double radius_m(float fidelity) const noexcept TACT_RT;
     // Triangles around the tool at a fidelity, at the mesh's mean density.

@@ -26,6 +26,7 @@ constexpr std::uint32_t kSeatVisits = 4096;  // of the tree: some 100 us
 
 SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& settings)
     : mesh_(mesh),
+      all_(mesh),
       settings_(settings),
       kernel_(&best_look_kernel()),
       leaf_(kLeavesMax),
@@ -43,6 +44,7 @@ void SurfaceContact::use(const SurfaceMesh& mesh) noexcept { mesh_ = mesh; }
 
 // False: there are more than fit.
 bool SurfaceContact::find(double radius_m) noexcept {
+    if (settings_.brute) return all_.near(proxy_m_, radius_m, triangle_, collected_);
     std::size_t leaves = 0;
     if (!mesh_.leaves_near(proxy_m_, radius_m, leaf_, leaves)) return false;
     collected_ = 0;
@@ -50,26 +52,6 @@ bool SurfaceContact::find(double radius_m) noexcept {
         const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]),
                             count = SurfaceNode::leaf_count(leaf_[l]);
         for (std::uint32_t t = first; t < first + count; ++t) triangle_[collected_++] = t;
-    }
-    return true;
-}
-
-bool SurfaceContact::find_in_all(double radius_m) noexcept {
-    LookJob job = mesh_.look_job(proxy_m_);
-    job.limit = static_cast<float>(radius_m * (1.0 + kBoundSlack));
-    TriangleLooks seen;
-    std::array<std::uint32_t, kLooks> number;  // filled before it is read
-    job.triangle = number.data();
-    const auto all = static_cast<std::uint32_t>(mesh_.triangles());
-    collected_ = 0;
-    for (std::uint32_t first = 0; first < all; first += kLooks) {
-        for (std::uint32_t k = 0; k < kLooks; ++k) number[k] = std::min(first + k, all - 1);
-        kernel_->look(job, seen);
-        for (std::uint32_t k = 0; k < kLooks && first + k < all; ++k) {
-            if ((seen.near >> k & 1U) == 0) continue;
-            if (collected_ == triangle_.size()) return false;
-            triangle_[collected_++] = first + k;
-        }
     }
     return true;
 }
@@ -82,7 +64,7 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
     if (collected_m_ >= 0.0 && moved + reach_m <= collected_m_ && !too_many) return true;
     double wide = kCollectedMoves * reach_m;
     for (int attempt = 0; attempt < 12; ++attempt) {
-        if (settings_.brute ? find_in_all(settings_.radius_m + wide) : find(settings_.radius_m + wide)) {
+        if (find(settings_.radius_m + wide)) {
             std::fill_n(bound_m_.begin(), collected_, 0.0F);
             collected_at_m_ = proxy_m_;
             collected_m_ = wide;

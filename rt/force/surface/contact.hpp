@@ -30,6 +30,7 @@
 #include "ipc/assets/triangle_look.hpp"
 #include "ipc/base/knob.hpp"
 #include "ipc/base/pose.hpp"
+#include "rt/force/surface/all_triangles.hpp"
 #include "rt/force/surface/guards.hpp"
 
 namespace tact {
@@ -91,7 +92,6 @@ public:
 private:
     bool collect(double& reach_m) noexcept TACT_RT;
     bool find(double radius_m) noexcept TACT_RT;
-    bool find_in_all(double radius_m) noexcept TACT_RT;
     void look(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
     bool guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept TACT_RT;
     [[nodiscard]] bool rests(const Guards::Solution& solution) const noexcept TACT_RT;
@@ -100,6 +100,7 @@ private:
     [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
+    AllTriangles all_;  // of brute
     ContactSettings settings_;
     Guards guards_;
     const LookKernel* kernel_;

@@ -9,8 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr double kFarM = 1e3;         // no hand is there
-constexpr double kTurnLearns = 0.05;  // of each turn of tend(): half of a tenth of a second
+constexpr double kFarM = 1e3;  // no hand is there
 
 bool tool_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -48,30 +47,12 @@ SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const
                            const VertexForest* forest)
     : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)), full_(mesh) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
-    if (settings.mode != SurfaceMode::chr) return;
-    if (forest == nullptr)
-        throw StartupError("touching a surface in mode chr", "the scene has no forest",
-                           "bake it without --no-forest, or choose mode off-tree");
-    const double radius_m = solver_.settings().radius_m;
-    adaptive_ = std::make_unique<AdaptiveSurface>(
-        mesh, *forest,
-        AdaptiveSettings{.least_m = radius_m + kLeastM / meta.world_per_model,
-                         .most_m = radius_m + kMostM / meta.world_per_model});
+    if (settings.mode == SurfaceMode::chr)
+        tended_ = tended_surface(mesh, forest, solver_.settings().radius_m, meta.world_per_model);
 }
 
 void SurfaceModel::tend(const ToolState& predicted, const Budget&) noexcept {
-    if (adaptive_ == nullptr) return;
-    const Whereabouts& now = whereabouts_.newest();
-    if (!now.there) return;
-    const Instant begin = Monotonic::now();
-    // The proxy goes where the tool goes, or less far.
-    refined_ = adaptive_->tend(now.proxy_m, predicted.twist_world.linear_m_s / meta_.world_per_model,
-                               now.fidelity, now.form);
-    const double took_s = to_s(Monotonic::now() - begin);
-    turn_s_ += (turns_ == 0 ? 1.0 : kTurnLearns) * (took_s - turn_s_);
-    if (turns_++ % kDeviationEvery == 0) deviation_m_ = adaptive_->deviation_m();
-    tended_news_.back() = {refined_, deviation_m_, now.fidelity, turn_s_};
-    tended_news_.publish();
+    if (tended_ != nullptr) tended_->tend(predicted.twist_world.linear_m_s / meta_.world_per_model);
 }
 
 void SurfaceModel::use_full_surface() noexcept {
@@ -82,18 +63,17 @@ void SurfaceModel::use_full_surface() noexcept {
 
 // Before a step: what holds all that it may look at.
 void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
-    if (adaptive_ == nullptr) return;
-    if (adaptive_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
-        if (used_ != adaptive_->version()) solver_.use(adaptive_->mesh());
-        used_ = adaptive_->version();
+    if (tended_ == nullptr) return;
+    if (tended_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
+        const NearSurface& near = tended_->near();
+        if (used_ != near.version()) solver_.use(near.mesh());
+        used_ = near.version();
         regime_ = SurfaceRegime::adaptive;
     } else {
         use_full_surface();
         regime_ = SurfaceRegime::tree;
     }
-    whereabouts_.back() = {solver_.proxy_m(), fidelity, form_, true};
-    whereabouts_.publish();
-    tended_ = tended_news_.newest();
+    tended_->is_at(solver_.proxy_m(), fidelity);
 }
 
 KnobSpec SurfaceModel::knob() const noexcept {
@@ -101,8 +81,8 @@ KnobSpec SurfaceModel::knob() const noexcept {
 }
 
 std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
-    return adaptive_ == nullptr ? moves(fidelity)
-                                : static_cast<std::uint32_t>(adaptive_->predicted_triangles(fidelity));
+    return tended_ == nullptr ? moves(fidelity)
+                              : static_cast<std::uint32_t>(tended_->surface().predicted_triangles(fidelity));
 }
 
 std::uint32_t SurfaceModel::moves(float fidelity) noexcept {
@@ -131,30 +111,6 @@ ModelBodies SurfaceModel::bodies() const noexcept {
     return list;
 }
 
-bool SurfaceModel::order(const ModelOrder& order) noexcept {
-    if (order.kind != ModelOrder::Kind::filter || adaptive_ == nullptr) return false;
-    const FilterForm form{static_cast<FilterForm::Shape>(order.shape), order.width, order.error_far};
-    if (!form.possible()) return false;
-    form_ = form;
-    return true;
-}
-
-ModelDetail SurfaceModel::detail() const noexcept {
-    if (adaptive_ == nullptr) return {};
-    return {.there = true,
-            .full = tended_.step.full_detail,
-            .radius_m = adaptive_->radius_m(tended_.fidelity),
-            .shape = static_cast<std::uint8_t>(form_.shape),
-            .width = form_.width,
-            .error_far = form_.error_far,
-            .deviation_m = static_cast<double>(tended_.deviation_m),
-            .vertices = tended_.step.vertices,
-            .triangles = tended_.step.triangles,
-            .near_triangles = items(tended_.fidelity),
-            .turn_s = tended_.turn_s,
-            .turn_predicted_s = adaptive_->predicted_s(tended_.fidelity)};
-}
-
 ModelTouch SurfaceModel::touch() const noexcept {
     ModelTouch t;
     t.there = true;
@@ -163,7 +119,7 @@ ModelTouch SurfaceModel::touch() const noexcept {
     t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
     t.state = static_cast<std::uint8_t>(contact_.state);
     t.regime = static_cast<std::uint8_t>(regime_);
-    t.detail = detail();
+    if (tended_ != nullptr) t.detail = tended_->detail();
     t.planes = contact_.planes;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         t.normal[i] = contact_.plane[i].normal;

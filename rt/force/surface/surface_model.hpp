@@ -33,9 +33,9 @@
 #include "ipc/assets/triple_buffer.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
-#include "rt/force/surface/adaptive_surface.hpp"
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/shading.hpp"
+#include "rt/force/surface/tended_surface.hpp"
 
 namespace tact {
 
@@ -67,10 +67,6 @@ public:
     static constexpr double kGlideN = 0.05;  // what a step may change the force by, besides what the hand did
     static constexpr double kLostLimits = 2.0;
     static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
-    static constexpr std::uint32_t kDeviationEvery = 25;  // turns of tend(): it looks at all that is active
-
-    static constexpr double kLeastM = 1e-3,
-                            kMostM = 4e-3;  // of full detail beyond the tool, in the hand's world
 
     // The bytes behind mesh and forest must outlive the model. The forest is there for mode chr alone.
     SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
@@ -93,16 +89,22 @@ public:
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
     // The filter's form, in mode chr.
-    bool order(const ModelOrder& order) noexcept TACT_RT override;
-    [[nodiscard]] double tend_s() const noexcept TACT_RT override { return tended_.turn_s; }
-    [[nodiscard]] bool tended() const noexcept override { return adaptive_ != nullptr; }
+    bool order(const ModelOrder& order) noexcept TACT_RT override {
+        return tended_ != nullptr && tended_->order(order);
+    }
+    [[nodiscard]] double tend_s() const noexcept TACT_RT override {
+        return tended_ == nullptr ? 0.0 : tended_->turn_s();
+    }
+    [[nodiscard]] bool tended() const noexcept override { return tended_ != nullptr; }
     void tend(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
-    [[nodiscard]] const RefineStep& refined() const { return refined_; }  // by the last tend(); on its thread
-    [[nodiscard]] const AdaptiveSurface* adaptive() const { return adaptive_.get(); }
+    // Of mode chr.
+    [[nodiscard]] const RefineStep& refined() const { return tended_->refined(); }
+    [[nodiscard]] const AdaptiveSurface* adaptive() const {
+        return tended_ == nullptr ? nullptr : &tended_->surface();
+    }
 
 private:
-    [[nodiscard]] ModelDetail detail() const noexcept TACT_RT;
     // gone_m: by the tool since the last step, in the model.
     [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m,
                               double gone_m) noexcept TACT_RT;
@@ -119,31 +121,10 @@ private:
     bool seated_ = false;   // the proxy is where a tool was
     std::uint64_t grips_ = 0;
     std::uint64_t lagging_ = 0, released_ = 0;
-
-    struct Whereabouts {  // of the proxy, for tend()
-        Vec3 proxy_m = Vec3::Zero();
-        float fidelity = 1.0F;
-        FilterForm form;
-        bool there = false;
-    };
-    struct Tended {  // by tend(), for those who look on
-        RefineStep step;
-        float deviation_m = 0.0F;
-        float fidelity = 1.0F;
-        double turn_s = 0.0;
-    };
     SurfaceMesh full_;
-    std::unique_ptr<AdaptiveSurface> adaptive_;
-    TripleBuffer<Whereabouts> whereabouts_;
+    std::unique_ptr<TendedSurface> tended_;
     SurfaceRegime regime_ = SurfaceRegime::tree;
     std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
-    RefineStep refined_;      // of the thread that tends, as the next four
-    double turn_s_ = 0.0;
-    float deviation_m_ = 0.0F;
-    std::uint32_t turns_ = 0;
-    TripleBuffer<Tended> tended_news_;
-    Tended tended_;    // of the servo
-    FilterForm form_;  // as ordered
 };
 
 // Fails by StartupError where the scene is no surface or a setting is out of range. The scene must outlive the

@@ -21,9 +21,9 @@ Vec3 linear(const Vec6& y) { return y.head<3>(); }
 ToolContact::ToolContact(const SurfaceMesh& mesh, const TouchTool& tool, const ToolContactSettings& settings)
     : mesh_(mesh),
       settings_(settings),
-      points_(mesh, tool, settings.ball_m),
+      points_(mesh, tool, settings.ball_m, settings.brute),
       kernel_(&best_look_kernel()),
-      lists_(mesh, points_.size()),
+      lists_(mesh, points_.size(), settings.brute),
       beyond_(kBeyondAtOnce),
       // An arc of angle a leaves its tangent by a^2 / 2 of its radius.
       turn_max_rad_(std::min(std::sqrt(2.0 * settings.margin_m / points_.reach_m()), 0.2)) {}
@@ -176,8 +176,9 @@ ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTo
 }
 
 ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                              const Deadline& deadline) noexcept {
+                              const Deadline& deadline, const NearSurface* near) noexcept {
     ToolTouch touch;
+    lists_.begin_step(near);
     const Pose to{goal.p_m, goal.q.normalized()};
     const double glide = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.glide_m;
     const double allowed = kGoneSteps * way_m(goal_, to).norm() + glide;
@@ -233,6 +234,7 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
     }
     if (touch.state == ContactState::settled) seating_ = 0;
     last_move_m_ = gone;  // the next step's first one
+    touch.adaptive = near != nullptr && !lists_.elsewhere();
     touch.T_model_proxy = proxy_;
     return touch;
 }

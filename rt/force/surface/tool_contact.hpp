@@ -32,6 +32,8 @@ struct ToolContactSettings {
     double margin_m = 0.0;  // > 0, less than the ball's radius
     double friction = 0.0;
     double glide_m = 0.0;  // > 0
+    bool brute =
+        false;  // every triangle is looked at in every step, without the tree; not to seat or wake points
 };
 
 // A place of the tool that holds it.
@@ -49,6 +51,7 @@ struct ToolTouch {
     std::uint32_t moves = 0, looked = 0, asked = 0;  // points looked at, and queries of the tree besides
     ContactState state = ContactState::settled;
     bool late = false;
+    bool adaptive = false;  // all triangles were found on the adaptive surface
 };
 
 class ToolContact {
@@ -74,8 +77,9 @@ public:
     static constexpr int kSeatingMost = 400;
     void seat(const Pose& goal) noexcept TACT_RT;
     [[nodiscard]] bool seating() const noexcept TACT_RT { return seating_ > 0; }
+    // near: of an adaptive surface, until this returns; may be null.
     ToolTouch follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                     const Deadline& deadline = {}) noexcept TACT_RT;
+                     const Deadline& deadline = {}, const NearSurface* near = nullptr) noexcept TACT_RT;
 
 private:
     struct Move {

@@ -3,6 +3,8 @@
 //
 // List      the triangles of all leaves whose boxes reach into a ball about where the point was; good as long as
 //           the ball that is asked for lies inside that one
+// Found     in the tree over the full mesh; of an adaptive surface's, where that holds the ball: the same leaves; or
+//           among all triangles (brute), anew in each step
 // Room      kLists lists of kEach triangles; the one not used for the longest goes. Where triangles are denser,
 //           they are found each time.
 // Unit      metres of the model.  Thread  made anywhere (it allocates); then servo, TACT_RT.
@@ -15,6 +17,8 @@
 #include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "rt/force/surface/all_triangles.hpp"
+#include "rt/force/surface/near_surface.hpp"
 
 namespace tact {
 
@@ -29,13 +33,25 @@ public:
         double radius_m = 0.0;  // every triangle nearer than this is there; 0: they are too many
     };
 
-    ToolLists(const SurfaceMesh& mesh, std::uint32_t points)
+    ToolLists(const SurfaceMesh& mesh, std::uint32_t points, bool brute)
         : mesh_(mesh),
+          all_(mesh),
+          brute_(brute),
           list_of_(points, kLists),
           list_(kLists),
           triangle_(kLists * kEach),
           leaf_(kLeavesMost),
           found_(4 * kLeavesMost + kLooks) {}
+
+    // near: of an adaptive surface, valid until the step's end; may be null.
+    void begin_step(const NearSurface* near) noexcept TACT_RT {
+        adaptive_ = near;
+        elsewhere_ = false;
+        if (!brute_) return;
+        for (List& l : list_) l.radius_m = -1.0;
+    }
+    // Since then a ball was asked for that the adaptive surface does not hold.
+    [[nodiscard]] bool elsewhere() const noexcept TACT_RT { return elsewhere_; }
 
     [[nodiscard]] Near near(std::uint32_t point, const Vec3& place_m, double radius_m) noexcept TACT_RT {
         ++clock_;
@@ -49,9 +65,8 @@ public:
             }
         }
         for (const double wider : {kWider, 1.0}) {
-            std::size_t leaves = 0;
-            if (!mesh_.leaves_near(place_m, wider * radius_m, leaf_, leaves)) continue;
-            const std::size_t count = spell_out(leaves);
+            std::size_t count = 0;
+            if (!find(place_m, wider * radius_m, count)) continue;
             if (count > kEach && wider > 1.0) continue;
             if (count > kEach) return {found_.data(), count, radius_m};
             return keep(point, place_m, wider * radius_m, count);
@@ -69,13 +84,27 @@ private:
     };
     static constexpr double kWider = 3.0;
 
+    // False: there are more than fit.
+    bool find(const Vec3& place_m, double radius_m, std::size_t& count) noexcept TACT_RT {
+        if (brute_) {
+            if (!all_.near(place_m, radius_m, std::span(found_).first(4 * kLeavesMost), count)) return false;
+        } else {
+            const bool in_adaptive = adaptive_ != nullptr && adaptive_->holds(place_m, radius_m);
+            elsewhere_ |= adaptive_ != nullptr && !in_adaptive;
+            std::size_t leaves = 0;
+            if (!(in_adaptive ? adaptive_->mesh() : mesh_).leaves_near(place_m, radius_m, leaf_, leaves))
+                return false;
+            count = spell_out(leaves);
+        }
+        for (std::size_t i = count; i % kLooks != 0; ++i) found_[i] = found_[0];
+        return true;
+    }
     std::size_t spell_out(std::size_t leaves) noexcept TACT_RT {
         std::size_t count = 0;
         for (std::size_t l = 0; l < leaves; ++l) {
             const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
             for (std::uint32_t k = 0; k < SurfaceNode::leaf_count(leaf_[l]); ++k) found_[count++] = first + k;
         }
-        for (std::size_t i = count; i % kLooks != 0; ++i) found_[i] = found_[0];
         return count;
     }
     Near keep(std::uint32_t point, const Vec3& place_m, double radius_m, std::size_t count) noexcept TACT_RT {
@@ -93,7 +122,11 @@ private:
         return {&triangle_[at * kEach], count, radius_m};
     }
 
-    SurfaceMesh mesh_;                  // a view
+    SurfaceMesh mesh_;  // a view
+    AllTriangles all_;
+    bool brute_;
+    const NearSurface* adaptive_ = nullptr;
+    bool elsewhere_ = false;
     std::vector<std::size_t> list_of_;  // of each point; kLists: none
     std::vector<List> list_;
     std::vector<std::uint32_t> triangle_, leaf_, found_;

@@ -23,18 +23,36 @@ ToolContactSettings tool_contact_settings(const SceneMeta& meta, const TouchTool
     check_surface_settings(s);
     const double ball = s.radius_m > 0.0 ? s.radius_m / meta.world_per_model : tool.ball_m;
     const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
-    return {ball, kBallMargin * ball, s.friction, glide / meta.world_per_model};
+    return {ball, kBallMargin * ball, s.friction, glide / meta.world_per_model,
+            s.mode == SurfaceMode::off_brute};
 }
 
 }  // namespace
 
 ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
-                     const SurfaceSettings& settings)
+                     const SurfaceSettings& settings, const VertexForest* forest)
     : meta_(meta),
       settings_(settings),
       solver_(mesh, tool, tool_contact_settings(meta, tool, settings)),
       gyration_world_m_(solver_.points().gyration_m() * meta.world_per_model),
-      torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {}
+      torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {
+    if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
+    if (settings.mode == SurfaceMode::chr)
+        tended_ = tended_surface(mesh, forest, solver_.points().reach_m(), meta.world_per_model);
+}
+
+void ToolModel::tend(const ToolState& predicted, const Budget&) noexcept {
+    if (tended_ != nullptr) tended_->tend(predicted.twist_world.linear_m_s / meta_.world_per_model);
+}
+
+// Before a step: the one that holds the whole tool, however it turns; null: there is none.
+const NearSurface* ToolModel::choose_surface(float fidelity) noexcept {
+    if (tended_ == nullptr) return nullptr;
+    const Vec3& proxy_m = solver_.proxy().p_m;
+    const bool around = tended_->around(proxy_m, solver_.points().reach_m());
+    tended_->is_at(proxy_m, fidelity);
+    return around ? &tended_->near() : nullptr;
+}
 
 KnobSpec ToolModel::knob() const noexcept {
     return {.path = SurfaceModel::kKnobPath,
@@ -92,6 +110,8 @@ ModelTouch ToolModel::touch() const noexcept {
     t.probe_m = solver_.goal().p_m;
     t.proxy_m = solver_.proxy().p_m;
     t.state = static_cast<std::uint8_t>(touch_.state);
+    t.regime = static_cast<std::uint8_t>(regime_);
+    if (tended_ != nullptr) t.detail = tended_->detail();
     double below_m = 1e300;  // the places go by their weights
     for (t.planes = 0; t.planes < ModelTouch::kPlanesMax; ++t.planes) {
         const TouchedPlace* next = nullptr;
@@ -167,7 +187,9 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 fade_.rise();
             const bool hurried = budget.deadline.passed();
             const double gone_m = solver_.way_m(solver_.goal(), to).norm();
-            touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline);
+            touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline,
+                                    choose_surface(budget.fidelity));
+            if (tended_ != nullptr) regime_ = touch_.adaptive ? SurfaceRegime::adaptive : SurfaceRegime::tree;
             const bool on_time = !hurried && !touch_.late;
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;
             if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
@@ -200,7 +222,12 @@ std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const Surface
     if (meta.kind != SceneKind::surface || !has_touch_tool(scene))
         throw StartupError("loading '" + scene.name() + "'", "it is not a surface with a tool",
                            "bake one with tact-prep touch MESH --tool TOOL -o SCENE");
-    return std::make_unique<ToolModel>(meta, read_surface(scene), read_touch_tool(scene), settings);
+    const SurfaceMesh mesh = read_surface(scene);
+    const TouchTool tool = read_touch_tool(scene);
+    if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0)
+        return std::make_unique<ToolModel>(meta, mesh, tool, settings);
+    const VertexForest forest = read_forest(scene, mesh.all_positions_m(), mesh.all_corners());
+    return std::make_unique<ToolModel>(meta, mesh, tool, settings, &forest);
 }
 
 }  // namespace tact

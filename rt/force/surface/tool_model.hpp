@@ -34,10 +34,10 @@ public:
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
     static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 16;
 
-    // settings.radius_m: of the points' balls in the hand's world; 0: as the tool says. The bytes behind `mesh`
-    // must outlive the model.
+    // settings.radius_m: of the points' balls in the hand's world; 0: as the tool says. The bytes behind mesh and
+    // forest must outlive the model. The forest is there for mode chr alone.
     ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
-              const SurfaceSettings& settings);
+              const SurfaceSettings& settings, const VertexForest* forest = nullptr);
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
@@ -48,6 +48,17 @@ public:
     // About the hand's point; the three places that push most.
     [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
 
+    // The filter's form, in mode chr.
+    bool order(const ModelOrder& order) noexcept TACT_RT override {
+        return tended_ != nullptr && tended_->order(order);
+    }
+    [[nodiscard]] double tend_s() const noexcept TACT_RT override {
+        return tended_ == nullptr ? 0.0 : tended_->turn_s();
+    }
+    [[nodiscard]] bool tended() const noexcept override { return tended_ != nullptr; }
+    void tend(const ToolState& predicted, const Budget& budget) noexcept override;
+    [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
+
     // Cost and error of a level before it is computed.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
@@ -57,6 +68,7 @@ public:
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
 private:
+    [[nodiscard]] const NearSurface* choose_surface(float fidelity) noexcept TACT_RT;
     [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
     [[nodiscard]] Vec6 shaded_m() const noexcept TACT_RT;
     [[nodiscard]] Wrench felt(const ToolState& tool, const Vec6& way_m) const noexcept TACT_RT;
@@ -64,6 +76,8 @@ private:
     SceneMeta meta_;
     SurfaceSettings settings_;
     ToolContact solver_;
+    std::unique_ptr<TendedSurface> tended_;
+    SurfaceRegime regime_ = SurfaceRegime::tree;
     ToolTouch touch_;
     PacedTurn<Vec6> turn_;  // by shading
     ForceFade fade_;

@@ -22,8 +22,10 @@ std::size_t filled_up(std::uint32_t count) { return (std::size_t{count} + 3) / 4
 
 }  // namespace
 
-ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ball_m)
+ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ball_m, bool brute)
     : mesh_(mesh),
+      all_(mesh),
+      brute_(brute),
       ball_m_(ball_m),
       count_(static_cast<std::uint32_t>(tool.points())),
       parent_(tool.parent),
@@ -324,7 +326,9 @@ double ToolPoints::share_in_room(const Vec3& v_m, const Vec3& w_rad) const noexc
 }
 
 void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
-    const double distance = mesh_.clearance_m(place_m(i), kAtMost * wanted_m + ball_m_, kVisits);
+    const double at_most = kAtMost * wanted_m + ball_m_;
+    const double distance =
+        brute_ ? all_.clearance_m(place_m(i), at_most) : mesh_.clearance_m(place_m(i), at_most, kVisits);
     // Boxes tell less than triangles did where those are large.
     if (distance - ball_m_ <= room_m(i)) return;
     put(i, distance, SurfacePoint::kNone);

@@ -21,6 +21,7 @@
 #include "ipc/assets/touch_tool.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "rt/force/surface/all_triangles.hpp"
 
 namespace tact {
 
@@ -29,7 +30,8 @@ public:
     static constexpr std::uint32_t kVisits = 192;  // of the tree, for one query: some microseconds
 
     // The bytes behind `mesh` must outlive the object. ball_m: of each point.
-    ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ball_m);
+    // brute: ask() looks at all triangles.
+    ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ball_m, bool brute = false);
 
     [[nodiscard]] std::uint32_t size() const noexcept TACT_RT { return count_; }
     [[nodiscard]] double gyration_m() const noexcept TACT_RT { return gyration_m_; }
@@ -96,6 +98,8 @@ private:
     [[nodiscard]] double bound_now_m(std::uint32_t i) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
+    AllTriangles all_;
+    bool brute_;
     double ball_m_, gyration_m_ = 0.0, reach_m_ = 0.0;
     std::uint32_t count_;
     std::vector<std::uint32_t> parent_, hint_;

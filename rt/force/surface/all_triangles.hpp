@@ -1,0 +1,28 @@
+// Every triangle of a surface, one after the other: how mode off-brute finds them, for comparison with the tree.
+//
+// Thread    any, TACT_RT.  Unit  metres of the model.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "ipc/assets/surface_mesh.hpp"
+
+namespace tact {
+
+class AllTriangles {
+public:
+    explicit AllTriangles(const SurfaceMesh& mesh) : mesh_(mesh), kernel_(&best_look_kernel()) {}
+
+    // Those nearer than this, in their order. False: they are more than `out` takes.
+    bool near(const Vec3& place_m, double radius_m, std::span<std::uint32_t> out,
+              std::size_t& count) const noexcept TACT_RT;
+    // Nothing is nearer than this, which is at the most at_most_m.
+    [[nodiscard]] double clearance_m(const Vec3& place_m, double at_most_m) const noexcept TACT_RT;
+
+private:
+    SurfaceMesh mesh_;  // a view
+    const LookKernel* kernel_;
+};
+
+}  // namespace tact

@@ -1,0 +1,137 @@
+// Three ways to look a surface up for a tool that is a mesh: the same wrench, and the adaptive one is there where the
+// tool is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/base/error.hpp"
+#include "prep/surface/bake_surface.hpp"
+#include "prep/synthetic/made_tool.hpp"
+#include "prep/synthetic/rough_sphere.hpp"
+#include "rt/force/surface/tool_model.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kStepS = 1e-3;
+constexpr int kTendEvery = 4, kSteps = 1500;  // cycles
+constexpr SectionTag kForest{'F', 'R', 'S', 'T'};
+
+struct Scene {
+    std::vector<std::byte> bytes;
+    std::unique_ptr<SceneFile> file;
+    SceneMeta meta{};
+    explicit Scene(bool forest) {
+        SceneWriter out;
+        SurfaceInput input;
+        input.mesh = rough_sphere(30);
+        input.tool = made_tool("block");
+        input.tool_sampling.points = 300;
+        input.picture = false;
+        input.forest = forest;
+        meta = bake_surface(std::move(input), out).meta;
+        bytes = out.to_bytes();
+        file = std::make_unique<SceneFile>(SceneFile::from_bytes(bytes, "sphere.tact"));
+    }
+};
+const Scene& scene() {
+    static const Scene made(true);
+    return made;
+}
+
+struct Felt {
+    std::vector<Wrench> wrench;
+    double touching = 0.0, adaptive = 0.0;  // shares of the cycles
+};
+
+// Around the sphere and up and down, and about its own axis; pressed in after a quarter of a second.
+Felt feel(SurfaceMode mode, double speed_m_s, bool tended = true, int steps = kSteps, double friction = 0.1) {
+    const auto model = load_tool_model(
+        *scene().file, {.damping_n_s_m = 0.0, .friction = friction, .shading = true, .mode = mode});
+    const double ball_m = 0.05 * scene().meta.world_per_model;
+    const Vec3 middle = scene().meta.to_world(Vec3::Zero());
+    Felt felt;
+    Vec3 before = middle;
+    for (int i = 0; i < steps; ++i) {
+        const double t = kStepS * i, angle = speed_m_s * t / ball_m, up = 0.4 * std::sin(2.0 * t);
+        const Vec3 out(std::cos(up) * std::sin(angle), std::sin(up), std::cos(up) * std::cos(angle));
+        ToolState tool;
+        tool.T_world_tool.p_m = middle + (ball_m + std::max(0.0025, 0.03 - 0.1 * t)) * out;
+        tool.T_world_tool.q =
+            Quat::FromTwoVectors(Vec3::UnitY(), out) * Quat(Eigen::AngleAxisd(0.5 * t, Vec3::UnitY()));
+        if (i > 0) tool.twist_world.linear_m_s = (tool.T_world_tool.p_m - before) / kStepS;
+        before = tool.T_world_tool.p_m;
+        if (i == 0) model->reset(tool);
+        if (tended && i % kTendEvery == 0) model->tend(tool, {});
+        felt.wrench.push_back(model->step(tool, {}).wrench_world);
+        felt.touching += (felt.wrench.back().force_n.norm() > 0.1 ? 1.0 : 0.0) / steps;
+        felt.adaptive += (model->regime() == SurfaceRegime::adaptive ? 1.0 : 0.0) / steps;
+    }
+    return felt;
+}
+
+std::size_t different(const Felt& a, const Felt& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < std::min(a.wrench.size(), b.wrench.size()); ++i) {
+        const bool same =
+            a.wrench[i].force_n == b.wrench[i].force_n && a.wrench[i].torque_n_m == b.wrench[i].torque_n_m;
+        count += same ? 0 : 1;
+    }
+    return count;
+}
+
+TEST(ToolModes, TheAdaptiveSurfaceGivesTheWrenchOfTheFullMeshToTheBit) {
+    for (const double speed_m_s : {0.055, 0.22}) {
+        const Felt chr = feel(SurfaceMode::chr, speed_m_s), tree = feel(SurfaceMode::off_tree, speed_m_s);
+        EXPECT_EQ(different(chr, tree), 0U);
+        EXPECT_GT(tree.touching, 0.7);
+        EXPECT_GT(chr.adaptive, 0.99);
+        EXPECT_EQ(tree.adaptive, 0.0);
+    }
+}
+
+TEST(ToolModes, WithoutTendingTheTreeAnswersAndSaysSo) {
+    const Felt chr = feel(SurfaceMode::chr, 0.055, false);
+    EXPECT_EQ(chr.adaptive, 0.0);
+    EXPECT_EQ(different(chr, feel(SurfaceMode::off_tree, 0.055)), 0U);
+}
+
+// With friction the way of the proxy counts too, and that depends on which guards happen to be known.
+TEST(ToolModes, AllTrianglesGiveTheForceOfTheTree) {
+    constexpr int kFew = 600;
+    const Felt brute = feel(SurfaceMode::off_brute, 0.055, false, kFew, 0.0),
+               tree = feel(SurfaceMode::off_tree, 0.055, false, kFew, 0.0);
+    double worst_n = 0.0;
+    for (std::size_t i = 0; i < brute.wrench.size(); ++i)
+        worst_n = std::max(worst_n, (brute.wrench[i].force_n - tree.wrench[i].force_n).norm());
+    EXPECT_GT(brute.touching, 0.3);
+    EXPECT_LT(worst_n, 1e-9);
+}
+
+TEST(ToolModes, ChrWithoutAForestIsRefused) {
+    const Scene bare(false);
+    ASSERT_EQ(bare.file->count(kForest), 0U);
+    EXPECT_THROW((void)load_tool_model(*bare.file, {.mode = SurfaceMode::chr}), StartupError);
+}
+
+TEST(ToolModes, WhatIsTendedIsShown) {
+    const auto model = load_tool_model(*scene().file, {.mode = SurfaceMode::chr});
+    ToolState tool;
+    tool.T_world_tool.p_m = scene().meta.to_world(Vec3(0.0, 0.055, 0.0));
+    model->reset(tool);
+    for (int i = 0; i < 40; ++i) {
+        model->tend(tool, {});
+        (void)model->step(tool, {});
+    }
+    const ModelDetail detail = model->touch().detail;
+    EXPECT_TRUE(model->tended());
+    EXPECT_TRUE(detail.there);
+    EXPECT_TRUE(detail.full);
+    // The whole tool lies in it, however it turns.
+    EXPECT_GT(detail.radius_m, model->contact().points().reach_m());
+    EXPECT_GT(model->tend_s(), 0.0);
+}
+
+}  // namespace
+}  // namespace tact
