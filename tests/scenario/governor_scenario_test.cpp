@@ -143,6 +143,36 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
     EXPECT_TRUE(force_fell);
 }
 
+// --- a slow half that does not get through ---
+
+TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then_what_it_has_to_do) {
+    Lockstep loop(with_picture_goal(Law::elastic, 30.0));
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(100);
+    loop.active();
+    Picture picture{loop, 0.004};
+    for (int i = 0; i < 20; ++i) picture.frame();
+    ASSERT_EQ(picture.level(), 1.0F);
+    ASSERT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    loop.model_.turn_s = 0.008;  // of four milliseconds
+    const auto force = [&] { return static_cast<double>(loop.levels().path[Servo::kForceIndex].level); };
+    bool force_fell = false;
+    for (int i = 0; i < 2000; ++i) {
+        picture.frame();
+        if (force() >= 1.0 || force_fell) continue;
+        force_fell = true;
+        EXPECT_EQ(picture.level(), loop.levels().path[Servo::kMeshIndex].floor);
+    }
+    // Nine tenths of a turn's time are used, and the servo itself missed nothing.
+    EXPECT_TRUE(force_fell);
+    EXPECT_LT(loop.model_.tend_s(), 0.0041);
+    EXPECT_GT(loop.model_.tend_s(), 0.003);
+    EXPECT_EQ(loop.health().overruns, 0U);
+    loop.model_.turn_s = 0.001;
+    for (int i = 0; i < 4000; ++i) picture.frame();
+    EXPECT_GT(force(), 0.99);
+}
+
 // --- free running: the rate within a tenth of a second ---
 
 struct FreeLoop : Lockstep {

@@ -18,6 +18,7 @@ public:
     ManualClock* clock = nullptr;  // a step then takes `cost`, at the level
     Duration cost{0};
     bool keeps_sums = false;  // a step with a share of its work takes as much less
+    double turn_s = 0.0;      // of its slow half, at the level; 0: it has none
     int* destroyed = nullptr;
     int resets = 0;
 
@@ -33,6 +34,7 @@ public:
     void reset(const ToolState&) noexcept override { ++resets; }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept override {
         place_ = tool.T_world_tool;
+        fidelity_ = static_cast<double>(budget.fidelity);
         const double share = keeps_sums ? std::clamp(static_cast<double>(budget.share), 0.1, 1.0) : 1.0;
         if (clock != nullptr) {
             clock->advance(Duration(static_cast<std::int64_t>(static_cast<double>(cost.count()) * share *
@@ -53,8 +55,11 @@ public:
         return bodies;
     }
 
+    [[nodiscard]] double tend_s() const noexcept override { return turn_s * fidelity_; }
+
 private:
     Pose place_;
+    double fidelity_ = 1.0;
 };
 
 }  // namespace tact
