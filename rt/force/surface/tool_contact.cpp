@@ -12,6 +12,11 @@ constexpr int kMoveRounds = 12;
 constexpr double kGoneSteps = 1.5;   // a proxy on a slope travels farther than the goal
 constexpr double kLookedWays = 1.3;  // a look reaches so much farther than the way asks for
 constexpr double kAskedRooms = 4.0;  // a point with a bound of so many ways is asked before it is looked at
+constexpr double kFirstMoves = 2.0;  // the first move of a step is at most so many of the last step's longest
+constexpr double kGrows = 4.0;       // after a move that was cut
+constexpr double kNextMoves = 3.0;   // after one that was not
+constexpr double kShrinks = 0.5;     // where there was no room for its guards
+constexpr double kLeastMargins = 8.0;
 constexpr double kRestingShare = 0.02;  // of a margin: what is left is rounding
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
@@ -112,6 +117,22 @@ void ToolContact::list_places(const TwistGuards::Solution& solution, ToolTouch& 
 
 ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTouch& touch,
                                          const Deadline& deadline) noexcept {
+    for (;;) {
+        const double tried_m = std::min(left_m, longest_m_);
+        const Move move = find_move_within(wish, tried_m, touch, deadline);
+        if (!move.full) {
+            longest_m_ = move.cut ? kGrows * tried_m
+                                  : std::max(kNextMoves * move.y.norm(), kLeastMargins * settings_.margin_m);
+            return move;
+        }
+        // Of triangles near a way there are as many as its square.
+        longest_m_ = kShrinks * tried_m;
+        if (longest_m_ < settings_.margin_m || touch.late || touch.looked >= kLooksMost) return move;
+    }
+}
+
+ToolContact::Move ToolContact::find_move_within(const Vec6& wish, double left_m, ToolTouch& touch,
+                                                const Deadline& deadline) noexcept {
     const double gyration = points_.gyration_m();
     const auto twist = [&](const Vec6& y) {
         return std::pair<Vec3, Vec3>(y.head<3>(), y.tail<3>() / gyration);
@@ -165,6 +186,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTo
             room = look(i, kLookedWays * way, touch);
         }
     }
+    move.full = !room;
     // Only as far as is known to be free.
     const auto [v, w] = twist(move.y);
     const double share = points_.share_in_room(v, w);
@@ -179,6 +201,7 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
                               const Deadline& deadline, const NearSurface* near) noexcept {
     ToolTouch touch;
     lists_.begin_step(near);
+    longest_m_ = std::max(kFirstMoves * last_move_m_, kLeastMargins * settings_.margin_m);
     const Pose to{goal.p_m, goal.q.normalized()};
     const double glide = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.glide_m;
     const double allowed = kGoneSteps * way_m(goal_, to).norm() + glide;

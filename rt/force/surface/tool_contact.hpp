@@ -86,9 +86,13 @@ private:
         Vec6 y = Vec6::Zero();
         bool cut = false;     // by what a move or a step may do at the most
         bool short_ = false;  // by what is not known to be free
+        bool full = false;    // there was no room for all guards
     };
+    // As long as left_m, as longest_m_, and as there is room for its guards.
     Move find_move(const Vec6& wish, double left_m, ToolTouch& touch,
                    const Deadline& deadline) noexcept TACT_RT;
+    Move find_move_within(const Vec6& wish, double left_m, ToolTouch& touch,
+                          const Deadline& deadline) noexcept TACT_RT;
     bool look(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
     [[nodiscard]] Vec6 held_back(const TwistGuards::Solution& free, const Vec6& goal_m,
                                  double tolerance_m) const noexcept TACT_RT;
@@ -105,7 +109,8 @@ private:
     std::size_t held_count_ = 0;
     double turn_max_rad_;
     double last_move_m_ = 0.0;
-    int seating_ = 0;  // steps that are left for it
+    double longest_m_ = 0.0;  // of the next move: what a longer one could touch would be looked at in vain
+    int seating_ = 0;         // steps that are left for it
     Pose proxy_, goal_;
 };
 

@@ -32,7 +32,7 @@ class ToolModel final : public ForceModel {
 public:
     static constexpr double kDampedDepthM = SurfaceModel::kDampedDepthM;
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
-    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 16;
+    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32;
 
     // settings.radius_m: of the points' balls in the hand's world; 0: as the tool says. The bytes behind mesh and
     // forest must outlive the model. The forest is there for mode chr alone.
