@@ -1,5 +1,7 @@
 #include "gui/app/touch_show.hpp"
 
+#include "gui/render/arrow.hpp"
+
 namespace tact {
 
 std::optional<DrawnHand> touching_pen(const Controller& controller, const SceneContent& content) {
@@ -9,7 +11,8 @@ std::optional<DrawnHand> touching_pen(const Controller& controller, const SceneC
     const double *const p = controller.bodies.body[0].pos_model_m, *const f = controller.tool.force_model_n;
     const Vec3 tip(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
     if (!tip.allFinite() || !force.allFinite()) return std::nullopt;
-    return DrawnHand{{tip, Quat::Identity()}, force, false, content.tool == nullptr};
+    return DrawnHand{{tip, Quat::Identity()}, force,       false, content.tool == nullptr, kSteelColour,
+                     kSteelGripColour,        kForceColour};
 }
 
 std::optional<Pose> touching_tool(const Controller& controller, const SceneContent& content) {

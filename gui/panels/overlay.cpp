@@ -86,6 +86,8 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
         if (state.toggles.force && state.attached)
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
+        if (state.toggles.force && state.attached && state.scene.surface)
+            line(colour::kNormal, "places that hold it, with what they push");
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));

@@ -25,7 +25,6 @@ constexpr float kBallRgba[4] = {0.93F, 0.94F, 0.97F, 1.0F};
 constexpr float kGraphRgba[4] = {0.80F, 0.84F, 0.90F, 0.38F};
 constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
 constexpr float kEdgeRgba[4] = {0.02F, 0.03F, 0.05F, 0.28F};
-constexpr Rgb8 kForceColour{255, 92, 92};
 // Depth cue: from somewhat before the target to well behind it, in radii of the scene.
 constexpr float kHazeBegin = 0.6F, kHazeEnd = 1.6F, kHazeStrength = 0.8F;
 

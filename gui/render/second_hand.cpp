@@ -8,7 +8,6 @@
 namespace tact {
 namespace {
 
-constexpr Rgb8 kGripColour{118, 104, 158};
 // From the tip to the hand, in the tool's axes: from the right, from below, and towards the person.
 const Vec3 kPenAxis = Vec3(0.52, -0.42, 0.74).normalized();
 
@@ -18,15 +17,16 @@ void append(TubeMesh& to, const TubeMesh& more) {
     for (const std::uint32_t i : more.index) to.index.push_back(first + i);
 }
 
-void add_pen(TubeMesh& mesh, const Eigen::Vector3f& tip_a, const Eigen::Vector3f& axis, float size_a) {
+void add_pen(TubeMesh& mesh, const DrawnHand& hand, const Eigen::Vector3f& tip_a, float size_a) {
+    const Eigen::Vector3f axis = (hand.T_model_hand.q * kPenAxis).cast<float>().normalized();
     const float thick = 0.042F * size_a, cone = 0.16F * size_a, grip = 0.27F * size_a, end = 0.62F * size_a;
     const Ring point[] = {{0.0F, 0.0F, -0.3F}, {cone, thick, -0.3F}};
     const Ring held[] = {{cone, thick, 0.0F}, {grip, thick, 0.0F}};
     const Ring barrel[] = {
         {grip, thick, 0.0F}, {end, 0.8F * thick, 0.0F}, {end, 0.8F * thick, 1.0F}, {end, 0.0F, 1.0F}};
-    add_revolved(mesh, point, tip_a, axis, kSecondHandColour);
-    add_revolved(mesh, held, tip_a, axis, kGripColour);
-    add_revolved(mesh, barrel, tip_a, axis, kSecondHandColour);
+    add_revolved(mesh, point, tip_a, axis, hand.pen_colour);
+    add_revolved(mesh, held, tip_a, axis, hand.grip_colour);
+    add_revolved(mesh, barrel, tip_a, axis, hand.pen_colour);
 }
 
 void add_wall(TubeMesh& mesh, const Eigen::Vector3f& tip_a, const Eigen::Vector3f& away, float size_a) {
@@ -45,12 +45,12 @@ TubeMesh build_second_hand(const DrawnHand& hand, const Eigen::Vector3f& tip_a, 
                            float arrow_a_per_n) {
     TubeMesh mesh;
     if (!tip_a.allFinite() || !(size_a > 0.0F)) return mesh;
-    if (hand.pen) add_pen(mesh, tip_a, (hand.T_model_hand.q * kPenAxis).cast<float>().normalized(), size_a);
+    if (hand.pen) add_pen(mesh, hand, tip_a, size_a);
     const Eigen::Vector3f force = hand.force_world_n.cast<float>();
     const float size_n = force.norm();
     if (!std::isfinite(size_n) || size_n <= 0.0F) return mesh;
     const float length = std::min(size_n * arrow_a_per_n, 3.0F * size_a);
-    append(mesh, build_arrow(tip_a, force * (length / size_n), 0.014F * size_a, kSecondHandColour));
+    append(mesh, build_arrow(tip_a, force * (length / size_n), 0.014F * size_a, hand.force_colour));
     return mesh;
 }
 

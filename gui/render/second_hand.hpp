@@ -1,7 +1,7 @@
-// The second of two hands: a pen, and what its tip touches.
+// A hand that holds no body: a pen, and what its tip touches.
 //
-// Pen      tip where the hand is, held as a right hand holds it; violet, so that it is neither a body nor the
-//          first hand's force
+// Pen      tip where the hand is, held as a right hand holds it. Of a second hand violet, so that it is neither a body
+//          nor the first hand's force; the only hand's is of steel, and its force has the force's colour
 // Wall     two rings in the plane of the wall that pushes the tip back, and an arrow for the force
 // Frame    scene, ångström. Pure functions; gui/render/scene_view.cpp draws what they give.
 #pragma once
@@ -11,14 +11,16 @@
 
 namespace tact {
 
+inline constexpr Rgb8 kSecondHandColour{178, 132, 255}, kSecondGripColour{118, 104, 158};
+inline constexpr Rgb8 kSteelColour{176, 186, 200}, kSteelGripColour{96, 106, 122};
+
 struct DrawnHand {
     Pose T_model_hand;
     Vec3 force_world_n = Vec3::Zero();  // that it feels
     bool at_wall = false;
     bool pen = true;  // false: the force alone, as something else is drawn there
+    Rgb8 pen_colour = kSecondHandColour, grip_colour = kSecondGripColour, force_colour = kSecondHandColour;
 };
-
-inline constexpr Rgb8 kSecondHandColour{178, 132, 255};
 
 // `tip_a` in the scene, `size_a` the radius of what is shown, `arrow_a_per_n` as the first hand's arrow has it.
 [[nodiscard]] TubeMesh build_second_hand(const DrawnHand& hand, const Eigen::Vector3f& tip_a, float size_a,
