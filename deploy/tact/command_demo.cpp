@@ -22,7 +22,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         for (const auto& [name, value] :
              {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
             if (!options->has_controller_option(name) && !options->has_controller_option("--poses"))
-                options->controller.insert(options->controller.end(), {name, value});
+                options->add_for_scene({name, value});
         const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
     });
@@ -37,7 +37,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         // Behind the ear canal, over the antrum.
         if (drill_options->has_controller_option("surgeon") &&
             !drill_options->has_controller_option("--hand-at-mm"))
-            drill_options->controller.insert(drill_options->controller.end(), {"--hand-at-mm", kMastoidMm});
+            drill_options->add_for_scene({"--hand-at-mm", kMastoidMm});
         const auto scene =
             baked_scene({.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *drill_options);

@@ -1,6 +1,5 @@
 #include "deploy/tact/files.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,37 +12,17 @@
 #include <vector>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_file.hpp"
 
 namespace tact::launch {
 namespace {
-
-constexpr const char* kSpaceMend = "free some space, mend the permissions, or give another path";
 
 std::filesystem::path user_folder_in_tmp() { return "/tmp/tact-cache-" + std::to_string(getuid()); }
 
 }  // namespace
 
 void write_whole(const std::filesystem::path& path, const std::string& content) {
-    std::error_code failed;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
-    std::string temporary = path.string() + ".XXXXXX";
-    const int fd = mkostemp(temporary.data(), O_CLOEXEC);
-    if (fd < 0) throw StartupError("writing " + path.string(), std::strerror(errno), kSpaceMend);
-    std::size_t done = 0;
-    bool ok = fchmod(fd, 0644) == 0;
-    while (ok && done < content.size()) {
-        const ssize_t n = write(fd, content.data() + done, content.size() - done);
-        if (n < 0 && errno == EINTR) continue;
-        ok = n > 0;
-        done += ok ? static_cast<std::size_t>(n) : 0;
-    }
-    ok = ok && fsync(fd) == 0;
-    const int why = errno;
-    close(fd);
-    if (ok && std::rename(temporary.c_str(), path.c_str()) == 0) return;
-    const int reason = ok ? errno : why;
-    unlink(temporary.c_str());
-    throw StartupError("writing " + path.string(), std::strerror(reason), kSpaceMend);
+    write_whole_file(path, content);
 }
 
 std::string read_small(const std::filesystem::path& path) {

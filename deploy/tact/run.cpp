@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/hand_over.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_record.hpp"
@@ -42,8 +44,11 @@ std::string advice(const std::string& name, const Ending& e) {
 
 class OneRun {
 public:
-    OneRun(const std::filesystem::path& scene, RunOptions options)
+    // The first scene of a run is armed as soon as it is seen; one that was opened from the window waits for a person.
+    OneRun(const std::filesystem::path& scene, RunOptions options, HandOver* hand_over, bool first)
         : options_(std::move(options)),
+          hand_over_(hand_over),
+          first_(first),
           file_(SceneFile::open(scene)),
           places_(file_),
           observer_(options_.session) {
@@ -63,6 +68,10 @@ public:
         return finish();
     }
 
+    // The scene that the window asked for, where that is why the run ended.
+    [[nodiscard]] const std::optional<std::filesystem::path>& next() const { return next_; }
+    [[nodiscard]] bool came_up() const { return seen_at_.has_value(); }
+
 private:
     void refuse_second() {
         // Nobody accepts on a socket that a dead controller left; a living one need not have answered yet.
@@ -76,8 +85,8 @@ private:
     void start() {
         if (options_.gui) prepare_display();
         ChildSettings rt;
-        rt.arguments = {facts_.scene.string(), "--session", options_.session,
-                        options_.gui ? "--arm-with-gui" : "--arm"};
+        rt.arguments = {facts_.scene.string(), "--session", options_.session};
+        if (first_) rt.arguments.emplace_back(options_.gui ? "--arm-with-gui" : "--arm");
         rt.arguments.insert(rt.arguments.end(), options_.controller.begin(), options_.controller.end());
         rt.grace = options_.grace;
         if (!options_.record.empty()) {  // before the controller, so that it has the run from its first cycle
@@ -105,6 +114,8 @@ private:
                 facts_.trainee = scratch().path() / "drilling.json";
                 gui.arguments.insert(gui.arguments.end(), {"--report", facts_.trainee.string()});
             }
+            if (hand_over_ != nullptr)
+                gui.arguments.insert(gui.arguments.end(), {"--hand-over", hand_over_->folder().string()});
             gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
             gui.grace = options_.grace;
             gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
@@ -150,6 +161,13 @@ private:
         if (observer_.seen() && rt_ && !rt_->poll() && now >= core_due_) leave_core(now);
         if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
         judge(now);
+        if (hand_over_ != nullptr && !ending_ && now >= asked_due_) {
+            asked_due_ = now + kSampleEvery;
+            if ((next_ = hand_over_->poll())) {
+                end(true, "another scene was asked for: " + next_->string());
+                rt_->stop();  // at once: no force goes on while the window is being closed
+            }
+        }
     }
 
     void leave_core(Instant now) {
@@ -283,6 +301,9 @@ private:
     }
 
     RunOptions options_;
+    HandOver* hand_over_;  // null: nobody is there to ask
+    bool first_;
+    std::optional<std::filesystem::path> next_;
     RunFacts facts_;
     SceneFile file_;
     Places places_;
@@ -294,7 +315,7 @@ private:
     std::optional<Child> rt_, gui_, record_, flight_;
     bool ending_ = false;
     int lines_ = 0;
-    Instant started_{}, sample_due_{}, line_due_{}, core_due_{};
+    Instant started_{}, sample_due_{}, line_due_{}, core_due_{}, asked_due_{};
     std::optional<Instant> seen_at_;
     std::vector<Sample> samples_;
     std::vector<double> fps_;
@@ -304,7 +325,36 @@ private:
 
 int run_scene(const std::filesystem::path& scene, RunOptions options) {
     options.settle();
-    return OneRun(scene, std::move(options)).go();
+    std::optional<HandOver> hand_over;
+    if (options.gui && !options.headless) hand_over.emplace(options);
+    std::filesystem::path now = scene, before;
+    for (bool first = true;; first = false) {
+        int code = 1;
+        bool came_up = false;
+        std::optional<std::filesystem::path> next;
+        try {
+            OneRun run(now, options, hand_over ? &*hand_over : nullptr, first);
+            code = run.go();
+            came_up = run.came_up();
+            next = run.next();
+        } catch (const StartupError& e) {
+            if (before.empty()) throw;
+            std::fprintf(stderr, "tact: %s\n", e.what());
+        }
+        if (next && code == 0) {
+            before = std::exchange(now, *next);
+            options.forget_scene();
+        } else if (code != 0 && !came_up && !before.empty()) {
+            hand_over->refuse(
+                "opening " + now.string() +
+                ": it could not be started with the options of this run; what the programs said "
+                "is in the terminal\n  mend: close the window and start: tact run " +
+                now.string());
+            now = std::exchange(before, {});
+        } else {
+            return code;
+        }
+    }
 }
 
 }  // namespace tact::launch

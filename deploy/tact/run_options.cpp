@@ -57,16 +57,25 @@ bool RunOptions::has_controller_option(const std::string& name) const {
     return std::find(controller.begin(), controller.end(), name) != controller.end();
 }
 
+void RunOptions::add_for_scene(const std::vector<std::string>& words) {
+    if (!typed) typed = controller;
+    controller.insert(controller.end(), words.begin(), words.end());
+}
+
+void RunOptions::forget_scene() {
+    if (typed) controller = *typed;
+    typed.reset();
+}
+
 void let_the_hand_stroke(RunOptions& options) {
     if (!options.has_controller_option("--hand") && !options.has_controller_option("--config"))
-        options.controller.insert(options.controller.end(), {"--hand", "stroke"});
+        options.add_for_scene({"--hand", "stroke"});
 }
 
 void let_the_hands_drill(RunOptions& options) {
     if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return;
-    options.controller.insert(options.controller.end(), {"--hand", "surgeon"});
-    if (!options.has_controller_option("--hand2"))
-        options.controller.insert(options.controller.end(), {"--hand2", "sucker"});
+    options.add_for_scene({"--hand", "surgeon"});
+    if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "sucker"});
 }
 
 void RunOptions::settle() {

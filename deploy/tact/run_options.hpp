@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,13 @@ struct RunOptions {
     Duration grace = std::chrono::seconds(10);
     std::vector<std::string> controller;  // options of tact-rt, in order
     std::vector<std::string> visual;      // options of tact-gui
+    // Of the controller as a person typed them, where some were added that suit the first scene alone.
+    std::optional<std::vector<std::string>> typed;
 
     [[nodiscard]] bool has_controller_option(const std::string& name) const;
+    // Options of the controller that only this scene is meant with, and back to what was typed.
+    void add_for_scene(const std::vector<std::string>& words);
+    void forget_scene();
     // Fills in what --out implies and makes paths absolute; throws StartupError for options that do not go
     // together.
     void settle();

@@ -21,6 +21,7 @@ void GuiApp::handle_input() {
     }
     KeySituation& now = state_.situation;
     now.calibrating = calibration_.open();
+    now.browser = state_.browser.open;
     now.bodies = content_ && state_.scene.placed() && !now.calibrating;
     now.bone = content_ && state_.scene.bone && !now.calibrating;
     now.stereo = stage_ != nullptr && !now.calibrating;
@@ -90,6 +91,12 @@ void GuiApp::act(KeyAct what, std::size_t place) {
             return;
         case KeyAct::close_sheet:
             state_.situation.sheet = false;
+            return;
+        case KeyAct::open_browser:
+            state_.browser.open = true;
+            return;
+        case KeyAct::close_browser:
+            state_.browser.open = false;
             return;
         case KeyAct::calibrate:
             if (!calibration_.open()) open_calibration(false);

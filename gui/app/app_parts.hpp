@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gui/app/body_list.hpp"
+#include "gui/app/browser_desk.hpp"
 #include "gui/app/calibration_desk.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/controller.hpp"
@@ -85,6 +86,7 @@ private:
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
+    BrowserDesk browser_{options_.hand_over};
     FitDesk desk_;
     DetailDesk detail_;
     DrillShow drilling_{window_.software()};

@@ -76,6 +76,7 @@ void GuiApp::use_scene(DrillStart drill) {
     desk_.use(content_);
     detail_.use(content_, state_.detail);
     state_.scene = describe(*content_);
+    browser_.used(content_->path, state_.browser);
     show_bone(std::move(drill));
     window_.set_title(std::string("Tact: ") + state_.scene.title);
     spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),

@@ -17,6 +17,9 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("scene", options.scene, "baked scene; by default the one that the controller runs");
     app.add_option("--session", options.session, "name of the session that the controller runs in")
         ->capture_default_str();
+    app.add_option("--hand-over", options.hand_over,
+                   "folder in which the launcher takes the wish for another scene; tact gives it")
+        ->check(CLI::ExistingDirectory);
     app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end");

@@ -14,6 +14,7 @@ namespace tact {
 struct GuiOptions {
     std::string scene;  // empty: the controller's
     std::string session = "default";
+    std::string hand_over;   // the launcher's folder, where it takes wishes for another scene; empty: none
     std::string screenshot;  // empty: none
     std::string report;      // of drilling, JSON, at the end; empty: none
     std::string frames;      // what frames took, JSON, at the end; empty: none

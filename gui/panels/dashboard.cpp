@@ -64,6 +64,10 @@ void draw_dashboard(const Theme& theme, DashboardState& state, float width_px, f
     if (middle != MiddleCard::calibration) draw_scene(theme, state, layout.scene);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);
+    if (state.browser.open)
+        draw_browser(theme, state.browser, layout.view);
+    else if (middle != MiddleCard::calibration)
+        draw_browser_button(theme, state.browser, layout.view);
     ImGui::PopStyleVar();
     draw_overlay(theme, state, layout.view);
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gui/panels/browser.hpp"
 #include "gui/panels/calibration.hpp"
 #include "gui/panels/counter_rate.hpp"
 #include "gui/panels/keys.hpp"
@@ -220,6 +221,7 @@ struct DashboardState {
     DetailFacts detail;
     DrillingFacts drilling;
     CalibrationFacts calibration;
+    BrowserFacts browser;
     History history;
     TracesState traces;
     std::deque<EventLine> events;  // newest first

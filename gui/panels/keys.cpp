@@ -16,6 +16,7 @@ constexpr auto kKeyRows = [] {
         {{}, 0, always, KeyAct::none, "wheel", "zoom"},
         {{}, 0, bodies, KeyAct::none, "Alt+wheel", "contour level"},
         {named_key(KeyCode::escape), 0, sheet, KeyAct::close_sheet, "Esc", "close this table"},
+        {named_key(KeyCode::escape), 0, browser, KeyAct::close_browser, "Esc", "close the list of scenes"},
         {named_key(KeyCode::space), 0, controller, KeyAct::disarm, "Space", "disarm: no force"},
         {{KeyCode::enter, '\0', true, false}, 0, controller, KeyAct::arm, "Ctrl+Enter", "arm"},
         {named_key(KeyCode::home), 0, always, KeyAct::home, "Home", "home view"},
@@ -41,6 +42,7 @@ constexpr auto kKeyRows = [] {
         {typed_key('x'), 0, calibrating, KeyAct::swap_calibrated_eyes, "X", "swap the eyes"},
         {named_key(KeyCode::escape), 0, calibrating, KeyAct::leave_calibration, "Esc",
          "leave the calibration"},
+        {typed_key('o'), 0, always, KeyAct::open_browser, "O", "open another scene"},
         {typed_key('p'), 0, always, KeyAct::picture, "P", "save a picture"},
         {typed_key('m'), 0, controller, KeyAct::mark, "M", "mark this moment: a flight recorder saves it"},
         {typed_key('?'), 0, always, KeyAct::help, "?", "this table"},
@@ -49,6 +51,10 @@ constexpr auto kKeyRows = [] {
 
 constexpr char last_character(const KeyRow& row) {
     return row.last != '\0' ? row.last : row.stroke.character;
+}
+
+constexpr int precedence(KeyWhen when) {
+    return when == KeyWhen::sheet ? 2 : when == KeyWhen::browser ? 1 : 0;
 }
 
 }  // namespace
@@ -62,6 +68,8 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
             return true;
         case sheet:
             return now.sheet;
+        case browser:
+            return now.browser;
         case bodies:
             return now.bodies;
         case bone:
@@ -85,7 +93,7 @@ KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
             stroke.character <= last_character(row))
             of_row.character = stroke.character;
         if (of_row != stroke) continue;
-        if (found.row == nullptr || row.when == KeyWhen::sheet)
+        if (found.row == nullptr || precedence(row.when) > precedence(found.row->when))
             found = {&row, stroke.character - row.stroke.character};
     }
     return found;
@@ -94,7 +102,7 @@ KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
 bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     using enum KeyWhen;
     if (a.act == KeyAct::none || b.act == KeyAct::none) return false;
-    if ((a.when == sheet) != (b.when == sheet)) return false;  // the sheet's comes first
+    if (precedence(a.when) != precedence(b.when)) return false;  // one of them comes first
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both
     const auto of_picture = [](KeyWhen when) { return when == bodies || when == bone || when == stereo; };

@@ -24,6 +24,8 @@ struct KeyStroke {
 enum class KeyAct : std::uint8_t {
     none,  // done with the mouse
     close_sheet,
+    open_browser,
+    close_browser,
     home,
     look_at_burr,
     style,
@@ -53,11 +55,12 @@ enum class KeyAct : std::uint8_t {
     count
 };
 
-// When a row applies. The sheet comes first: what it takes reaches nothing below it.
-enum class KeyWhen : std::uint8_t { always, sheet, bodies, bone, stereo, controller, calibrating };
+// When a row applies. The sheet comes first, then the list of scenes: what they take reaches nothing below them.
+enum class KeyWhen : std::uint8_t { always, sheet, browser, bodies, bone, stereo, controller, calibrating };
 
 struct KeySituation {
     bool sheet = false;        // `?` is shown
+    bool browser = false;      // the list of scenes is shown
     bool bodies = false;       // the scene has a map and bodies to place
     bool bone = false;         // the scene is drilled
     bool stereo = false;       // the picture is for two eyes

@@ -9,7 +9,6 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -19,39 +18,16 @@
 #include <utility>
 
 #include "ipc/assets/bytes.hpp"
+#include "ipc/assets/scene_layout.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {
+
+using namespace scene_layout;
+
 namespace {
 
-constexpr char kMagic[8] = {'T', 'A', 'C', 'T', 'S', 'C', 'N', '1'};
-constexpr std::uint32_t kFormatVersion = 1;
-constexpr std::uint32_t kSectionsMax = 4096;
-constexpr std::uint64_t kAlign = 64;
-constexpr std::uint64_t kBytesMax = std::uint64_t{1} << 36;  // 64 GiB
-
-struct Header {
-    char magic[8];
-    std::uint32_t format_version;
-    std::uint32_t section_count;
-    std::uint64_t total_bytes;
-    std::uint32_t table_crc;
-    std::uint8_t reserved[36];  // zero
-};
-static_assert(sizeof(Header) == 64);
-
-struct TableRow {
-    SectionTag tag;
-    std::uint32_t index, version, crc;
-    std::uint64_t offset, bytes;
-};
-static_assert(sizeof(TableRow) == 32);
-
 constexpr std::uint64_t align_up(std::uint64_t n) { return (n + kAlign - 1) / kAlign * kAlign; }
-
-std::uint32_t crc_of(const std::byte* data, std::size_t size) {
-    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(data), size));
-}
 
 bool all_zero(const std::byte* first, std::size_t size) {
     return std::all_of(first, first + size, [](std::byte b) { return b == std::byte{0}; });

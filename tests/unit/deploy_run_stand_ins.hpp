@@ -20,6 +20,7 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/run.hpp"
+#include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
@@ -92,6 +93,11 @@ inline int controller(int argc, char** argv) {
         sigaction(SIGTERM, &action, nullptr);
     }
     if (misbehaviour() == "refuse") return 3;
+    if (misbehaviour() == "refuse-other" && std::strcmp(argv[1], std::getenv("ASKS_FOR")) == 0) return 3;
+    if (const char* const log = std::getenv("CONTROLLERS"); log != nullptr) {
+        std::ofstream told(log, std::ios::app);
+        for (int i = 1; i < argc; ++i) told << argv[i] << (i + 1 < argc ? ' ' : '\n');
+    }
     OwnedRegion<RtRegion> region;
     std::strcpy(region->scene_path, argv[1]);
     region->scene_checksum = 0xABCD;
@@ -121,6 +127,27 @@ inline int window(int argc, char** argv) {
         ::poll(nullptr, 0, 2);
     }
     const std::string seconds = value_of(argc, argv, "--seconds");
+    if (const char* const other = std::getenv("ASKS_FOR"); other != nullptr) {
+        const std::filesystem::path folder = value_of(argc, argv, "--hand-over");
+        std::ofstream told(std::getenv("TOLD"), std::ios::app);
+        told << argv[1] << '\n';
+        if (auto refusal = take_refusal(folder)) {
+            told << *refusal << std::endl;
+            return 0;  // the person closes the window
+        }
+        if (std::strcmp(argv[1], other) != 0) {
+            ask_for_scene(folder, other);
+            told << std::flush;
+            for (;;) {
+                ::poll(nullptr, 0, 5);
+                if (auto refusal = take_refusal(folder)) {
+                    told << *refusal << std::endl;
+                    return 0;
+                }
+            }
+        }
+        return 0;
+    }
     if (misbehaviour() == "window") return 4;
     ::poll(nullptr, 0, seconds.empty() ? 600'000 : static_cast<int>(std::stod(seconds) * 1000));
     if (const auto picture = value_of(argc, argv, "--screenshot"); !picture.empty())
@@ -155,7 +182,9 @@ protected:
         options_.seconds = 0.3;
         options_.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang
     }
-    void TearDown() override { unsetenv("MISBEHAVE"); }
+    void TearDown() override {
+        for (const char* const name : {"MISBEHAVE", "ASKS_FOR", "TOLD", "CONTROLLERS"}) unsetenv(name);
+    }
     static void misbehave(const char* how) { setenv("MISBEHAVE", how, 1); }
 
     int run() {

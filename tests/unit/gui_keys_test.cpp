@@ -11,6 +11,7 @@ namespace {
 KeySituation where_applies(KeyWhen when) {
     KeySituation now;
     now.sheet = when == KeyWhen::sheet;
+    now.browser = when == KeyWhen::browser;
     now.bodies = when == KeyWhen::bodies;
     now.bone = when == KeyWhen::bone;
     now.stereo = when == KeyWhen::stereo;
@@ -67,6 +68,8 @@ TEST(Keys, TheSheetTakesEscBeforeTheBodiesDo) {
     KeySituation now = where_applies(KeyWhen::bodies);
     const KeyStroke escape{KeyCode::escape, '\0', false, false};
     EXPECT_EQ(find_key(escape, now).row->act, KeyAct::revert);
+    now.browser = true;
+    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::close_browser);
     now.sheet = true;
     EXPECT_EQ(find_key(escape, now).row->act, KeyAct::close_sheet);
     EXPECT_EQ(find_key({KeyCode::character, 'j', false, false}, now).row, nullptr);

@@ -1,0 +1,107 @@
+#include "gui/panels/browser.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "gui/panels/widgets.hpp"
+
+namespace tact {
+namespace {
+
+// One line that is pressed: name and kind, then size and time; beneath, where it lies or what is wrong with it.
+void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserFacts& browser) {
+    const float height = row.folder ? theme.px(22.0F) : theme.px(40.0F);
+    const bool usable = row.trouble.empty();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::PushID(row.path.c_str());
+    if (ImGui::Selectable("##row", row.current, usable ? 0 : ImGuiSelectableFlags_Disabled,
+                          {width, height})) {
+        (row.folder ? browser.folder_wanted : browser.scene_wanted) = row.path;
+    }
+    ImGui::PopID();
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    const float pad = theme.px(6.0F);
+    const auto text = [&](ImFont* font, float x, float y, ImU32 c, const std::string& words, float most) {
+        draw->PushClipRect({x, at.y}, {x + most, at.y + height}, true);
+        draw->AddText(font, font->FontSize, {x, at.y + y}, c, words.c_str());
+        draw->PopClipRect();
+    };
+    if (row.folder) {
+        text(theme.text, at.x + pad, theme.px(2.0F), colour::kAccent, row.name + "/", width);
+        return;
+    }
+    const float kind = at.x + width - theme.px(250.0F), size = at.x + width - theme.px(176.0F),
+                when = at.x + width - theme.px(96.0F);
+    text(theme.bold, at.x + pad, theme.px(2.0F), usable ? colour::kText : colour::kDim, row.name,
+         kind - at.x - 2.0F * pad);
+    text(theme.text, kind, theme.px(2.0F), colour::kAccent, row.kind, theme.px(70.0F));
+    text(theme.text, size, theme.px(2.0F), colour::kDim, row.size, theme.px(76.0F));
+    text(theme.text, when, theme.px(2.0F), colour::kDim, row.when, theme.px(96.0F));
+    const std::string below = !usable ? row.trouble : row.current ? "shown now, " + row.place : row.place;
+    text(theme.small, at.x + pad, theme.px(21.0F), usable ? colour::kDim : colour::kWatch, below,
+         width - 2.0F * pad);
+}
+
+void rows(const Theme& theme, const std::vector<SceneRow>& list, BrowserFacts& browser) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    for (const SceneRow& row : list) scene_row(theme, row, width, browser);
+}
+
+}  // namespace
+
+void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& view) {
+    // Below what is written into the view's upper corners, which would be drawn over it.
+    const float above = theme.px(66.0F);
+    const float width = std::min(theme.px(660.0F), 0.94F * view.width),
+                height = std::min(theme.px(440.0F), std::max(view.height - above - theme.px(10.0F), 1.0F));
+    const PixelRect card{view.x + 0.5F * (view.width - width), view.y + above, width, height};
+    ImGui::GetBackgroundDrawList()->AddRectFilled(
+        {card.x, card.y}, {card.x + card.width, card.y + card.height}, IM_COL32(18, 22, 29, 250));
+    begin_card(theme, "Scenes", card);
+    static constexpr std::array<const char*, 2> kTabs{"Recently used", "Folder"};
+    ImGui::SameLine(0.0F, theme.px(18.0F));
+    choose(theme, kTabs, browser.tab);
+    ImGui::SameLine(width - theme.px(64.0F));
+    if (ImGui::SmallButton("Close")) browser.open = false;
+    if (!browser.said.empty()) {
+        ImGui::PushTextWrapPos(0.0F);
+        text_coloured(grade_colour(browser.said_grade), browser.said);
+        ImGui::PopTextWrapPos();
+    }
+    if (browser.tab == 1) text_small(theme, colour::kDim, browser.folder);
+    const std::string& trouble = browser.tab == 0 ? browser.recent_trouble : browser.folder_trouble;
+    if (!trouble.empty()) {
+        ImGui::PushTextWrapPos(0.0F);
+        text_coloured(colour::kWatch, trouble);
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::BeginChild("rows", {0.0F, 0.0F}, false, ImGuiWindowFlags_NoBackground);
+    const std::vector<SceneRow>& list = browser.tab == 0 ? browser.recent : browser.here;
+    rows(theme, list, browser);
+    if (browser.reading) {
+        text_coloured(colour::kDim, "reading ...");
+    } else if (browser.tab == 0 && list.empty() && trouble.empty()) {
+        text_coloured(colour::kDim, "No scene was used yet. The tab Folder looks for files *.tact.");
+    } else if (browser.tab == 1 && trouble.empty() &&
+               std::none_of(list.begin(), list.end(), [](const SceneRow& r) { return !r.folder; })) {
+        text_coloured(colour::kDim, "There are no scenes (*.tact) in this folder.");
+    }
+    ImGui::EndChild();
+    end_card();
+}
+
+void draw_browser_button(const Theme& theme, BrowserFacts& browser, const PixelRect& view) {
+    const float width = theme.px(96.0F);
+    ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(10.0F), view.y + theme.px(70.0F)});
+    ImGui::SetNextWindowSize({width, theme.px(30.0F)});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0F, 0.0F));
+    ImGui::Begin("scenes button", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    if (ImGui::Button("Scenes (O)", {width, 0.0F})) browser.open = !browser.open;
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+}  // namespace tact

@@ -1,0 +1,41 @@
+// What the list of scenes shows and what a person chose there: plain data that the application fills and takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gui/panels/theme.hpp"
+#include "gui/panels/verdict.hpp"
+
+namespace tact {
+
+struct PixelRect;
+
+struct SceneRow {
+    std::string path, name;
+    std::string place;       // its folder
+    std::string kind;        // docking, surface, drilling; of a folder: empty
+    std::string size, when;  // as a person reads it
+    std::string trouble;     // why it cannot be opened: missing, not a scene, ...
+    bool folder = false, current = false;
+};
+
+struct BrowserFacts {
+    bool open = false;
+    int tab = 0;  // recently used, a folder
+    std::vector<SceneRow> recent, here;
+    std::string recent_trouble;
+    std::string folder, folder_trouble;
+    bool reading = false;
+    std::string said;
+    Grade said_grade = Grade::unknown;
+    // What a person chose; emptied by the application.
+    std::string scene_wanted, folder_wanted;
+};
+
+// Over the middle of the view.
+void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& view);
+// What opens it, in the corner of the view.
+void draw_browser_button(const Theme& theme, BrowserFacts& browser, const PixelRect& view);
+
+}  // namespace tact

@@ -1,0 +1,120 @@
+// A person opens the list of scenes with a key, presses another one with the mouse, and the launcher runs that.
+// All programs are the real ones, on an X server of their own.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/x_server.hpp"
+#include "tests/unit/gui_fake.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr std::chrono::seconds kPatience(120);  // reached only when something is wrong
+
+class BrowserInTheWindow : public testing::Test {
+protected:
+    void SetUp() override {
+        for (const char* const program : {"Xvfb", "xdotool"})
+            if (launch::find_in_path(program).empty())
+                GTEST_SKIP() << program << " is not installed: nothing can be pressed here";
+        char name[] = "/tmp/tact-browser-test-XXXXXX";
+        folder_ = mkdtemp(name);
+        setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
+        setenv("XDG_STATE_HOME", (folder_ + "/state").c_str(), 1);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory to the end on purpose
+        x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
+        for (const auto& [key, value] : x_server_->environment())
+            value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
+        first_ = folder_ + "/first.tact";
+        second_ = folder_ + "/second.tact";
+        fake::write_helix_scene(first_);
+        fake::write_helix_scene(second_);
+        std::ofstream(folder_ + "/broken.tact") << "cut short";
+        std::filesystem::create_directories(folder_ + "/state/tact");
+        std::ofstream(folder_ + "/state/tact/recent.json")
+            << R"({"scenes": [{"path": ")" << second_ << R"(", "used_unix_s": 2}, {"path": ")" << folder_
+            << R"(/broken.tact", "used_unix_s": 1}, {"path": "/gone/away.tact", "used_unix_s": 1}]})";
+        tact_ = fork();
+        if (tact_ == 0) {
+            if (freopen((folder_ + "/said").c_str(), "w", stdout) == nullptr || dup2(1, 2) < 0) _exit(126);
+            execl(TACT_PROGRAM, TACT_PROGRAM, "run", first_.c_str(), "--session", "t", "--size", "1280x720",
+                  nullptr);
+            _exit(127);
+        }
+        ASSERT_TRUE(wait_for_words("showing " + first_)) << said();
+        ASSERT_EQ(std::system("xdotool search --sync --name '^Tact' windowfocus --sync >/dev/null 2>&1"), 0);
+    }
+    void TearDown() override {
+        if (tact_ > 0) {
+            kill(tact_, SIGTERM);
+            waitpid(tact_, nullptr, 0);
+        }
+        x_server_.reset();
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+    [[nodiscard]] std::string said() const {
+        std::ifstream file(folder_ + "/said");
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    [[nodiscard]] std::string recents() const {
+        std::ifstream file(folder_ + "/state/tact/recent.json");
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    // Again and again until the words are there: a window that is busy may miss a click.
+    template <class Act>
+    bool until_words(const std::string& words, Act&& act) {
+        const Instant until = Monotonic::now() + kPatience;
+        while (Monotonic::now() < until) {
+            if (said().find(words) != std::string::npos) return true;
+            act();
+            std::this_thread::sleep_for(milliseconds(300));
+        }
+        return false;
+    }
+    bool wait_for_words(const std::string& words) {
+        return until_words(words, [] {});
+    }
+    static void x(const std::string& words) {
+        ASSERT_EQ(std::system(("xdotool " + words + " >/dev/null 2>&1").c_str()), 0) << words;
+    }
+
+    std::string folder_, first_, second_;
+    std::unique_ptr<launch::XServer> x_server_;
+    pid_t tact_ = 0;
+};
+
+TEST_F(BrowserInTheWindow, ASceneThatIsPressedRunsAndIsTheNewestOfTheList) {
+    // The scene that runs comes first, then the one from before.
+    EXPECT_TRUE(until_words("asking the launcher for " + second_, [] {
+        x("key --clearmodifiers o");
+        std::this_thread::sleep_for(milliseconds(500));
+        x("mousemove 600 162");
+        std::this_thread::sleep_for(milliseconds(200));
+        x("mousedown 1");
+        std::this_thread::sleep_for(milliseconds(200));
+        x("mouseup 1");
+    })) << said();
+    ASSERT_TRUE(wait_for_words("showing " + second_)) << said();
+    EXPECT_NE(said().find("another scene was asked for: " + second_), std::string::npos) << said();
+    const Instant until = Monotonic::now() + kPatience;
+    while (recents().find("second.tact") > recents().find("first.tact") && Monotonic::now() < until)
+        std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_LT(recents().find("second.tact"), recents().find("first.tact")) << recents();
+    EXPECT_NE(recents().find("/gone/away.tact"), std::string::npos) << "what is missing may come back";
+    kill(tact_, SIGINT);
+    int status = 0;
+    waitpid(std::exchange(tact_, 0), &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << said();
+}
+
+}  // namespace
+}  // namespace tact

@@ -1,0 +1,130 @@
+// The scenes that were used and what a folder holds: kept, bounded, and wrong files told in words.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "gui/desk/recent_scenes.hpp"
+#include "gui/desk/scene_list.hpp"
+#include "ipc/assets/scene_peek.hpp"
+#include "ipc/base/error.hpp"
+#include "tests/unit/assets_samples.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+using sample::error_of;
+
+class Desk : public testing::Test {
+protected:
+    void SetUp() override {
+        char name[] = "/tmp/tact-desk-test-XXXXXX";
+        folder_ = mkdtemp(name);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    fs::path folder_;
+};
+
+TEST_F(Desk, WhatWasUsedIsReadAgainNewestFirstOnceAndNoMoreThanFit) {
+    std::vector<RecentScene> scenes;
+    for (std::int64_t i = 0; i < 40; ++i)
+        scenes = with_recent(scenes, {std::string("/s/").append(std::to_string(i)), i});
+    scenes = with_recent(scenes, {"/s/30", 99});
+    ASSERT_EQ(scenes.size(), kRecentsMost);
+    EXPECT_EQ(scenes[0], (RecentScene{"/s/30", 99}));
+    EXPECT_EQ(scenes[1], (RecentScene{"/s/39", 39}));
+    EXPECT_EQ(read_recents_text(recents_text(scenes), "file"), scenes);
+    EXPECT_TRUE(read_recents(folder_ / "none.json").empty());
+}
+
+TEST_F(Desk, AListThatIsWrongIsToldWithItsMend) {
+    for (const char* const bad :
+         {"", "[", "{}", "{\"scenes\": 3}", "{\"scenes\": [3]}", "{\"scenes\": [{\"path\": \"/a\"}]}",
+          "{\"scenes\": [{\"path\": \"a\", \"used_unix_s\": 1}]}",
+          "{\"scenes\": [{\"path\": \"/a\\u0000b\", \"used_unix_s\": 1}]}",
+          "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": -1}]}",
+          "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": 1e300}]}"})
+        EXPECT_NE(error_of([&] { (void)read_recents_text(bad, "recent.json"); }).find("mend:"),
+                  std::string::npos)
+            << bad;
+    std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("larger"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("no regular file"), std::string::npos);
+    EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
+}
+
+TEST_F(Desk, TheStateFolderIsTheUsersOwn) {
+    setenv("XDG_STATE_HOME", "/x/state", 1);
+    EXPECT_EQ(state_folder(), "/x/state/tact");
+    setenv("XDG_STATE_HOME", "relative", 1);
+    setenv("HOME", "/home/someone", 1);
+    EXPECT_EQ(state_folder(), "/home/someone/.local/state/tact");
+}
+
+TEST_F(Desk, ARowSaysWhatASceneIsAndWhatIsWrongWithIt) {
+    const fs::path good = folder_ / "good.tact", broken = folder_ / "broken.tact";
+    sample::scene().write(good);
+    const auto bytes = sample::scene().to_bytes();
+    std::ofstream(broken, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size() / 2));
+    const auto rows = recent_rows({{good, 1000}, {broken, 900}, {folder_ / "gone.tact", 800}}, 1300);
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_EQ(rows[0].kind, "docking");
+    EXPECT_EQ(rows[0].when, "5 min ago");
+    EXPECT_TRUE(rows[0].trouble.empty()) << rows[0].trouble;
+    EXPECT_EQ(rows[1].trouble, "it is not whole");
+    EXPECT_TRUE(rows[2].trouble.starts_with("missing: ")) << rows[2].trouble;
+}
+
+TEST_F(Desk, APeekSeesTheSameAsAWholeReadAndNoChangedByteOfWhatItReads) {
+    const fs::path file = folder_ / "scene.tact";
+    const auto bytes = sample::scene().to_bytes();
+    sample::scene().write(file);
+    const SceneMeta all = read_meta(SceneFile::open(file)), peeked = peek_scene(file);
+    EXPECT_EQ(std::memcmp(&all, &peeked, sizeof all), 0);
+    int refused = 0;
+    for (std::size_t i = 0; i < 28; ++i) {  // the header's fields
+        auto changed = bytes;
+        changed[i] ^= std::byte{0x40};
+        std::ofstream(file, std::ios::binary)
+            .write(reinterpret_cast<const char*>(changed.data()),
+                   static_cast<std::streamsize>(changed.size()));
+        refused += error_of([&] { (void)peek_scene(file); }).empty() ? 0 : 1;
+    }
+    EXPECT_EQ(refused, 28);
+}
+
+TEST_F(Desk, AFolderShowsTheWayUpItsFoldersAndItsScenesAlone) {
+    sample::scene().write(folder_ / "b.tact");
+    std::ofstream(folder_ / "notes.txt") << "no scene";
+    std::ofstream(folder_ / "a.tact") << "no scene either";
+    fs::create_directory(folder_ / "more");
+    fs::create_directory(folder_ / ".hidden");
+    const FolderRows got = folder_rows(folder_, 0);
+    ASSERT_EQ(got.rows.size(), 4U);
+    EXPECT_EQ(got.rows[0].name, "..");
+    EXPECT_EQ(got.rows[0].path, folder_.parent_path());
+    EXPECT_TRUE(got.rows[1].folder && got.rows[1].name == "more");
+    EXPECT_FALSE(got.rows[2].trouble.empty());
+    EXPECT_EQ(got.rows[3].kind, "docking");
+    EXPECT_NE(folder_rows(folder_ / "none", 0).trouble.find("cannot be read"), std::string::npos);
+    for (std::size_t i = 0; i < kFolderRowsMost + 10; ++i) fs::create_directory(folder_ / std::to_string(i));
+    const FolderRows many = folder_rows(folder_, 0);
+    EXPECT_LE(many.rows.size(), kFolderRowsMost + 1);
+    EXPECT_EQ(many.rows.back().kind, "docking") << "folders crowded a scene out";
+    EXPECT_FALSE(many.trouble.empty());
+}
+
+TEST_F(Desk, SizesAndTimesReadWell) {
+    EXPECT_EQ(size_text(12), "12 B");
+    EXPECT_EQ(size_text(820'000), "820 kB");
+    EXPECT_EQ(size_text(12'345'678), "12.3 MB");
+    EXPECT_EQ(size_text(3'200'000'000), "3.2 GB");
+    EXPECT_EQ(ago_text(1000, 1010), "just now");
+    EXPECT_EQ(ago_text(1000, 1000 + 7300), "2 h ago");
+    EXPECT_EQ(ago_text(1'793'000'000, 1'893'000'000).substr(0, 4), "2026");
+}
+
+}  // namespace
+}  // namespace tact
