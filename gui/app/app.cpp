@@ -85,6 +85,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
     follow_controller(now_ns);
     follow_scene();
+    if (const auto dropped = window_.take_dropped(); !dropped.empty()) browser_.drop(dropped, state_.browser);
     browser_.follow(state_.browser);
     drilling_.follow(controller_, state_);
     handle_input();

@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
+#include "gui/desk/dropped_files.hpp"
 #include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_file.hpp"
@@ -24,6 +26,22 @@ bool ready(std::future<T>& one) {
 void say(BrowserFacts& facts, Grade grade, std::string words) {
     facts.said = std::move(words);
     facts.said_grade = grade;
+}
+
+std::string last_line(const std::string& text) {
+    const std::size_t end = text.find_last_not_of("\r\n");
+    if (end == std::string::npos) return {};
+    const std::size_t before = text.find_last_of("\r\n", end);
+    return text.substr(before == std::string::npos ? 0 : before + 1,
+                       end - (before == std::string::npos ? 0 : before + 1) + 1);
+}
+
+// From the first word of an error on: before it are the steps that went well.
+std::string errors_of(const std::string& text) {
+    const std::size_t at = std::min(text.find("tact-prep: "), text.find("tact: "));
+    const std::string words = at == std::string::npos ? text : text.substr(at);
+    return words.empty() ? "The import ended without a word."
+                         : words.substr(0, words.find_last_not_of('\n') + 1);
 }
 
 }  // namespace
@@ -87,7 +105,56 @@ void BrowserDesk::open_scene(const std::filesystem::path& scene, BrowserFacts& f
     }
 }
 
+void BrowserDesk::drop(const std::vector<std::string>& files, BrowserFacts& facts) {
+    facts.open = true;
+    if (import_.running())
+        return say(facts, Grade::watch, "An import is under way: cancel it, or drop again when it is done.");
+    Dropped meant = meaning_of(files);
+    if (!meant.scene.empty()) return open_scene(meant.scene, facts);
+    if (meant.import.empty()) return say(facts, Grade::watch, meant.trouble);
+    importing_ = meant.import[1];
+    meant.import.emplace_back("--bake-only");
+    try {
+        import_.start("tact", meant.import);
+        import_begun_ = Monotonic::now();
+        cancelled_ = false;
+        spdlog::info("importing {}", importing_);
+    } catch (const StartupError& e) {
+        say(facts, Grade::bad, e.what());
+    }
+}
+
+// tact-prep prints a line a step; tact, the path of the scene as the last one.
+void BrowserDesk::follow_import(BrowserFacts& facts) {
+    if (std::exchange(facts.cancel_wanted, false) && import_.running()) {
+        cancelled_ = true;
+        import_.cancel();
+    }
+    const auto outcome = import_.poll();
+    facts.importing = import_.running();
+    if (!outcome) {
+        if (facts.importing)
+            say(facts, Grade::unknown,
+                "Importing " + importing_ + ", " +
+                    std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) +
+                    " s: " + last_line(import_.said()));
+        return;
+    }
+    const std::string last = last_line(outcome->output);
+    if (cancelled_ && outcome->good())
+        say(facts, Grade::unknown, "The import was done before it could be cancelled: " + last);
+    else if (cancelled_)
+        say(facts, Grade::unknown, "The import was cancelled; nothing was written.");
+    else if (!outcome->good())
+        say(facts, Grade::bad, errors_of(outcome->output));
+    else if (last.starts_with('/') && last.ends_with(".tact"))
+        open_scene(last, facts);
+    else
+        say(facts, Grade::bad, "The import ended without naming a scene: " + last);
+}
+
 void BrowserDesk::follow(BrowserFacts& facts) {
+    follow_import(facts);
     if (ready(keeping_))
         if (const std::string trouble = keeping_.get(); !trouble.empty()) {
             spdlog::warn("{}", trouble);

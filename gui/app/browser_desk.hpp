@@ -9,7 +9,9 @@
 #include <optional>
 #include <string>
 
+#include "gui/app/child_job.hpp"
 #include "gui/desk/scene_list.hpp"
+#include "ipc/base/clock.hpp"
 
 namespace tact {
 
@@ -23,8 +25,11 @@ public:
     void follow(BrowserFacts& facts);
     // From the list or from elsewhere.
     void open_scene(const std::filesystem::path& scene, BrowserFacts& facts);
+    // Files that were dropped: a scene is opened, raw data are baked by `tact` into its cache and opened then.
+    void drop(const std::vector<std::string>& files, BrowserFacts& facts);
 
 private:
+    void follow_import(BrowserFacts& facts);
     struct Read {
         std::vector<SceneRow> recent;
         std::string recent_trouble;
@@ -35,6 +40,10 @@ private:
     std::filesystem::path hand_over_;
     std::string current_;
     bool was_open_ = false, asked_ = false;
+    ChildJob import_;
+    std::string importing_;  // the file
+    Instant import_begun_{};
+    bool cancelled_ = false;
     std::future<Read> reading_;
     std::future<std::string> keeping_;  // trouble, or nothing
 };

@@ -76,6 +76,12 @@ void ChildJob::start(const std::string& program, const std::vector<std::string>&
     pid_ = pid;
 }
 
+std::string ChildJob::said() const { return output_fd_ >= 0 ? tail_of(output_fd_) : std::string(); }
+
+void ChildJob::cancel() const {
+    if (pid_ > 0) kill(pid_, SIGTERM);
+}
+
 std::optional<ChildOutcome> ChildJob::poll() {
     if (pid_ <= 0) return std::nullopt;
     int status = 0;

@@ -38,6 +38,10 @@ public:
     [[nodiscard]] bool running() const { return pid_ > 0; }
     // The outcome, once, when the program has ended.
     [[nodiscard]] std::optional<ChildOutcome> poll();
+    // What it printed up to now, the last kOutputMax bytes.
+    [[nodiscard]] std::string said() const;
+    // Asks it to end (SIGTERM); poll() tells when it has.
+    void cancel() const;
 
 private:
     pid_t pid_ = 0;

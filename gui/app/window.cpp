@@ -22,8 +22,13 @@ std::string glfw_words() {
     return words != nullptr ? words : "no reason given";
 }
 
-std::vector<KeyStroke>& keys_of(GLFWwindow* window) {
-    return *static_cast<std::vector<KeyStroke>*>(glfwGetWindowUserPointer(window));
+WindowInput& input_of(GLFWwindow* window) {
+    return *static_cast<WindowInput*>(glfwGetWindowUserPointer(window));
+}
+std::vector<KeyStroke>& keys_of(GLFWwindow* window) { return input_of(window).keys; }
+
+void on_drop(GLFWwindow* window, int count, const char** paths) {
+    input_of(window).dropped.assign(paths, paths + count);
 }
 
 // The letter printed on a key, as where Z lies depends on the keyboard; of a keyboard without Latin letters the one at
@@ -126,9 +131,10 @@ void Window::open(int width_px, int height_px, bool hidden) {
     const GLFWvidmode* const video = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
     if (video != nullptr && video->refreshRate > 0) display_period_s_ = 1.0 / video->refreshRate;
     if (hidden) target_ = std::make_unique<OffscreenTarget>(width_px, height_px);
-    glfwSetWindowUserPointer(window_, &keys_);
+    glfwSetWindowUserPointer(window_, &input_);
     glfwSetKeyCallback(window_, on_key);
     glfwSetCharCallback(window_, on_char);
+    glfwSetDropCallback(window_, on_drop);
     glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
 }
 
@@ -211,7 +217,8 @@ void Window::show() {
         glfwSwapBuffers(window_);
 }
 
-std::vector<KeyStroke> Window::take_keys() { return std::exchange(keys_, {}); }
+std::vector<KeyStroke> Window::take_keys() { return std::exchange(input_.keys, {}); }
+std::vector<std::string> Window::take_dropped() { return std::exchange(input_.dropped, {}); }
 
 Image Window::picture() {
     const Size s = size();

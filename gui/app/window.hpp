@@ -16,6 +16,12 @@ struct GLFWwindow;
 
 namespace tact {
 
+// What came in since it was last taken.
+struct WindowInput {
+    std::vector<KeyStroke> keys;
+    std::vector<std::string> dropped;
+};
+
 class Window {
 public:
     // ui_scale: of letters and panels, times what size and density of the display ask for.
@@ -36,6 +42,7 @@ public:
     void draw_panels();  // what ImGui was told in this frame
     void show();         // swaps, or finishes the image where hidden
     [[nodiscard]] std::vector<KeyStroke> take_keys();
+    [[nodiscard]] std::vector<std::string> take_dropped();  // paths of files
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
     [[nodiscard]] GLuint frame_buffer() const { return target_ ? target_->name() : 0; }
     [[nodiscard]] Image picture();  // of the frame just drawn, before show()
@@ -57,7 +64,7 @@ private:
     double display_period_s_ = 0.0;
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
-    std::vector<KeyStroke> keys_;
+    WindowInput input_;
 };
 
 }  // namespace tact

@@ -68,6 +68,7 @@ void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& vi
         text_coloured(grade_colour(browser.said_grade), browser.said);
         ImGui::PopTextWrapPos();
     }
+    if (browser.importing && ImGui::SmallButton("Cancel")) browser.cancel_wanted = true;
     if (browser.tab == 1) text_small(theme, colour::kDim, browser.folder);
     const std::string& trouble = browser.tab == 0 ? browser.recent_trouble : browser.folder_trouble;
     if (!trouble.empty()) {

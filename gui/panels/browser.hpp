@@ -27,6 +27,7 @@ struct BrowserFacts {
     std::string recent_trouble;
     std::string folder, folder_trouble;
     bool reading = false;
+    bool importing = false, cancel_wanted = false;
     std::string said;
     Grade said_grade = Grade::unknown;
     // What a person chose; emptied by the application.

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "gui/desk/dropped_files.hpp"
 #include "gui/desk/recent_scenes.hpp"
 #include "gui/desk/scene_list.hpp"
 #include "ipc/assets/scene_peek.hpp"
@@ -114,6 +115,24 @@ TEST_F(Desk, AFolderShowsTheWayUpItsFoldersAndItsScenesAlone) {
     EXPECT_LE(many.rows.size(), kFolderRowsMost + 1);
     EXPECT_EQ(many.rows.back().kind, "docking") << "folders crowded a scene out";
     EXPECT_FALSE(many.trouble.empty());
+}
+
+TEST_F(Desk, DroppedFilesAreASceneAnImportOrToldInWords) {
+    using Words = std::vector<std::string>;
+    EXPECT_EQ(meaning_of({"/a/x.tact"}).scene, "/a/x.tact");
+    EXPECT_EQ(meaning_of({"/a/x.PLY.gz"}).import, (Words{"touch", "/a/x.PLY.gz"}));
+    EXPECT_EQ(meaning_of({"/a/ear.nii.gz"}).import, (Words{"drill", "/a/ear.nii.gz"}));
+    EXPECT_EQ(meaning_of({folder_}).import, (Words{"drill", folder_}));
+    EXPECT_EQ(meaning_of({"/a/1.pdb", "/a/m.mrc", "/a/2.cif"}).import,
+              (Words{"dock", "/a/m.mrc", "/a/1.pdb", "/a/2.cif"}));
+    for (const Words& bad :
+         {Words{}, Words{""}, Words{"--help.ply"}, Words{"/a/notes.txt"}, Words{"/a/m.mrc"},
+          Words{"/a/1.pdb"}, Words{"/a/m.mrc", "/a/n.map", "/a/1.pdb"}, Words{"/a/x.ply", "/a/y.ply"},
+          Words{"/a/x.tact", "/a/m.mrc", "/a/1.pdb"}, Words(kDroppedMost + 1, "/a/1.pdb")}) {
+        const Dropped got = meaning_of(bad);
+        EXPECT_TRUE(got.scene.empty() && got.import.empty());
+        EXPECT_NE(got.trouble.find("What can be dropped"), std::string::npos) << got.trouble;
+    }
 }
 
 TEST_F(Desk, SizesAndTimesReadWell) {

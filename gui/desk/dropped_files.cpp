@@ -1,0 +1,90 @@
+#include "gui/desk/dropped_files.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace tact {
+namespace {
+
+enum class RawKind { none, scene, map, structure, mesh, volume };
+
+RawKind raw_kind(const std::string& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) return RawKind::volume;  // of DICOM files or pictures
+    std::string name = std::filesystem::path(file).filename().string();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (name.ends_with(".tact")) return RawKind::scene;
+    if (name.ends_with(".gz")) name.resize(name.size() - 3);
+    const std::string ending = std::filesystem::path(name).extension().string();
+    struct Endings {
+        RawKind kind;
+        std::vector<std::string> endings;
+    };
+    static const Endings kEndings[] = {
+        {RawKind::map, {".mrc", ".map", ".ccp4", ".rec", ".situs", ".sit"}},
+        {RawKind::structure, {".pdb", ".ent", ".cif", ".mmcif"}},
+        {RawKind::mesh, {".ply", ".obj", ".stl", ".off"}},
+        {RawKind::volume, {".nrrd", ".nhdr", ".nii", ".mhd", ".mha"}},
+    };
+    for (const Endings& e : kEndings)
+        if (std::find(e.endings.begin(), e.endings.end(), ending) != e.endings.end()) return e.kind;
+    return RawKind::none;
+}
+
+constexpr const char* kTaken =
+    "\nWhat can be dropped: a scene (.tact); a map (.mrc .map .ccp4 .rec .situs) together with its "
+    "structures (.pdb "
+    ".cif); a mesh (.ply .obj .stl .off); a scan (.nrrd .nhdr .nii .mhd .mha, or a folder of DICOM files or "
+    "pictures).";
+
+}  // namespace
+
+Dropped meaning_of(const std::vector<std::string>& files) {
+    Dropped out;
+    const auto no = [&](const std::string& why) {
+        out = {{}, {}, why + kTaken};
+        return out;
+    };
+    if (files.empty()) return no("Nothing was dropped.");
+    if (files.size() > kDroppedMost)
+        return no("Too many files at once: a map and 16 structures are the most.");
+    std::vector<std::string> maps, structures, others;
+    for (const std::string& file : files) {
+        // Words of a command: an option must not be made of a name.
+        if (file.empty() || file.front() != '/') return no("A dropped file has no absolute path.");
+        switch (raw_kind(file)) {
+            case RawKind::none:
+                return no("'" + std::filesystem::path(file).filename().string() +
+                          "' is of no kind that Tact reads: its ending says what a file is.");
+            case RawKind::map:
+                maps.push_back(file);
+                break;
+            case RawKind::structure:
+                structures.push_back(file);
+                break;
+            default:
+                others.push_back(file);
+        }
+    }
+    if (maps.empty() && structures.empty()) {
+        if (others.size() > 1) return no("One scene, mesh or scan at a time.");
+        const RawKind kind = raw_kind(others[0]);
+        if (kind == RawKind::scene)
+            out.scene = others[0];
+        else
+            out.import = {kind == RawKind::mesh ? "touch" : "drill", others[0]};
+        return out;
+    }
+    if (!others.empty()) return no("A map and its structures cannot come together with other files.");
+    if (maps.size() != 1 || structures.empty())
+        return no(maps.empty()       ? "A structure needs the map that it is docked into: drop both together."
+                  : maps.size() == 1 ? "A map needs a structure to dock into it: drop both together."
+                                     : "One map at a time.");
+    out.import = {"dock", maps[0]};
+    out.import.insert(out.import.end(), structures.begin(), structures.end());
+    return out;
+}
+
+}  // namespace tact
