@@ -1,5 +1,7 @@
 #include "gui/panels/keys.hpp"
 
+#include <algorithm>
+
 namespace tact {
 namespace {
 
@@ -111,6 +113,11 @@ bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     const KeyStroke &p = a.stroke, &q = b.stroke;
     return p.code == q.code && p.control == q.control && p.shift == q.shift &&
            p.character <= last_character(b) && q.character <= last_character(a);
+}
+
+int sheet_columns(int rows, int rows_high, int columns_wide) noexcept {
+    constexpr int kLong = 16;  // seen at a glance; a longer one hides the scene over its whole height
+    return columns_wide >= 2 && rows > std::min(rows_high, kLong) ? 2 : 1;
 }
 
 }  // namespace tact

@@ -87,5 +87,7 @@ struct KeyFound {
 [[nodiscard]] KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept;
 // Whether both may apply at once and one stroke would mean both.
 [[nodiscard]] bool collide(const KeyRow& a, const KeyRow& b) noexcept;
+// Columns of the sheet, 1 or 2: two where both have room side by side and one would be long to read or too high.
+[[nodiscard]] int sheet_columns(int rows, int rows_high, int columns_wide) noexcept;
 
 }  // namespace tact

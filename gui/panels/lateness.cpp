@@ -72,14 +72,14 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
     const std::pair<const char*, std::int64_t> figures[] = {
         {"p50", f.p50_ns}, {"p99", f.p99_ns}, {"p99.9", f.p999_ns}, {"max", f.max_ns}};
     // In two columns where there is room for them.
-    const bool one = 0.5F * size.x < width_of("p99.9 99.9 µs ");
+    const bool one = 0.5F * size.x < width_of("p99.9  99.9 µs ");
     const std::size_t columns = one ? 1 : 2;
     const float rows = one ? 4.0F : 2.0F;
     for (std::size_t i = 0; i < std::size(figures); ++i) {
         const ImVec2 where{at.x + 0.5F * size.x * static_cast<float>(i % columns),
                            at.y + (1.08F + 1.02F * static_cast<float>(i / columns)) * line};
         label(where, colour::kDim, figures[i].first);
-        label({where.x + width_of("p99.9 "), where.y}, colour::kText,
+        label({where.x + width_of("p99.9  "), where.y}, colour::kText,
               duration_text(1e-9 * static_cast<double>(figures[i].second)));
     }
 

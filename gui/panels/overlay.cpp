@@ -184,14 +184,15 @@ void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {
                       nullptr, most);
 }
 
-// Those that mean something now, in as many columns as the height asks for.
+// Those that mean something now.
 void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
     std::vector<const KeyRow*> rows;
     for (const KeyRow& row : key_rows())
         if (applies(row.when, now)) rows.push_back(&row);
     const float line = pen.theme.px(20.0F), pad = pen.theme.px(14.0F), column = pen.theme.px(430.0F);
-    const auto fit = static_cast<std::size_t>(std::max((v.height - 4.0F * pad) / line, 1.0F));
-    const std::size_t columns = std::min<std::size_t>((rows.size() + fit - 1) / fit, 2);
+    const auto columns = static_cast<std::size_t>(
+        sheet_columns(static_cast<int>(rows.size()), static_cast<int>((v.height - 4.0F * pad) / line),
+                      static_cast<int>(v.width / column)));
     const std::size_t each = (rows.size() + columns - 1) / columns;
     const float w = column * static_cast<float>(columns), h = line * static_cast<float>(each) + 2.0F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.5F * (v.height - h)};

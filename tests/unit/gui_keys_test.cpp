@@ -64,6 +64,13 @@ TEST(Keys, EveryActHasAKeyAndEveryRowWords) {
     EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAct::count));
 }
 
+TEST(Keys, ALongSheetHasTwoColumnsWhereBothHaveRoom) {
+    EXPECT_EQ(sheet_columns(13, 40, 2), 1);  // a short one stays together
+    EXPECT_EQ(sheet_columns(24, 40, 2), 2);
+    EXPECT_EQ(sheet_columns(24, 40, 1), 1);  // a second one would be cut off at the sides
+    EXPECT_EQ(sheet_columns(13, 8, 2), 2);   // too high for the view, though short
+}
+
 TEST(Keys, TheSheetTakesEscBeforeTheBodiesDo) {
     KeySituation now = where_applies(KeyWhen::bodies);
     const KeyStroke escape{KeyCode::escape, '\0', false, false};
