@@ -289,7 +289,7 @@ std::string CalibrationDesk::words_on_glass() const {
 
 std::vector<PictureVertex> CalibrationDesk::picture(const GlassSize& glass, std::size_t eye) const {
     const Calibration& c = *calibration_;
-    if (c.step() == CalibrationStep::picture) return frame_picture(glass);
+    if (c.step() == CalibrationStep::picture) return frame_picture(glass, c.draft().screen_measured);
     if (c.step() >= CalibrationStep::eyes) return test_picture(glass, {eye, tool_mm()});
     MarksPicture what;
     what.marks = c.step() == CalibrationStep::screen ||

@@ -87,7 +87,7 @@ std::array<double, 5> stair_depths_mm(const GlassSize& glass) {
     return {-2.0 * rise, -rise, 0.0, rise, 2.0 * rise};
 }
 
-std::vector<PictureVertex> frame_picture(const GlassSize& glass) {
+std::vector<PictureVertex> frame_picture(const GlassSize& glass, bool known) {
     PicturePen pen(glass.px_mm);
     pen.frame(Point::Zero(), glass.width_mm, glass.height_mm, 2.0 * glass.px_mm, kLine);
     corners(pen, glass, kNow);
@@ -103,11 +103,13 @@ std::vector<PictureVertex> frame_picture(const GlassSize& glass) {
     };
     arrow({x, 0.0, 0.0}, {1.0, 0.0, 0.0});
     arrow({0.0, y, 0.0}, {0.0, 1.0, 0.0});
-    const auto number = [](double mm) { return std::to_string(static_cast<int>(std::lround(mm))); };
-    pen.text_centred({-0.25 * glass.width_mm, 1.4 * letters, 0.0}, letters,
-                     "WIDTH " + number(glass.width_mm) + " MM", kLine);
-    pen.text({1.2 * letters, 0.28 * glass.height_mm, 0.0}, letters,
-             "HEIGHT " + number(glass.height_mm) + " MM", kLine);
+    const auto words = [known](const char* what, double mm) {
+        return known ? std::string(what) + " " + std::to_string(static_cast<int>(std::lround(mm))) + " MM"
+                     : std::string(what) + " IN MM";
+    };
+    pen.text_centred({-0.25 * glass.width_mm, 1.4 * letters, 0.0}, letters, words("WIDTH", glass.width_mm),
+                     kLine);
+    pen.text({1.2 * letters, 0.28 * glass.height_mm, 0.0}, letters, words("HEIGHT", glass.height_mm), kLine);
     const std::string what = "MEASURE BETWEEN THE OUTER EDGES";
     pen.text_centred({0.0, -0.32 * glass.height_mm, 0.0}, fitted_mm(glass, 0.8 * letters, what), what, kNow);
     return pen.take();

@@ -18,8 +18,8 @@ struct GlassSize {
     double px_mm = 1.0;  // of the larger edge of a pixel
 };
 
-// The edges that a ruler is laid along.
-[[nodiscard]] std::vector<PictureVertex> frame_picture(const GlassSize& glass);
+// The edges that a ruler is laid along; with numbers where the size is known.
+[[nodiscard]] std::vector<PictureVertex> frame_picture(const GlassSize& glass, bool known);
 
 enum class MarkLook : std::uint8_t { open, taken, current };
 struct MarksPicture {
