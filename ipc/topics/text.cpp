@@ -25,6 +25,8 @@ std::string number(double value, int digits = 6) {
     return text;
 }
 
+std::string late_text(double us) { return us < 1e3 ? number(us, 3) + " us" : number(1e-3 * us, 3) + " ms"; }
+
 std::string path_text(double index) {
     if (index == static_cast<double>(kPicturePathIndex)) return "picture";
     if (index == static_cast<double>(kForcePathIndex)) return "force";
@@ -286,15 +288,15 @@ std::string event_text(const EventTopic& event) {
         case EventCode::fault_latched:
             return what + ": " + run_reason_text(code_of<RunReason>(event.a)) + " (" + b + ")";
         case EventCode::overrun:
-            return what + ": " + a + " us late, " + b + " so far";
+            return what + ": " + late_text(event.a) + " late, " + b + " so far";
         case EventCode::force_limited:
-            return what + ": " + a + " N wanted, " + b + " N allowed";
+            return what + ": " + number(event.a, 3) + " N wanted, " + b + " N allowed";
         case EventCode::torque_limited:
-            return what + ": " + a + " N m wanted, " + b + " N m allowed";
+            return what + ": " + number(event.a, 3) + " N m wanted, " + b + " N m allowed";
         case EventCode::slew_limited:
-            return what + ": " + a + " N a cycle wanted, " + b + " N allowed";
+            return what + ": " + number(event.a, 3) + " N a cycle wanted, " + b + " N allowed";
         case EventCode::torque_slew_limited:
-            return what + ": " + a + " N m a cycle wanted, " + b + " N m allowed";
+            return what + ": " + number(event.a, 3) + " N m a cycle wanted, " + b + " N m allowed";
         case EventCode::gui_silent:
             return what + ": for " + a + " ms";
         case EventCode::command_done:

@@ -54,8 +54,9 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
         return event_text(e);
     };
     EXPECT_EQ(text(EventCode::overrun, 120, 3), "overrun: 120 us late, 3 so far");
+    EXPECT_EQ(text(EventCode::overrun, 8987.07, 4), "overrun: 8.99 ms late, 4 so far");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
-    EXPECT_EQ(text(EventCode::force_limited, 5.5, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
+    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
