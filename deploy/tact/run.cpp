@@ -104,7 +104,11 @@ private:
         rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
         if (options_.gui) {
             ChildSettings gui;
-            gui.arguments = {facts_.scene.string(), "--session", options_.session, "--size", options_.size};
+            gui.arguments = {facts_.scene.string(), "--session", options_.session};
+            // A desk file has a size of its own.
+            if (options_.size_given ||
+                std::find(options_.visual.begin(), options_.visual.end(), "--desk") == options_.visual.end())
+                gui.arguments.insert(gui.arguments.end(), {"--size", options_.size});
             gui.environment = display_;
             if (!options_.screenshot.empty())
                 gui.arguments.insert(gui.arguments.end(), {"--screenshot", options_.screenshot.string()});

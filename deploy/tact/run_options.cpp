@@ -47,6 +47,8 @@ constexpr Passed kVisual[] = {
     {"--fps-max", "FPS", "draw no more often"},
     {"--particles", "N", "keep so many over bone, to measure what they cost"},
     {"--stereo", "MODE", "anaglyph, side-by-side, top-bottom, two-windows or quad-buffer"},
+    {"--desk", "FILE",
+     "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
     {"--stage", "FILE", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
     {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
 };
@@ -156,6 +158,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     auto* const visual = app.add_option_group("Window", "options that go on to tact-gui");
     visual->add_option("--size", options.size, "of the window in pixels")
         ->type_name("WxH")
+        ->each([&options](const std::string&) { options.size_given = true; })
         ->capture_default_str();
     visual->add_flag_callback(
         "--test-picture", [&options] { options.visual.emplace_back("--test-picture"); },

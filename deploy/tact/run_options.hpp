@@ -23,6 +23,7 @@ struct RunOptions {
     std::filesystem::path flight;  // folder for its last seconds, when something happens
     std::string session = "default";
     std::string size = "1280x800";   // of the window
+    bool size_given = false;         // by a person
     std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: beside tact
     bool quiet = false;              // no table
     // From the request to end to SIGKILL; the window may be writing the picture.

@@ -46,6 +46,12 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
     }
     view_options_.depth_cue = options.depth_cue;
+    if (!options.desk_file.empty()) {
+        state_.toggles = options.desk.toggles;
+        state_.toggles.style = SceneToggles{}.style;  // of the scene
+        state_.span_choice = options.desk.span_choice;
+        state_.lateness_choice = options.desk.lateness_choice;
+    }
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
     if (options.stage.mode != StereoMode::off) make_stage(options.stage);
     if (!options.scene.empty())
@@ -67,6 +73,7 @@ int GuiApp::run() {
         frame(now, last && pictures_.wanted_at_end());
         if (!last) clock_.pace(fps_max_);
     }
+    keep_desk();
     desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
     drilling_.save(controller_, options_.report);
     write_frame_report(options_.frames, frame_figures(clock_, passes_));

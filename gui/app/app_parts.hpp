@@ -46,6 +46,8 @@ private:
     void follow_scene();
     void use_scene(DrillStart drill);
     void home_view();
+    void begin_as_left();
+    void keep_desk() const;
     void look_at_burr();
     void show_bone(DrillStart drill);
     void handle_input();
@@ -92,6 +94,7 @@ private:
     DrillShow drilling_{window_.software()};
     float bone_reach_a_ = 0.0F;
     bool near_burr_wanted_ = options_.near_burr;
+    bool as_left_wanted_ = !options_.desk_file.empty();  // for the first scene that is shown
     BodyList list_;
     SecondHand second_hand_;
     RingCursor traces_place_;  // in the trace ring

@@ -69,6 +69,7 @@ void GuiApp::use_scene(DrillStart drill) {
     camera_.frame(view_->radius_a());
     bone_reach_a_ = 0.0F;
     home_view();
+    begin_as_left();
     std::vector<Pose> homes;
     for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
     list_.start(homes);
@@ -88,6 +89,41 @@ void GuiApp::home_view() {
     if (content_ && content_->bone && bone_reach_a_ > 0.0F)
         camera_.approach(Eigen::Vector3f::Zero(), kBoneShown * bone_reach_a_);
     camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
+}
+
+// The scene is drawn and seen as when the window was closed, if it is the same one.
+void GuiApp::begin_as_left() {
+    const DeskSettings& desk = options_.desk;
+    if (!std::exchange(as_left_wanted_, false) || desk.scene != content_->checksum || desk.distance_a <= 0.0)
+        return;
+    state_.toggles.style = desk.toggles.style;
+    state_.toggles.molecule = desk.toggles.molecule;
+    state_.toggles.colouring = desk.toggles.colouring;
+    camera_.place(desk.target_a.cast<float>(), desk.q_eye_scene.cast<float>(),
+                  static_cast<float>(desk.distance_a));
+}
+
+void GuiApp::keep_desk() const {
+    if (options_.desk_file.empty()) return;
+    DeskSettings desk;
+    const Window::Size size = window_.size();
+    desk.width_px = size.width;
+    desk.height_px = size.height;
+    desk.traces = state_.strip == 1;
+    desk.span_choice = state_.span_choice;
+    desk.lateness_choice = state_.lateness_choice;
+    desk.toggles = state_.toggles;
+    if (content_) {
+        desk.scene = content_->checksum;
+        desk.target_a = camera_.target_a().cast<double>();
+        desk.q_eye_scene = camera_.orientation().cast<double>();
+        desk.distance_a = static_cast<double>(camera_.distance_a());
+    }
+    try {
+        write_desk_file(options_.desk_file, desk);
+    } catch (const StartupError& e) {
+        spdlog::error("{}", e.what());
+    }
 }
 
 void GuiApp::look_at_burr() {

@@ -31,19 +31,23 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
            "with --screenshot NAME.png: also NAME-01.png and so on, of the view alone, so many seconds apart")
         ->check(CLI::Range(0.1, 1e5));
     app.add_option("--zoom", options.zoom, "so many times nearer at the start")->check(CLI::Range(0.1, 20.0));
-    app.add_option("--size", size, "size of the window in pixels, as 1280x720")
-        ->check(CLI::Validator(
-            [&options](std::string& text) -> std::string {
-                int width = 0, height = 0;
-                char rest = '\0';
-                if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 ||
-                    height < 240 || width > 16384 || height > 16384)
-                    return "--size: '" + text + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384";
-                options.width_px = width;
-                options.height_px = height;
-                return {};
-            },
-            "WxH"));
+    app.add_option("--desk", options.desk_file,
+                   "TOML file of what was set in the window: begin as it says, and write it at the end; it "
+                   "need not exist");
+    CLI::Option* const size_option =
+        app.add_option("--size", size, "size of the window in pixels, as 1280x720");
+    size_option->check(CLI::Validator(
+        [&options](std::string& text) -> std::string {
+            int width = 0, height = 0;
+            char rest = '\0';
+            if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 ||
+                height < 240 || width > 16384 || height > 16384)
+                return "--size: '" + text + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384";
+            options.width_px = width;
+            options.height_px = height;
+            return {};
+        },
+        "WxH"));
     app.add_option("--ui-scale", options.ui_scale,
                    "letters and panels so many times as large as the display's size and density ask for")
         ->check(CLI::Range(0.5, 4.0));
@@ -99,6 +103,14 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         if (!options.stage_file.empty() &&
             !(options.calibrate && !std::filesystem::exists(options.stage_file)))
             options.stage = read_stage_file(options.stage_file);
+        if (!options.desk_file.empty()) {
+            options.desk = read_desk_file(options.desk_file);
+            options.traces = options.traces || options.desk.traces;
+            if (size_option->count() == 0) {
+                options.width_px = options.desk.width_px;
+                options.height_px = options.desk.height_px;
+            }
+        }
         if (!stereo.empty()) static_cast<void>(read_stereo_mode(stereo, options.stage.mode));
         if (swap_eyes) options.stage.eyes.swapped = !options.stage.eyes.swapped;
     } catch (const CLI::ParseError& e) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gui/app/contour_option.hpp"
+#include "gui/desk/desk_file.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/stage/stage_file.hpp"
 
@@ -14,6 +15,9 @@ namespace tact {
 struct GuiOptions {
     std::string scene;  // empty: the controller's
     std::string session = "default";
+    std::string
+        desk_file;      // what a person set in the window: read at the start, written at the end; empty: none
+    DeskSettings desk;  // as it was read
     std::string hand_over;   // the launcher's folder, where it takes wishes for another scene; empty: none
     std::string screenshot;  // empty: none
     std::string report;      // of drilling, JSON, at the end; empty: none

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace tact {
+namespace {
+
+constexpr float kNearest = 0.05F, kFarthest = 30.0F;  // of the target, in radii of what is shown
+
+}  // namespace
 
 void Camera::frame(float radius_a) {
     radius_a_ = std::isfinite(radius_a) ? std::clamp(radius_a, 1.0F, 1e13F) : 50.0F;
@@ -21,8 +26,17 @@ void Camera::home() {
 void Camera::approach(const Eigen::Vector3f& target_a, float shown_a) {
     if (!target_a.allFinite() || !std::isfinite(shown_a) || target_a.norm() > 4.0F * radius_a_) return;
     target_a_ = target_a;
-    distance_a_ =
-        std::clamp(1.06F * shown_a / std::sin(0.5F * kFieldOfViewRad), 0.05F * radius_a_, 30.0F * radius_a_);
+    distance_a_ = std::clamp(1.06F * shown_a / std::sin(0.5F * kFieldOfViewRad), kNearest * radius_a_,
+                             kFarthest * radius_a_);
+}
+
+void Camera::place(const Eigen::Vector3f& target_a, const Eigen::Quaternionf& q_eye_scene, float distance_a) {
+    if (!target_a.allFinite() || !q_eye_scene.coeffs().allFinite() || !std::isfinite(distance_a) ||
+        target_a.norm() > 4.0F * radius_a_ || !(q_eye_scene.norm() > 0.5F))
+        return;
+    target_a_ = target_a;
+    q_eye_scene_ = q_eye_scene.normalized();
+    distance_a_ = std::clamp(distance_a, kNearest * radius_a_, kFarthest * radius_a_);
 }
 
 void Camera::rotate(float dx_px, float dy_px, float view_height_px) {
@@ -46,7 +60,7 @@ void Camera::pan(float dx_px, float dy_px, float view_height_px) {
 void Camera::zoom(float steps) {
     if (!std::isfinite(steps)) return;
     const float factor = std::pow(0.9F, std::clamp(steps, -20.0F, 20.0F));
-    distance_a_ = std::clamp(distance_a_ * factor, 0.05F * radius_a_, 30.0F * radius_a_);
+    distance_a_ = std::clamp(distance_a_ * factor, kNearest * radius_a_, kFarthest * radius_a_);
 }
 
 Eigen::Matrix4f Camera::view() const {

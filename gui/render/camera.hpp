@@ -22,6 +22,9 @@ public:
     // Turns to a place without turning round: a ball of `shown_a` about it fills the view. Not finite: stays.
     void approach(const Eigen::Vector3f& target_a, float shown_a);
 
+    // As it was before, by target_a(), orientation() and distance_a(). Not finite, or too far: stays.
+    void place(const Eigen::Vector3f& target_a, const Eigen::Quaternionf& q_eye_scene, float distance_a);
+
     // Pixels of the mouse in a view of this height; y down, as windows count.
     void rotate(float dx_px, float dy_px, float view_height_px);
     void pan(float dx_px, float dy_px, float view_height_px);
