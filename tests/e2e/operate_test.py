@@ -7,6 +7,7 @@ Exit code 77: no window can be opened or no key pressed here.
 """
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -56,12 +57,20 @@ class Desk:
             if now is not None and true(now):
                 return now
             time.sleep(0.1)
-        sys.exit("FAILED %s: not so after %.0f s; the log:\n%s" % (what, PATIENCE_S, open(self.log.name, errors="replace").read()[-3000:]))
+        sys.exit("FAILED %s: not so after %.0f s; the log:\n%s" % (what, PATIENCE_S, self.said()[-3000:]))
 
-    def key(self, *keys):
-        for k in keys:
-            subprocess.run(["xdotool", "key", k], env=self.env, check=True)
-            time.sleep(2.5)
+    def said(self):
+        with open(self.log.name, errors="replace") as f:
+            return f.read()
+
+    def key(self, key):
+        subprocess.run(["xdotool", "key", key], env=self.env, check=True)
+
+    # Keys that place a body, each after the controller has done what the one before asked for.
+    def place(self, *keys):
+        for done, key in enumerate(keys, 1):
+            self.key(key)
+            self.wait("%s places the body" % key, lambda s: self.said().count("command place a body: done") >= done)
 
     def end(self):
         self.run.send_signal(signal.SIGINT)
@@ -94,15 +103,16 @@ def arming(desk):
 
 
 def gestures(desk):
-    # Hardly any force, so that the body stays where it is put; R looks for the best place from there.
-    places = {}
+    # Hardly any force, so that the body stays about where it is put; R looks for the best place from there.
+    places, moved_a = [], []
     for keys in (("r",), ("r", "ctrl+z"), ("r", "ctrl+z", "ctrl+y")):
         desk.start("--force-scale", "0.001", "--start-offset-a", "6", "--seed", "3")
-        desk.key(*keys)
-        places[keys] = desk.end()["fit"]["offset_a"]
-    refined, undone, redone = places.values()
-    return expect("R refines: %.2f A from its place" % refined, refined < 0.5) + \
-        expect("Ctrl+Z takes that back: %.2f A" % undone, undone > 3.0) + \
+        desk.place(*keys)
+        places.append(desk.end()["fit"]["offset_a"])
+        moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", desk.said()).group(1)))
+    refined, undone, redone = places
+    return expect("R refines: moved %.2f A, %.2f A from its place" % (moved_a[0], refined), moved_a[0] > 1.0 and refined < 0.5) + \
+        expect("Ctrl+Z takes %.2f A back: %.2f A" % (moved_a[1], undone), moved_a[1] > 1.0 and undone > 0.5 * moved_a[1]) + \
         expect("Ctrl+Y does it again: %.2f A" % redone, abs(redone - refined) < 0.1)
 
 

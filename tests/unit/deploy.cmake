@@ -23,7 +23,7 @@ if(TACT_GUI AND NOT TACT_FUZZ)
     set_tests_properties(deploy_drill_e2e_test PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     add_test(NAME deploy_replay_e2e_test COMMAND tests/unit/deploy_replay_e2e_test.sh $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     set_tests_properties(deploy_replay_e2e_test PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
-    if(NOT TACT_SANITIZE)  # keys are pressed at times
+    if(NOT TACT_SANITIZE)
         add_test(NAME operate_test COMMAND tests/e2e/operate_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         set_tests_properties(operate_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
