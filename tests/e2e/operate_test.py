@@ -73,6 +73,7 @@ class Desk:
             self.wait("%s places the body" % key, lambda s: self.said().count("command place a body: done") >= done)
 
     def end(self):
+        time.sleep(2.5)  # the launcher looks at bodies from time to time
         self.run.send_signal(signal.SIGINT)
         self.run.wait(60)
         self.run = None
@@ -103,10 +104,13 @@ def arming(desk):
 
 
 def gestures(desk):
-    # Hardly any force, so that the body stays about where it is put; R looks for the best place from there.
+    # Without force, so that the body stays where it is put and the hand makes no gesture of its own; R looks for the best
+    # place from there.
     places, moved_a = [], []
     for keys in (("r",), ("r", "ctrl+z"), ("r", "ctrl+z", "ctrl+y")):
         desk.start("--force-scale", "0.001", "--start-offset-a", "6", "--seed", "3")
+        desk.key("space")
+        desk.wait("Space disarms", lambda s: s["state"] == "ready")
         desk.place(*keys)
         places.append(desk.end()["fit"]["offset_a"])
         moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", desk.said()).group(1)))
