@@ -16,7 +16,7 @@
 // Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
 //          of a surface kept fine around the tool by tend() (adaptive_surface.hpp), and where that does not hold
 //          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
-//          radius of full detail, kLeastM to kMostM beyond the tool's.
+//          radius of full detail, TendedSurface::kLeastM to kMostM beyond the tool's.
 // Bodies   one, the proxy, in the hand; orders are refused.
 // Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
 // Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.

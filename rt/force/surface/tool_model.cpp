@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // of its radius
-// About twice the median that was measured: 1000 points of a block flat on a rough sphere took 70 us (TOOLS.md).
+// Two to three times the median that was measured: 1000 points of a block flat on a rough sphere take 40 to 77 us (TOOLS.md).
 constexpr double kStepUs = 10.0, kPointUs = 0.15;
 
 bool holds_tool(const Pose& pose) noexcept {
