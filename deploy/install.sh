@@ -56,6 +56,26 @@ tact_install_packages() {
     fi
 }
 
+# tact_unpack_tool PACKAGE PROGRAM: a program of a package that must not be installed (it starts a server), in
+# build/tools. Nothing is run of the package. Prints the folder of the program; fails where it cannot be had.
+tact_unpack_tool() {
+    local package=$1 program=$2 into=build/tools/$1 found said
+    found=$(find "$into" -path "*/bin/$program" -type f 2>/dev/null | head -n 1)
+    if [ -z "$found" ]; then
+        [ "${TACT_NO_INSTALL:-0}" != 1 ] || return 1
+        mkdir -p "$into" || return 1
+        if ! said=$(cd "$into" && apt-get download -qq "$package" 2>&1 && dpkg-deb --extract "$package"_*.deb .); then
+            echo "unpack $package: $said" >&2
+            echo "  mend: check the network, run apt-get update, or put $program into PATH" >&2
+            return 1
+        fi
+        rm -f "$into/$package"_*.deb
+        found=$(find "$into" -path "*/bin/$program" -type f | head -n 1)
+        [ -n "$found" ] || { echo "unpack $package: there is no $program in it" >&2; return 1; }
+    fi
+    (cd "$(dirname "$found")" && pwd)
+}
+
 # tact_build PRESET [TARGET...]: configures when needed and builds. Says nothing when there is nothing to do. A
 # compiler cache is used where one is installed; what it holds of other checkouts fits this one too.
 tact_build() {

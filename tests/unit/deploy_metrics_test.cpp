@@ -197,7 +197,7 @@ TEST(Metrics, AFileIsReplacedWhole) {
 
 TEST(Metrics, PromtoolTakesThePageAndTheRules) {
     const std::filesystem::path promtool = find_in_path("promtool");
-    if (promtool.empty()) GTEST_SKIP() << "promtool is not installed (package prometheus)";
+    if (promtool.empty()) GTEST_SKIP() << "there is no promtool in PATH (./deploy/test fetches one)";
     const ScratchFolder folder;
     const auto region = a_region();
     Metrics metrics("lab");
