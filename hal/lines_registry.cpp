@@ -11,14 +11,18 @@ namespace tact {
 namespace {
 
 std::unique_ptr<Lines> make_none(const LinesSettings& /*s*/) { return nullptr; }
-std::unique_ptr<Lines> make_sim(const LinesSettings& s) { return std::make_unique<SimLines>(s.logic); }
+std::unique_ptr<Lines> make_sim(const LinesSettings& s) {
+    auto lines = std::make_unique<SimLines>(s.logic);
+    lines->board().obey_signals();
+    return lines;
+}
 std::unique_ptr<Lines> make_gpio(const LinesSettings& s) {
     return std::make_unique<PumpedLines>(s.logic, std::make_unique<GpioPort>(s.gpio), s.every);
 }
 
 constexpr std::array kLines{
     LinesEntry{"none", "no line is looked at", &make_none},
-    LinesEntry{"sim", "emulated lines on which all is well", &make_sim},
+    LinesEntry{"sim", "emulated lines: SIGUSR1 presses the emergency stop, SIGUSR2 lets it go", &make_sim},
     LinesEntry{"gpio", "a GPIO chip, such as a USB adapter's", &make_gpio},
 };
 

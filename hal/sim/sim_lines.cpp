@@ -1,8 +1,27 @@
 #include "hal/sim/sim_lines.hpp"
 
+#include <signal.h>
 #include <time.h>
 
 namespace tact {
+
+namespace {
+
+// Of the process and not of a board: a signal may come after a board went.
+std::atomic<bool> stop_by_signal{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void on_line_signal(int number) { stop_by_signal.store(number == SIGUSR1); }
+
+}  // namespace
+
+void SimBoard::obey_signals() {
+    struct sigaction action {};
+    action.sa_handler = &on_line_signal;
+    action.sa_flags = SA_RESTART;
+    for (const int number : {SIGUSR1, SIGUSR2}) sigaction(number, &action, nullptr);
+    by_signal_ = true;
+}
 
 LinePortInfo SimBoard::open() {
     driven_.store(0);
@@ -16,7 +35,8 @@ bool SimBoard::reopen() noexcept {
 }
 
 LineReading SimBoard::read() noexcept {
-    const LinesFault fault = fault_.load();
+    const bool stopped = by_signal_ && stop_by_signal.load();
+    const LinesFault fault = stopped ? LinesFault::stop_pressed : fault_.load();
     LineReading in{.good = true, .closed = kInputs, .touched = touched_.exchange(0)};
     const bool enabled = (driven_.load() & kLineEnable) != 0;
     const auto open = [&in](int bits) { in.closed = static_cast<std::uint8_t>(in.closed & ~bits); };

@@ -1,6 +1,6 @@
 // Emulated safety lines: contacts that tests open, an amplifier whose read-back follows the enable line.
 //
-// SimBoard  the adapter with its wiring; faults may come from any thread
+// SimBoard  the adapter with its wiring; faults may come from any thread, and an emergency stop from another process
 // SimLines  the board behind the same LineWorker as a real adapter's, in lockstep: each read() is a look
 //           at its `now`, so the same calls give the same states, on any clock
 #pragma once
@@ -41,10 +41,13 @@ public:
     // Pedals of tools that are down: kLineBurr, kLineSuction.
     void press(std::uint8_t pedals) noexcept { pressed_.store(pedals); }
     [[nodiscard]] std::uint8_t driven() const noexcept { return driven_.load(); }  // LineOutput
+    // From now on SIGUSR1 presses the emergency stop and SIGUSR2 lets it go. Start-up.
+    void obey_signals();
 
 private:
     std::atomic<LinesFault> fault_{LinesFault::none};
     std::atomic<std::uint8_t> touched_{0}, driven_{0}, pressed_{0};
+    bool by_signal_ = false;
 };
 
 class SimLines final : public Lines {

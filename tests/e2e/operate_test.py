@@ -1,21 +1,35 @@
 #!/usr/bin/python3
-"""What an operator's keys do: pressed in the window of a real run, and seen in what the controller says and in where the body ends.
+"""What an operator does: keys, buttons of the window and the emergency stop in a real run, seen in what the controller says, in the force
+that it records and in where the body ends.
 
 usage: operate_test.py BIN_DIR
 
 Exit code 77: no window can be opened or no key pressed here.
 """
+import csv
 import json
+import math
 import os
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
+
+# The colour of a button that can be pressed, with the mouse on it or not; no letter and no light is as large.
+BUTTONS = {
+    "Arm": lambda r, g, b: g - r > 20 and g < 160,
+    "Disarm": lambda r, g, b: r - g < 50 and g - b > 15 and r - b > 25 and r < 160,
+    "Reset": lambda r, g, b: r - g > 25 and r - b > 25 and abs(g - b) < 20 and r < 160,
+}
+BUTTONS_WITHIN = (310, 360)  # pixels of the window, the controller's card
+SOLID = (12, 14)
+RAMPED_OUT_S = 0.1  # twice what safety.ramp_out_ms gives
 
 
 class Desk:
@@ -24,7 +38,7 @@ class Desk:
     def __init__(self, bin_dir, folder):
         self.bin, self.folder = bin_dir, folder
         read, write = os.pipe()
-        self.x = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1300x760x24"], pass_fds=[write],
+        self.x = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1300x760x24", "-fbdir", folder], pass_fds=[write],
                                   stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as f:
@@ -34,13 +48,13 @@ class Desk:
     def program(self, name):
         return os.path.join(self.bin, name)
 
-    def start(self, *options):
+    def start(self, *options, hand="passive"):
         self.report = os.path.join(self.folder, "run.json")
         if os.path.exists(self.report):
             os.remove(self.report)
         self.log = open(os.path.join(self.folder, "run.log"), "wb")
         self.run = subprocess.Popen(
-            [self.program("tact"), "run", os.path.join(self.folder, "scene.tact"), "--size", "1280x720", "--hand", "passive", "--quiet",
+            [self.program("tact"), "run", os.path.join(self.folder, "scene.tact"), "--size", "1280x720", "--hand", hand, "--quiet",
              "--session", "keys", "--json", self.report, *options], env=self.env, stdout=self.log, stderr=self.log)
         self.wait("the window draws", lambda s: s["gui"]["attached"] and s["gui"]["frames"] and s["gui"]["frames"]["count"] > 20)
         subprocess.run(["xdotool", "mousemove", "800", "300"], env=self.env, check=True)
@@ -65,6 +79,53 @@ class Desk:
 
     def key(self, key):
         subprocess.run(["xdotool", "key", key], env=self.env, check=True)
+
+    # The screen's pixels as (red, green, blue), by place: Xvfb keeps them in a file, in the format of xwd.
+    def picture(self):
+        with open(os.path.join(self.folder, "Xvfb_screen0"), "rb") as f:
+            data = f.read()
+        head = struct.unpack(">25I", data[:100])
+        begin, line = head[0] + 12 * head[19], head[12]
+
+        def pixel(x, y):
+            at = begin + line * y + 4 * x
+            return data[at + 2], data[at + 1], data[at]
+        return pixel
+
+    # Where the window shows the button, ready to be pressed.
+    def button(self, name):
+        pixel, like = self.picture(), BUTTONS[name]
+        wide, high = SOLID
+        for y in range(0, BUTTONS_WITHIN[1] - high, 4):
+            for x in range(0, BUTTONS_WITHIN[0] - wide, 4):
+                if all(like(*pixel(x + dx, y + dy)) for dx in range(0, wide, 2) for dy in range(0, high, 2)):
+                    return x + wide // 2, y + high // 2
+        return None
+
+    # Until the controller has done what it is for: where the window is slow, what it shows may have moved below the mouse.
+    def press(self, name, what, true):
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            if (at := self.button(name)) is not None:
+                subprocess.run(["xdotool", "mousemove", str(at[0]), str(at[1]), "click", "1"], env=self.env, check=True)
+            again = time.monotonic() + (3.0 if at is not None else 0.0)
+            while True:
+                if (now := self.status()) is not None and true(now):
+                    return now
+                if time.monotonic() > again:
+                    break
+                time.sleep(0.1)
+        sys.exit("FAILED %s: not so after %.0f s; the window shows %s %s to press; the log:\n%s" %
+                 (what, PATIENCE_S, "a" if at else "no", name, self.said()[-3000:]))
+
+    # The controller's process.
+    def controller(self):
+        with open("/proc/%d/task/%d/children" % (self.run.pid, self.run.pid)) as f:
+            for pid in map(int, f.read().split()):
+                with open("/proc/%d/comm" % pid) as name:
+                    if name.read().strip() == "tact-rt":
+                        return pid
+        sys.exit("FAILED the run has no controller")
 
     # Keys that place a body, each after the controller has done what the one before asked for.
     def place(self, *keys):
@@ -103,6 +164,60 @@ def arming(desk):
     return expect("Space disarms and Ctrl+Enter arms the controller", True)
 
 
+# Newtons to the device in each recorded cycle, with its time and the state of the controller.
+def forces(desk, recording):
+    table = os.path.join(desk.folder, "cycles.csv")
+    subprocess.run([desk.program("tact"), "record", "--csv", recording, "-o", table], env=desk.env, check=True, stdout=subprocess.DEVNULL)
+    with open(table, newline="") as f:
+        return [(float(r["time_s"]), r["state"], math.hypot(*(float(r["hand0_f%s_n" % axis]) for axis in "xyz"))) for r in csv.DictReader(f)]
+
+
+def buttons(desk):
+    config, recording = os.path.join(desk.folder, "lines.toml"), os.path.join(desk.folder, "run.h5")
+    with open(config, "w") as f:
+        f.write('[lines]\ndriver = "sim"\n')
+    off, on = lambda s: s["state"] == "ready", lambda s: s["state"] == "active"
+    desk.start("--config", config, "--record", recording, "--start-offset-a", "6", "--seed", "3", hand="wander")
+    # A run that is armed within the time for which contacts have to stand is refused, and left to a person.
+    desk.wait("the run is armed", lambda s: "command arm: " in desk.said())
+    desk.key("space")
+    desk.wait("Space disarms", off)
+    desk.press("Arm", "the button arms", on)
+    desk.press("Disarm", "the button disarms", off)
+    cycles = desk.press("Arm", "the button arms again", on)["servo"]["cycles"]
+    bad = expect("the buttons Disarm and Arm disarm and arm", True)
+    desk.wait("the force has ramped in", lambda s: s["servo"]["cycles"] > cycles + 1500)
+
+    os.kill(desk.controller(), signal.SIGUSR1)
+    stopped = desk.wait("the emergency stop stops", lambda s: s["state"] == "fault")
+    bad += expect("the emergency stop is what the controller says: %s, lines %s" % (stopped["reason"], stopped["lines"]["state"]),
+                  stopped["reason"] == stopped["lines"]["reason"] == "the emergency stop is pressed" and stopped["lines"]["state"] == "stop")
+    refused = desk.press("Reset", "while it is pressed nothing resets it", lambda s: "command reset fault: refused" in desk.said())
+    bad += expect("Reset while the stop is pressed leaves the fault", refused["state"] == "fault")
+    os.kill(desk.controller(), signal.SIGUSR2)
+    released = desk.wait("the stop is let go", lambda s: s["lines"]["state"] == "wait to be re-armed")
+    bad += expect("the stop let go leaves the fault", released["state"] == "fault")
+    desk.press("Reset", "the button resets", off)
+    desk.press("Arm", "the button arms after a stop", on)
+    desk.press("Disarm", "the button disarms after a stop", off)
+    bad += expect("after Reset the button Arm arms again", True)
+    desk.end()
+
+    rows = forces(desk, recording)
+    states = [state for _, state, _ in rows]
+    stop = states.index("fault")
+    felt_n = max(n for _, state, n in rows[max(stop - 1000, 0):stop] if state == "active")
+    at_stop = [n for _, state, n in rows if state == "fault"]
+    none, since, before = [], 0.0, None
+    for t, state, n in rows:
+        since, before = (since, before) if state == before else (t, state)
+        if state == "ready" and t - since > RAMPED_OUT_S:
+            none.append(n)
+    return bad + expect("in the second before the stop the hand feels up to %.2f N" % felt_n, felt_n > 0.02) + \
+        expect("from the cycle that sees the stop on there is no force: 0 N in each of %d" % len(at_stop), max(at_stop) == 0.0) + \
+        expect("disarmed there is none: 0 N in each of %d cycles" % len(none), len(none) > 100 and max(none) == 0.0)
+
+
 def gestures(desk):
     # Without force, so that the body stays where it is put and the hand makes no gesture of its own; R looks for the best
     # place from there.
@@ -132,7 +247,7 @@ def main():
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         desk = Desk(sys.argv[1], folder)
         try:
-            return 1 if arming(desk) + gestures(desk) > 0 else 0
+            return 1 if arming(desk) + buttons(desk) + gestures(desk) > 0 else 0
         finally:
             desk.close()
 

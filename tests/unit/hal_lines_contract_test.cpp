@@ -3,8 +3,10 @@
 #include "tests/contract/lines_contract.hpp"
 
 #include <poll.h>
+#include <signal.h>
 
 #include "hal/io/pumped_lines.hpp"
+#include "hal/lines_registry.hpp"
 
 namespace tact {
 namespace {
@@ -60,6 +62,40 @@ TEST(SimLines, a_contact_that_opened_between_two_looks_stops) {
     tick();
     EXPECT_EQ(s.state, LinesState::stopped);
     EXPECT_EQ(s.cause, LinesCause::emergency_stop);
+}
+
+TEST(SimLines, of_a_controller_are_stopped_and_released_by_signals) {
+    LinesSettings settings;
+    settings.driver = "sim";
+    const std::unique_ptr<Lines> lines = make_lines(settings);
+    static_cast<void>(lines->open());
+    Instant now = instant_from_ns(1'000'000'000);
+    LinesSample s;
+    LinesCommand command;
+    const auto ticks = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            now += std::chrono::milliseconds(1);
+            lines->write(command, now);
+            static_cast<void>(lines->read(s, now));
+        }
+    };
+    ticks(40);
+    ++command.rearm;
+    ticks(1);
+    ASSERT_EQ(s.state, LinesState::permitted);
+    raise(SIGUSR1);
+    ticks(1);
+    EXPECT_EQ(s.state, LinesState::stopped);
+    EXPECT_EQ(s.cause, LinesCause::emergency_stop);
+    ++command.rearm;
+    ticks(100);
+    EXPECT_EQ(s.state, LinesState::stopped);  // while it is pressed, whatever a person does
+    raise(SIGUSR2);
+    ticks(100);
+    EXPECT_EQ(s.state, LinesState::waiting);
+    ++command.rearm;
+    ticks(1);
+    EXPECT_EQ(s.state, LinesState::permitted);
 }
 
 }  // namespace
