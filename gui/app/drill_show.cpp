@@ -76,7 +76,7 @@ void DrillShow::prepare(const Controller& controller, SceneView& view, bool shar
 void DrillShow::drawn(SceneView& view, DashboardState& state) {
     if (!view.bone_error().empty()) state.scene.warning = view.bone_error();
     state.scene.bone_shown = view.bone() != nullptr ? view.bone()->filled() : 1.0F;
-    if (site_ && software_) particle_pace_.took(site_->particles().all().size(), view.particles_draw_s());
+    if (site_ && software_) particle_pace_.took(site_->particles().shown().size(), view.particles_draw_s());
 }
 
 void DrillShow::ended(SceneView& view, double work_s) {
@@ -85,7 +85,7 @@ void DrillShow::ended(SceneView& view, double work_s) {
 
 void DrillShow::add_to(LoadTopic& load, SceneView& view) const {
     if (site_) {
-        load.particles = site_->figures().alive;
+        load.particles = site_->figures().shown;
         load.particle_moves = std::min(site_->figures().moves, site_->figures().most);
         load.particles_max = site_->figures().most;
     }

@@ -88,6 +88,7 @@ void Site::step(const Frame& frame) noexcept {
         figures_.suction_blocked = done.suction_blocked;
     }
     figures_.alive = static_cast<std::uint32_t>(particles_.all().size());
+    figures_.shown = static_cast<std::uint32_t>(particles_.shown().size());
     look(dt_s, burr, frame.eye_model_m);
 }
 

@@ -2,7 +2,8 @@
 //
 // In        what changed in the bone (BoneFollower), what the tools do (DrillTopic), the level of "gui.particles"
 // Out       the particles as they are now, what they cost, how long the burr was seen while it drilled
-// Level     share of kMost particles, and of kBudgetMost_s for their steps of one frame
+// Level     share of kMost particles, and of kBudgetMost_s for their steps of one frame; a lower one is kept from its first
+//           frame on: what is too much is shown no more (Particles::shown()) and goes within the budgets of the next ones
 // Mass      ledger().drilled is the sum of all that the bone lost while this was shown
 // Down      into the bone as it faces the surgeon, -z of the model: the patient lies on the side
 // Thread    frame thread
@@ -20,9 +21,9 @@
 namespace tact {
 
 struct SiteFigures {
-    std::uint32_t alive = 0, moves = 0, most = 0;  // of the last frame; at level 1
-    double cost_s = 0.0;                           // of moving them, this frame
-    double drilling_s = 0.0, seen_s = 0.0;         // the burr turned in bone; and of that it was seen
+    std::uint32_t alive = 0, shown = 0, moves = 0, most = 0;  // of the last frame; at level 1
+    double cost_s = 0.0;                                      // of moving them, this frame
+    double drilling_s = 0.0, seen_s = 0.0;  // the burr turned in bone; and of that it was seen
     bool suction_blocked = false;
 };
 

@@ -55,7 +55,7 @@ double share_seen(const Particles& particles, const Vec3& head_m, double radius_
 
     std::array<double, kRays> dimmed{};
     const double reach2 = std::pow(kAcross * radius + kBeside, 2);
-    for (const Particle& p : particles.all()) {
+    for (const Particle& p : particles.shown()) {
         const Vec3 at =
             Vec3(static_cast<double>(p.at[0]), static_cast<double>(p.at[1]), static_cast<double>(p.at[2])) -
             from[0];

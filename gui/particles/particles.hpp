@@ -84,10 +84,14 @@ public:
     bool emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) noexcept;
     ParticleStep step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction,
                       const Stir& stir = {}) noexcept;
-    // From now on there are no more than so many, nor than the settings allow: the least important go.
+    // From now on no more than so many are shown, nor than the settings allow. The least important of what is too much go
+    // with the next steps, within their budgets; until then shown() leaves as many out.
     void keep_at_most(std::uint32_t most) noexcept { most_ = std::min(most, settings_.most); }
 
     [[nodiscard]] std::span<const Particle> all() const noexcept { return particle_; }
+    [[nodiscard]] std::span<const Particle> shown() const noexcept {
+        return all().first(std::min<std::size_t>(particle_.size(), most_));
+    }
     [[nodiscard]] Vec3 place_m(const Particle& p) const noexcept {
         return cells_.to_model(
             Vec3(static_cast<double>(p.at[0]), static_cast<double>(p.at[1]), static_cast<double>(p.at[2])));

@@ -298,7 +298,7 @@ void SceneView::draw_particles(const Pass& pass) {
     if (!cloud_) cloud_ = std::make_unique<ParticleCloud>();
     const ParticleCells& cells = pass.frame.particles->cells();
     const Instant begin = Monotonic::now();
-    cloud_->fill(pass.frame.particles->all());
+    cloud_->fill(pass.frame.particles->shown());
     Eigen::Matrix4f model_from_cells = Eigen::Matrix4f::Identity();
     model_from_cells.topLeftCorner<3, 3>() *= static_cast<float>(cells.cell_m());
     model_from_cells.topRightCorner<3, 1>() = cells.to_model(Vec3::Zero()).cast<float>();

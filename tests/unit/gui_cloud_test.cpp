@@ -6,6 +6,8 @@
 #include "gui/render/camera.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/particle_pace.hpp"
+#include "gui/render/scene_view.hpp"
+#include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
 
 namespace tact {
@@ -167,6 +169,38 @@ TEST_F(GuiCloud, AViewOfAnotherSizeOrFromCloseByDoesNoHarm) {
     static_cast<void>(picture(particles));
     view_.eye_from_cells(2, 3) = 50.0F;  // behind it
     EXPECT_EQ(touched(picture(particles)), 0U);
+}
+
+TEST_F(GuiCloud, ASceneShowsNoMoreParticlesThanThereMayBeWhetherTheyAreGivenUpYetOrNot) {
+    BoneBricks bricks;
+    bricks.size = {32, 32, 32};
+    bricks.voxel_m = 3e-4;
+    Particles particles(bricks, {}, {.most = 5000});
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 at(2 + i % 28, 2 + i / 28 % 28, 14 + i / 784);
+        ASSERT_TRUE(particles.emit(Matter::dust, bricks.to_model(at), Vec3::Zero()));
+    }
+    const auto content = std::make_shared<SceneContent>();
+    content->centre_model_m = bricks.to_model(Vec3::Constant(16.0));
+    Programs programs;
+    SceneView view(content, programs);
+    camera_.frame(static_cast<float>(16.0 * bricks.voxel_m / kAngstromM));
+    ViewFrame frame;
+    frame.width_px = kWidth;
+    frame.height_px = kHeight;
+    frame.particles = &particles;
+    const auto covered = [&] {
+        target_->bind();
+        glViewport(0, 0, kWidth, kHeight);
+        glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        view.draw(camera_.eye(static_cast<float>(kWidth) / kHeight), {}, frame);
+        return touched(read_pixels(kWidth, kHeight));
+    };
+    EXPECT_GT(covered(), 2000U);
+    particles.keep_at_most(0);
+    EXPECT_EQ(particles.all().size(), 3000U);
+    EXPECT_EQ(covered(), 0U);
 }
 
 }  // namespace

@@ -193,6 +193,26 @@ TEST(Site, TheLevelBoundsHowManyThereAre) {
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
+TEST(Site, ShowsNoMoreThanALowerLevelAllowsFromItsFirstFrameOn) {
+    Block bone;
+    Site site(bone.view, bone.labels, 1.0);
+    site.keep(30000);
+    Site::Frame frame = bone.frame();
+    site.step(frame);
+    const std::size_t before = site.particles().shown().size();
+    ASSERT_GT(before, 20000U);
+    EXPECT_EQ(before, site.particles().all().size());
+    frame.level = 0.01F;
+    site.step(frame);
+    EXPECT_LE(site.particles().shown().size(), Site::kMost / 100);
+    EXPECT_EQ(site.figures().shown, site.particles().shown().size());
+    EXPECT_GT(site.particles().all().size(), before / 2);  // no frame has the time to give them all up
+    EXPECT_TRUE(site.particles().ledger().balances());
+    frame.level = 1.0F;
+    site.step(frame);
+    EXPECT_EQ(site.particles().shown().size(), site.particles().all().size());
+}
+
 TEST(Site, KeepsAsManyAsAMeasurementWantsWhileTheyRunOff) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
