@@ -19,7 +19,6 @@
 #include <string>
 #include <vector>
 
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "hal/registry.hpp"
@@ -33,6 +32,7 @@
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
+#include "rt/loop/log_sink.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
 #include "rt/loop/supervisor.hpp"
@@ -272,7 +272,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
 }  // namespace
 
 int main(int argc, char** argv) {
-    spdlog::set_default_logger(spdlog::stderr_color_mt("tact-rt"));
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("tact-rt", make_log_sink(STDERR_FILENO)));
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};

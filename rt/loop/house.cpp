@@ -144,6 +144,7 @@ void House::run() {
             report_.page_faults =
                 faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
             reported_at = now;
+            spdlog::default_logger_raw()->flush();  // what nobody read, said now that somebody does
         }
         report();
         const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;

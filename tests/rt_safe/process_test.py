@@ -3,6 +3,7 @@
 
 usage: process_test.py BIN_DIR WRITE_SMALL_SCENE. Exit 77 (skipped) where nothing of it can run.
 """
+import json
 import os
 import re
 import shutil
@@ -59,6 +60,37 @@ class Process(unittest.TestCase):
             self.assertIn("active to ready", out)
             self.assertIn("ready to off", out)
             self.assertIn("updates a second", out)
+
+    def state(self):
+        said = subprocess.run([os.path.join(BIN, "tact"), "status", "--json"], env=self.env, stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, text=True)
+        return json.loads(said.stdout)["state"] if said.returncode == 0 else None
+
+    def test_a_log_that_nobody_reads_stops_nothing_and_says_later_what_was_lost(self):
+        read, write = os.pipe()
+        filler = os.open(f"/proc/self/fd/{write}", os.O_WRONLY | os.O_NONBLOCK)
+        try:
+            while True:
+                os.write(filler, b"." * 4096)
+        except BlockingIOError:
+            pass
+        os.close(filler)
+        child = subprocess.Popen([os.path.join(BIN, "tact-rt"), self.scene, "--arm"], env=self.env, stderr=write)
+        self.children.append(child)
+        os.close(write)
+        end = time.monotonic() + PATIENCE_S
+        while (state := self.state()) != "active":
+            self.assertLess(time.monotonic(), end, f"the controller is {state}")
+            time.sleep(0.05)
+        with os.fdopen(read, errors="replace") as log:
+            for line in log:
+                if "lines of this log were dropped" in line:
+                    break
+            else:
+                self.fail("it ended without a word of what was lost")
+            child.send_signal(signal.SIGTERM)
+            self.assertIn("updates a second", log.read())
+        self.assertEqual(child.wait(PATIENCE_S), 0)
 
     def test_a_signal_while_it_starts_ends_it_at_once_or_in_order(self):
         for step in range(12):

@@ -1,5 +1,6 @@
 # Tests of rt/safety, rt/govern, rt/loop and hal.
 find_package(rapidcheck REQUIRED)
+find_package(spdlog REQUIRED)
 
 tact_test(unit/safety_state_machine_test.cpp USES base safety)
 tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
@@ -22,6 +23,7 @@ tact_test(unit/loop_head_feed_test.cpp USES base hal topics loop LABELS tsan)
 tact_test(unit/loop_supervisor_test.cpp USES base loop LABELS tsan)
 tact_test(unit/loop_config_arm_test.cpp USES base arm hal loop)
 tact_test(unit/loop_house_test.cpp USES base topics loop)
+tact_test(unit/loop_log_sink_test.cpp USES loop SYSTEM spdlog::spdlog)
 tact_test(unit/rt_scene_bone_test.cpp USES base shm topics assets force start)
 tact_test(unit/rt_start_bodies_test.cpp USES base assets force start)
 tact_test(unit/rt_start_drill_test.cpp USES base shm topics assets hal force loop start)
