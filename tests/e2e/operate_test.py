@@ -134,7 +134,6 @@ class Desk:
             self.wait("%s places the body" % key, lambda s: self.said().count("command place a body: done") >= done)
 
     def end(self):
-        time.sleep(2.5)  # the launcher looks at bodies from time to time
         self.run.send_signal(signal.SIGINT)
         self.run.wait(60)
         self.run = None

@@ -41,7 +41,7 @@ inline std::string misbehaviour() {
     return m != nullptr ? m : "";
 }
 
-inline void fill(RtRegion& region, std::uint64_t cycle) {
+inline void fill(RtRegion& region, std::uint64_t cycle, double off_m = 3e-10) {
     HealthTopic h{};
     h.taken_at_ns = to_ns(Monotonic::now());
     h.cycle = cycle;
@@ -75,12 +75,12 @@ inline void fill(RtRegion& region, std::uint64_t cycle) {
     levels.path[0].level = 0.5F;
     levels.path[0].items = 600;
     region.levels.publish(levels);
-    // 3 A off and turned by 90 degrees about z.
+    // 3 A off, as a rule, and turned by 90 degrees about z.
     BodiesTopic bodies{};
     bodies.count = 1;
     const Vec3 home = sample::structure().home_com_model_m;
     bodies.body[0] = {
-        {home.x() + 3e-10, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, 6, 0, kBodyFixed};
+        {home.x() + off_m, home.y(), home.z()}, {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, 6, 0, kBodyFixed};
     region.bodies.publish(bodies);
 }
 
@@ -115,7 +115,7 @@ inline int controller(int argc, char** argv) {
             raise(SIGSEGV);
         }
     }
-    fill(*region, cycle);
+    fill(*region, cycle, misbehaviour() == "moves at the end" ? 5e-10 : 3e-10);
     return 0;
 }
 

@@ -54,6 +54,14 @@ TEST_F(DeployRun, the_json_holds_what_the_controller_published) {
     EXPECT_GE(report_["seconds"].get<double>(), 0.3);
 }
 
+TEST_F(DeployRun, the_json_has_the_bodies_where_the_controllers_last_cycle_left_them) {
+    misbehave("moves at the end");
+    options_.gui = false;
+    ASSERT_EQ(run_until_seen(), 0) << said_;
+    EXPECT_NEAR(report_["fit"]["offset_a"].get<double>(), 5.0, 1e-6);
+    EXPECT_NEAR(report_["bodies"][0]["offset_a"].get<double>(), 5.0, 1e-6);
+}
+
 TEST_F(DeployRun, the_window_ends_the_run_and_its_picture_is_told) {
     options_.screenshot = scratch_.path() / "new" / "picture.png";
     ASSERT_EQ(run(), 0) << said_;
