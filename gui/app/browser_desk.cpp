@@ -6,7 +6,6 @@
 #include <ctime>
 #include <utility>
 
-#include "gui/desk/dropped_files.hpp"
 #include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_file.hpp"
@@ -111,7 +110,11 @@ void BrowserDesk::drop(const std::vector<std::string>& files, BrowserFacts& fact
         return say(facts, Grade::watch, "An import is under way: cancel it, or drop again when it is done.");
     Dropped meant = meaning_of(files);
     if (!meant.scene.empty()) return open_scene(meant.scene, facts);
-    if (meant.import.empty()) return say(facts, Grade::watch, meant.trouble);
+    if (meant.import.empty()) return say(facts, Grade::watch, meant.trouble + "\n" + kDroppedKinds);
+    start_import(std::move(meant), facts);
+}
+
+void BrowserDesk::start_import(Dropped meant, BrowserFacts& facts) {
     importing_ = meant.import[1];
     meant.import.emplace_back("--bake-only");
     try {
@@ -121,6 +124,39 @@ void BrowserDesk::drop(const std::vector<std::string>& files, BrowserFacts& fact
         spdlog::info("importing {}", importing_);
     } catch (const StartupError& e) {
         say(facts, Grade::bad, e.what());
+    }
+}
+
+void BrowserDesk::show_marks(BrowserFacts& facts) const {
+    for (SceneRow& row : facts.here)
+        row.marked = std::find(marked_.begin(), marked_.end(), row.path) != marked_.end();
+    if (marked_.empty()) {
+        facts.marks_say.clear();
+        return;
+    }
+    const Dropped meant = meaning_of(marked_);
+    facts.marks_import = !meant.import.empty();
+    facts.marks_say = meaning_text(meant);
+    if (!facts.marks_import) facts.marks_say.insert(0, std::to_string(marked_.size()) + " marked. ");
+}
+
+void BrowserDesk::follow_marks(BrowserFacts& facts) {
+    if (!facts.mark_wanted.empty()) {
+        const std::string path = std::exchange(facts.mark_wanted, {});
+        if (std::erase(marked_, path) == 0 && marked_.size() <= kDroppedMost) marked_.push_back(path);
+        show_marks(facts);
+    }
+    if (std::exchange(facts.clear_wanted, false)) {
+        marked_.clear();
+        show_marks(facts);
+    }
+    if (std::exchange(facts.import_wanted, false) && !import_.running()) {
+        Dropped meant = meaning_of(marked_);
+        if (meant.import.empty()) return show_marks(facts);
+        start_import(std::move(meant), facts);
+        if (!import_.running()) return;
+        marked_.clear();
+        show_marks(facts);
     }
 }
 
@@ -155,6 +191,7 @@ void BrowserDesk::follow_import(BrowserFacts& facts) {
 
 void BrowserDesk::follow(BrowserFacts& facts) {
     follow_import(facts);
+    follow_marks(facts);
     if (ready(keeping_))
         if (const std::string trouble = keeping_.get(); !trouble.empty()) {
             spdlog::warn("{}", trouble);
@@ -189,6 +226,7 @@ void BrowserDesk::follow(BrowserFacts& facts) {
         facts.folder_trouble = std::move(got.folder.trouble);
         for (auto* const list : {&facts.recent, &facts.here})
             for (SceneRow& row : *list) row.current = row.path == current_;
+        show_marks(facts);
     }
     facts.reading = reading_.valid();
     if (!facts.scene_wanted.empty()) open_scene(std::exchange(facts.scene_wanted, {}), facts);

@@ -8,8 +8,10 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gui/app/child_job.hpp"
+#include "gui/desk/dropped_files.hpp"
 #include "gui/desk/scene_list.hpp"
 #include "ipc/base/clock.hpp"
 
@@ -30,6 +32,9 @@ public:
 
 private:
     void follow_import(BrowserFacts& facts);
+    void follow_marks(BrowserFacts& facts);
+    void show_marks(BrowserFacts& facts) const;
+    void start_import(Dropped meant, BrowserFacts& facts);
     struct Read {
         std::vector<SceneRow> recent;
         std::string recent_trouble;
@@ -40,6 +45,7 @@ private:
     std::filesystem::path hand_over_;
     std::string current_;
     bool was_open_ = false, asked_ = false;
+    std::vector<std::string> marked_;  // of any folder, at most one more than can be imported at once
     ChildJob import_;
     std::string importing_;  // the file
     Instant import_begun_{};

@@ -7,11 +7,37 @@
 namespace tact {
 namespace {
 
-enum class RawKind { none, scene, map, structure, mesh, volume };
-
 RawKind raw_kind(const std::string& file) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) return RawKind::volume;  // of DICOM files or pictures
+    if (std::filesystem::is_directory(file, ignored)) return RawKind::scan;  // of DICOM files or pictures
+    return file_kind(file);
+}
+
+// A file's name for a line of words: no control characters, and what is long keeps its beginning and its ending.
+std::string shown_name(const std::string& file) {
+    constexpr std::size_t kHead = 24, kTail = 12;
+    std::string name = std::filesystem::path(file).filename().string();
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    if (name.size() <= kHead + 3 + kTail) return name;
+    std::size_t head = kHead, tail = name.size() - kTail;  // whole characters of UTF-8
+    const auto inside = [&](std::size_t at) {
+        return (static_cast<unsigned char>(name[at]) & 0xc0U) == 0x80U;
+    };
+    while (head > 0 && inside(head)) --head;
+    while (tail < name.size() && inside(tail)) ++tail;
+    return name.substr(0, head) + "..." + name.substr(tail);
+}
+
+}  // namespace
+
+const char* const kDroppedKinds =
+    "What can be dropped: a scene (.tact); a map (.mrc .map .ccp4 .rec .situs) together with its structures "
+    "(.pdb "
+    ".cif); a mesh (.ply .obj .stl .off); a scan (.nrrd .nhdr .nii .mhd .mha, or a folder of DICOM files or "
+    "pictures).";
+
+RawKind file_kind(const std::string& file) {
     std::string name = std::filesystem::path(file).filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -26,34 +52,44 @@ RawKind raw_kind(const std::string& file) {
         {RawKind::map, {".mrc", ".map", ".ccp4", ".rec", ".situs", ".sit"}},
         {RawKind::structure, {".pdb", ".ent", ".cif", ".mmcif"}},
         {RawKind::mesh, {".ply", ".obj", ".stl", ".off"}},
-        {RawKind::volume, {".nrrd", ".nhdr", ".nii", ".mhd", ".mha"}},
+        {RawKind::scan, {".nrrd", ".nhdr", ".nii", ".mhd", ".mha"}},
     };
     for (const Endings& e : kEndings)
         if (std::find(e.endings.begin(), e.endings.end(), ending) != e.endings.end()) return e.kind;
     return RawKind::none;
 }
 
-constexpr const char* kTaken =
-    "\nWhat can be dropped: a scene (.tact); a map (.mrc .map .ccp4 .rec .situs) together with its "
-    "structures (.pdb "
-    ".cif); a mesh (.ply .obj .stl .off); a scan (.nrrd .nhdr .nii .mhd .mha, or a folder of DICOM files or "
-    "pictures).";
-
-}  // namespace
+const char* raw_kind_text(RawKind kind) {
+    switch (kind) {
+        case RawKind::scene:
+            return "scene";
+        case RawKind::map:
+            return "map";
+        case RawKind::structure:
+            return "structure";
+        case RawKind::mesh:
+            return "mesh";
+        case RawKind::scan:
+            return "scan";
+        case RawKind::none:
+            break;
+    }
+    return "";
+}
 
 Dropped meaning_of(const std::vector<std::string>& files) {
     Dropped out;
     const auto no = [&](const std::string& why) {
-        out = {{}, {}, why + kTaken};
+        out = {{}, {}, why};
         return out;
     };
-    if (files.empty()) return no("Nothing was dropped.");
+    if (files.empty()) return no("There is no file.");
     if (files.size() > kDroppedMost)
         return no("Too many files at once: a map and 16 structures are the most.");
     std::vector<std::string> maps, structures, others;
     for (const std::string& file : files) {
         // Words of a command: an option must not be made of a name.
-        if (file.empty() || file.front() != '/') return no("A dropped file has no absolute path.");
+        if (file.empty() || file.front() != '/') return no("A file has no absolute path.");
         switch (raw_kind(file)) {
             case RawKind::none:
                 return no("'" + std::filesystem::path(file).filename().string() +
@@ -79,12 +115,24 @@ Dropped meaning_of(const std::vector<std::string>& files) {
     }
     if (!others.empty()) return no("A map and its structures cannot come together with other files.");
     if (maps.size() != 1 || structures.empty())
-        return no(maps.empty()       ? "A structure needs the map that it is docked into: drop both together."
-                  : maps.size() == 1 ? "A map needs a structure to dock into it: drop both together."
+        return no(maps.empty()       ? "A structure needs the map that it is docked into: give both together."
+                  : maps.size() == 1 ? "A map needs a structure to dock into it: give both together."
                                      : "One map at a time.");
     out.import = {"dock", maps[0]};
     out.import.insert(out.import.end(), structures.begin(), structures.end());
     return out;
+}
+
+std::string meaning_text(const Dropped& meant) {
+    if (!meant.scene.empty()) return "Open " + shown_name(meant.scene) + ".";
+    if (meant.import.empty()) return meant.trouble;
+    const std::string& act = meant.import[0];
+    const std::string first = shown_name(meant.import[1]);
+    if (act == "touch") return "Touch " + first + ".";
+    if (act == "drill") return "Drill " + first + ".";
+    const std::size_t more = meant.import.size() - 3;
+    return "Dock " + shown_name(meant.import[2]) +
+           (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) + " into " + first + ".";
 }
 
 }  // namespace tact

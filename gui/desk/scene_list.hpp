@@ -16,7 +16,8 @@ namespace tact {
 inline constexpr std::size_t kFolderRowsMost = 500;
 
 struct FolderRows {
-    std::vector<SceneRow> rows;  // the folder above, folders, scenes; by name
+    std::vector<SceneRow>
+        rows;  // the folder above, itself where it is a scan, folders, scenes, raw data; by name
     std::string trouble;
 };
 

@@ -14,10 +14,11 @@ struct PixelRect;
 struct SceneRow {
     std::string path, name;
     std::string place;       // its folder
-    std::string kind;        // docking, surface, drilling; of a folder: empty
+    std::string kind;        // docking, surface, drilling; of raw data map, structure, mesh, scan
     std::string size, when;  // as a person reads it
     std::string trouble;     // why it cannot be opened: missing, not a scene, ...
     bool folder = false, current = false;
+    bool raw = false, marked = false;  // raw data: pressed to be marked, not opened
 };
 
 struct BrowserFacts {
@@ -28,10 +29,13 @@ struct BrowserFacts {
     std::string folder, folder_trouble;
     bool reading = false;
     bool importing = false, cancel_wanted = false;
+    std::string marks_say;  // what would be made of the marked rows, or why nothing can; empty: no mark
+    bool marks_import = false;
     std::string said;
     Grade said_grade = Grade::unknown;
     // What a person chose; emptied by the application.
-    std::string scene_wanted, folder_wanted;
+    std::string scene_wanted, folder_wanted, mark_wanted;
+    bool import_wanted = false, clear_wanted = false;
 };
 
 // Over the middle of the view.

@@ -29,6 +29,8 @@ protected:
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("XDG_STATE_HOME", (folder_ + "/state").c_str(), 1);
+        setenv("XDG_CACHE_HOME", (folder_ + "/cache").c_str(), 1);
+        std::filesystem::create_directory(folder_ + "/cache");
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
         setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory to the end on purpose
         x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
@@ -87,6 +89,14 @@ protected:
         ASSERT_EQ(std::system(("xdotool " + words + " >/dev/null 2>&1").c_str()), 0) << words;
     }
 
+    static void press(const std::string& place) {
+        x("mousemove " + place);
+        std::this_thread::sleep_for(milliseconds(200));
+        x("mousedown 1");
+        std::this_thread::sleep_for(milliseconds(200));
+        x("mouseup 1");
+    }
+
     std::string folder_, first_, second_;
     std::unique_ptr<launch::XServer> x_server_;
     pid_t tact_ = 0;
@@ -97,11 +107,7 @@ TEST_F(BrowserInTheWindow, ASceneThatIsPressedRunsAndIsTheNewestOfTheList) {
     EXPECT_TRUE(until_words("asking the launcher for " + second_, [] {
         x("key --clearmodifiers o");
         std::this_thread::sleep_for(milliseconds(500));
-        x("mousemove 600 162");
-        std::this_thread::sleep_for(milliseconds(200));
-        x("mousedown 1");
-        std::this_thread::sleep_for(milliseconds(200));
-        x("mouseup 1");
+        press("600 162");
     })) << said();
     ASSERT_TRUE(wait_for_words("showing " + second_)) << said();
     EXPECT_NE(said().find("another scene was asked for: " + second_), std::string::npos) << said();
@@ -114,6 +120,20 @@ TEST_F(BrowserInTheWindow, ASceneThatIsPressedRunsAndIsTheNewestOfTheList) {
     int status = 0;
     waitpid(std::exchange(tact_, 0), &status, 0);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << said();
+}
+
+TEST_F(BrowserInTheWindow, RawDataThatAreMarkedInTheFolderAreImportedAndRun) {
+    const std::string mesh = folder_ + "/tetra.obj";
+    std::ofstream(mesh) << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    EXPECT_TRUE(until_words("importing " + mesh, [] {
+        x("key --clearmodifiers o");
+        std::this_thread::sleep_for(milliseconds(500));
+        press("646 82");  // the folder: its parent, two folders, three scenes, the mesh
+        std::this_thread::sleep_for(milliseconds(500));
+        press("600 329");
+        press("506 488");  // below the rows
+    })) << said();
+    EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << said();
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // The scenes that were used and what a folder holds: kept, bounded, and wrong files told in words.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -96,7 +98,7 @@ TEST_F(Desk, APeekSeesTheSameAsAWholeReadAndNoChangedByteOfWhatItReads) {
     EXPECT_EQ(refused, 28);
 }
 
-TEST_F(Desk, AFolderShowsTheWayUpItsFoldersAndItsScenesAlone) {
+TEST_F(Desk, AFolderShowsTheWayUpItsFoldersAndItsScenes) {
     sample::scene().write(folder_ / "b.tact");
     std::ofstream(folder_ / "notes.txt") << "no scene";
     std::ofstream(folder_ / "a.tact") << "no scene either";
@@ -131,8 +133,76 @@ TEST_F(Desk, DroppedFilesAreASceneAnImportOrToldInWords) {
           Words{"/a/x.tact", "/a/m.mrc", "/a/1.pdb"}, Words(kDroppedMost + 1, "/a/1.pdb")}) {
         const Dropped got = meaning_of(bad);
         EXPECT_TRUE(got.scene.empty() && got.import.empty());
-        EXPECT_NE(got.trouble.find("What can be dropped"), std::string::npos) << got.trouble;
+        EXPECT_FALSE(got.trouble.empty());
+        EXPECT_EQ(meaning_text(got), got.trouble);
     }
+}
+
+TEST_F(Desk, WhatWouldBeMadeOfFilesIsOneLine) {
+    const auto words = [](const std::vector<std::string>& files) { return meaning_text(meaning_of(files)); };
+    EXPECT_EQ(words({"/a/1abc.pdb", "/a/emd.mrc"}), "Dock 1abc.pdb into emd.mrc.");
+    EXPECT_EQ(words({"/a/1.pdb", "/a/m.mrc", "/a/2.cif", "/a/3.cif"}), "Dock 1.pdb and 2 more into m.mrc.");
+    EXPECT_EQ(words({"/a/x.PLY.gz"}), "Touch x.PLY.gz.");
+    EXPECT_EQ(words({"/a/ear.nii.gz"}), "Drill ear.nii.gz.");
+    EXPECT_EQ(words({"/a/x.tact"}), "Open x.tact.");
+    EXPECT_EQ(words({"/a/two\nlines.stl"}), "Touch two?lines.stl.");
+    std::string name;
+    for (int i = 0; i < 30; ++i)
+        name += "\xc3\xa4";  // two bytes each, whole at both ends of what is left out
+    EXPECT_EQ(words({"/a/b" + name + ".stl"}),
+              "Touch b" + name.substr(0, 22) + "..." + name.substr(0, 8) + ".stl.");
+}
+
+TEST_F(Desk, AFolderShowsTheRawDataThatTactReadsByTheirEndings) {
+    sample::scene().write(folder_ / "z.tact");
+    for (const char* const name :
+         {"emd.MRC", "1abc.pdb.gz", "bunny.ply", "ear.nii.gz", "notes.txt", ".hidden.pdb"})
+        std::ofstream(folder_ / name) << "anything";
+    fs::create_directory(folder_ / "folder.ply");
+    ASSERT_EQ(mkfifo((folder_ / "pipe.obj").c_str(), 0600), 0);
+    const FolderRows got = folder_rows(folder_, 0);
+    std::vector<std::pair<std::string, std::string>> seen;
+    for (const SceneRow& row : got.rows) {
+        seen.emplace_back(row.name, row.folder ? "folder" : row.kind);
+        EXPECT_EQ(row.raw, !row.folder && row.name != "z.tact") << row.name;
+    }
+    EXPECT_EQ(seen, (std::vector<std::pair<std::string, std::string>>{{"..", "folder"},
+                                                                      {"folder.ply", "folder"},
+                                                                      {"z.tact", "docking"},
+                                                                      {"1abc.pdb.gz", "structure"},
+                                                                      {"bunny.ply", "mesh"},
+                                                                      {"ear.nii.gz", "scan"},
+                                                                      {"emd.MRC", "map"}}));
+    EXPECT_EQ(got.rows.back().size, "8 B");
+    std::ofstream(folder_ / "IM000001") << std::string(128, '\0') << "DICM";
+    const SceneRow whole = folder_rows(folder_, 0).rows.at(1);
+    EXPECT_TRUE(whole.raw && whole.kind == "scan");
+    EXPECT_EQ(meaning_of({whole.path}).import, (std::vector<std::string>{"drill", folder_}));
+}
+
+TEST_F(Desk, RawDataAndFoldersShareTheRowsThatScenesLeave) {
+    sample::scene().write(folder_ / "z.tact");
+    const auto fill = [&](const char* ending, bool folders) {
+        for (std::size_t i = 0; i < kFolderRowsMost; ++i) {
+            const fs::path path = folder_ / std::to_string(i).append(ending);
+            if (folders)
+                fs::create_directory(path);
+            else
+                std::ofstream(path) << i;
+        }
+    };
+    fill(".pdb", false);
+    const auto count = [&](auto&& wanted) {
+        const FolderRows got = folder_rows(folder_, 0);
+        EXPECT_EQ(got.rows.size(), kFolderRowsMost + 1);  // and the way up
+        EXPECT_FALSE(got.trouble.empty());
+        return static_cast<std::size_t>(std::count_if(got.rows.begin(), got.rows.end(), wanted));
+    };
+    const auto raw = [](const SceneRow& row) { return row.raw; };
+    EXPECT_EQ(count(raw), kFolderRowsMost - 1);
+    fill("", true);
+    EXPECT_EQ(count(raw), (kFolderRowsMost - 1) / 2);
+    EXPECT_EQ(count([](const SceneRow& row) { return row.kind == "docking"; }), 1U);
 }
 
 TEST_F(Desk, SizesAndTimesReadWell) {

@@ -1,6 +1,7 @@
 // Dropped files, by the way that the window's callback takes: told in words, baked by `tact`, cancelled, refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
@@ -18,7 +19,7 @@ protected:
         char name[] = "/tmp/tact-import-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
-        setenv("PATH", (std::string(TACT_FOLDER) + ":" + std::getenv("PATH")).c_str(), 1);
+        setenv("PATH", std::string(TACT_FOLDER).append(":").append(std::getenv("PATH")).c_str(), 1);
         std::ofstream(folder_ / "tetra.obj") << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n"
                                                 "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
         std::ofstream(folder_ / "wrong.ply") << "no mesh";
@@ -57,6 +58,57 @@ TEST_F(Import, AMeshIsBakedIntoTheCacheAndItsSceneAskedFor) {
     desk.follow(facts_);
     EXPECT_EQ(facts_.said, "not now");
     EXPECT_EQ(facts_.said_grade, Grade::bad);
+}
+
+TEST_F(Import, RowsThatArePressedAreMarkedAndImportedTogether) {
+    BrowserDesk desk({});
+    facts_.open = true;
+    facts_.folder = folder_;
+    const auto row = [&](const char* name) -> SceneRow& {
+        const auto found = std::find_if(facts_.here.begin(), facts_.here.end(),
+                                        [&](const SceneRow& each) { return each.name == name; });
+        EXPECT_NE(found, facts_.here.end()) << name;
+        return *found;
+    };
+    const auto press = [&](const std::string& file) {
+        facts_.mark_wanted = file;
+        desk.follow(facts_);
+    };
+    desk.follow(facts_);
+    while (facts_.reading) desk.follow(facts_);
+    ASSERT_FALSE(facts_.here.empty());
+    EXPECT_TRUE(facts_.marks_say.empty());
+    press(folder_ / "tetra.obj");
+    EXPECT_TRUE(row("tetra.obj").marked && facts_.marks_import);
+    EXPECT_EQ(facts_.marks_say, "Touch tetra.obj.");
+    press(folder_ / "wrong.ply");
+    EXPECT_TRUE(row("wrong.ply").marked && !facts_.marks_import);
+    EXPECT_EQ(facts_.marks_say, "2 marked. One scene, mesh or scan at a time.");
+    facts_.import_wanted = true;  // the button is not to be pressed now
+    desk.follow(facts_);
+    EXPECT_FALSE(facts_.importing);
+    press(folder_ / "wrong.ply");
+    EXPECT_TRUE(!row("wrong.ply").marked && row("tetra.obj").marked);
+    facts_.import_wanted = true;
+    desk.follow(facts_);
+    EXPECT_TRUE(facts_.marks_say.empty() && !row("tetra.obj").marked);
+    until_done(desk);
+    EXPECT_EQ(scenes(), 1U) << facts_.said;
+    for (std::size_t i = 0; i < 3 * kDroppedMost; ++i)
+        press(std::string("/a/").append(std::to_string(i)).append(".pdb"));
+    EXPECT_EQ(facts_.marks_say.substr(0, 3), "18 ") << facts_.marks_say;
+    facts_.clear_wanted = true;
+    desk.follow(facts_);
+    EXPECT_TRUE(facts_.marks_say.empty());
+}
+
+TEST_F(Import, WhatCanBeDroppedIsSaidOfWhatCannot) {
+    BrowserDesk desk({});
+    desk.drop({"/a/notes.txt"}, facts_);
+    EXPECT_TRUE(facts_.open);
+    EXPECT_NE(facts_.said.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
+        << facts_.said;
+    EXPECT_NE(facts_.said.find("What can be dropped: a scene"), std::string::npos) << facts_.said;
 }
 
 TEST_F(Import, WhatTactPrepSaysOfAWrongFileIsShownAsItIs) {
