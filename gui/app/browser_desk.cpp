@@ -6,6 +6,7 @@
 #include <ctime>
 #include <utility>
 
+#include "gui/desk/import_said.hpp"
 #include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_file.hpp"
@@ -25,22 +26,6 @@ bool ready(std::future<T>& one) {
 void say(BrowserFacts& facts, Grade grade, std::string words) {
     facts.said = std::move(words);
     facts.said_grade = grade;
-}
-
-std::string last_line(const std::string& text) {
-    const std::size_t end = text.find_last_not_of("\r\n");
-    if (end == std::string::npos) return {};
-    const std::size_t before = text.find_last_of("\r\n", end);
-    return text.substr(before == std::string::npos ? 0 : before + 1,
-                       end - (before == std::string::npos ? 0 : before + 1) + 1);
-}
-
-// From the first word of an error on: before it are the steps that went well.
-std::string errors_of(const std::string& text) {
-    const std::size_t at = std::min(text.find("tact-prep: "), text.find("tact: "));
-    const std::string words = at == std::string::npos ? text : text.substr(at);
-    return words.empty() ? "The import ended without a word."
-                         : words.substr(0, words.find_last_not_of('\n') + 1);
 }
 
 }  // namespace
@@ -160,7 +145,17 @@ void BrowserDesk::follow_marks(BrowserFacts& facts) {
     }
 }
 
-// tact-prep prints a line a step; tact, the path of the scene as the last one.
+// tact-prep prints a line a step, most with the share of the whole that is done.
+void BrowserDesk::follow_steps(BrowserFacts& facts) const {
+    const std::string said = import_.said();
+    facts.import_share = share_done(said);
+    say(facts, Grade::unknown,
+        "Importing " + importing_ + ", " +
+            std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) + " s" +
+            (said.empty() ? ": reading it" : ": " + last_line(said)));
+}
+
+// At the end tact prints the path of the scene.
 void BrowserDesk::follow_import(BrowserFacts& facts) {
     if (std::exchange(facts.cancel_wanted, false) && import_.running()) {
         cancelled_ = true;
@@ -169,11 +164,7 @@ void BrowserDesk::follow_import(BrowserFacts& facts) {
     const auto outcome = import_.poll();
     facts.importing = import_.running();
     if (!outcome) {
-        if (facts.importing)
-            say(facts, Grade::unknown,
-                "Importing " + importing_ + ", " +
-                    std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) +
-                    " s: " + last_line(import_.said()));
+        if (facts.importing) follow_steps(facts);
         return;
     }
     const std::string last = last_line(outcome->output);
@@ -182,7 +173,7 @@ void BrowserDesk::follow_import(BrowserFacts& facts) {
     else if (cancelled_)
         say(facts, Grade::unknown, "The import was cancelled; nothing was written.");
     else if (!outcome->good())
-        say(facts, Grade::bad, errors_of(outcome->output));
+        say(facts, Grade::bad, errors_said(outcome->output));
     else if (last.starts_with('/') && last.ends_with(".tact"))
         open_scene(last, facts);
     else

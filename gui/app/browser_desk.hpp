@@ -32,6 +32,7 @@ public:
 
 private:
     void follow_import(BrowserFacts& facts);
+    void follow_steps(BrowserFacts& facts) const;
     void follow_marks(BrowserFacts& facts);
     void show_marks(BrowserFacts& facts) const;
     void start_import(Dropped meant, BrowserFacts& facts);

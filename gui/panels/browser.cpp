@@ -71,6 +71,15 @@ void rows(const Theme& theme, const std::vector<SceneRow>& list, BrowserFacts& b
     for (const SceneRow& row : list) scene_row(theme, row, width, browser);
 }
 
+void import_line(const Theme& theme, BrowserFacts& browser) {
+    if (ImGui::SmallButton("Cancel")) browser.cancel_wanted = true;
+    if (!browser.import_share) return;
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, colour::kAccent);
+    ImGui::ProgressBar(static_cast<float>(*browser.import_share), {-1.0F, theme.px(16.0F)}, "");
+    ImGui::PopStyleColor();
+}
+
 // What would be made of the rows that are marked, and the way to it; as high as marks_height() says.
 constexpr float kMarksButtons = 130.0F;
 float marks_height(const Theme& theme, const BrowserFacts& browser) {
@@ -115,7 +124,7 @@ void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& vi
         text_coloured(grade_colour(browser.said_grade), browser.said);
         ImGui::PopTextWrapPos();
     }
-    if (browser.importing && ImGui::SmallButton("Cancel")) browser.cancel_wanted = true;
+    if (browser.importing) import_line(theme, browser);
     if (browser.tab == 1) text_small(theme, colour::kDim, browser.folder);
     const std::string& trouble = browser.tab == 0 ? browser.recent_trouble : browser.folder_trouble;
     if (!trouble.empty()) {

@@ -1,6 +1,7 @@
 // What the list of scenes shows and what a person chose there: plain data that the application fills and takes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct BrowserFacts {
     std::string folder, folder_trouble;
     bool reading = false;
     bool importing = false, cancel_wanted = false;
+    std::optional<double> import_share;  // of the import, 0 to 1, where it says
     std::string marks_say;  // what would be made of the marked rows, or why nothing can; empty: no mark
     bool marks_import = false;
     std::string said;

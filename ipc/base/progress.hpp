@@ -15,4 +15,12 @@ inline void report(const Progress& progress, double fraction, const char* what) 
     if (progress && !progress(fraction, what)) throw Cancelled{};
 }
 
+// A part of the whole work tells its own fraction.
+inline Progress part(const Progress& whole, double from, double to) {
+    if (!whole) return {};
+    return [whole, from, to](double fraction, const char* what) {
+        return whole(from + fraction * (to - from), what);
+    };
+}
+
 }  // namespace tact

@@ -21,7 +21,7 @@ std::string text_of(double level) {
 
 BakedContour bake_contour(const SceneFile& scene, double level, std::uint32_t vertices_max, SceneWriter& out,
                           const Progress& progress) {
-    TriangleMesh surface = isosurface(read_grid(scene), level, progress);
+    TriangleMesh surface = isosurface(read_grid(scene), level, part(progress, 0.0, 0.1));
     if (surface.triangles() == 0)
         throw StartupError("bake a contour of " + scene.name(),
                            "no surface lies at the level " + text_of(level), "give another --level");
@@ -30,9 +30,9 @@ BakedContour bake_contour(const SceneFile& scene, double level, std::uint32_t ve
     if (vertices_max > 0 && surface.vertices() > vertices_max) {
         SimplifySettings settings;
         settings.vertices_min = vertices_max;
-        surface = simplify(surface, settings, progress).mesh;
+        surface = simplify(surface, settings, part(progress, 0.1, 0.5)).mesh;
     }
-    const ProgressiveMeshData mesh = make_progressive(surface, {}, progress);
+    const ProgressiveMeshData mesh = make_progressive(surface, {}, part(progress, 0.5, 0.98));
     baked.vertices = static_cast<std::uint32_t>(mesh.vertex.size());
     baked.vertices_min = mesh.base_vertices;
     baked.triangles = static_cast<std::uint32_t>(mesh.triangle.size() / 3);

@@ -20,14 +20,6 @@ namespace {
 constexpr double kHandExtentM = 0.16;
 constexpr double kVoxelsPerResolution = 4.0;
 
-// A part of the whole work tells its own fraction.
-Progress part(const Progress& whole, double from, double to) {
-    if (!whole) return {};
-    return [&whole, from, to](double fraction, const char* what) {
-        return whole(from + fraction * (to - from), what);
-    };
-}
-
 template <class... Values>
 std::string printed(const char* format, Values... values) {
     char text[512];

@@ -47,8 +47,8 @@ void Console::clear() {
 bool Console::show(double fraction, const char* what) {
     const auto now = std::chrono::steady_clock::now();
     const bool changed = last_ != what;
+    const double done = std::clamp(fraction, 0.0, 1.0);
     if (terminal_ && (changed || now - drawn_at_ > std::chrono::milliseconds(100))) {
-        const double done = std::clamp(fraction, 0.0, 1.0);
         const double spent_s = std::chrono::duration<double>(now - started_).count();
         // Too early an estimate only jumps about.
         char left[48] = "";
@@ -58,8 +58,9 @@ bool Console::show(double fraction, const char* what) {
         std::fflush(stderr);
         drawn_ = true;
         drawn_at_ = now;
-    } else if (!terminal_ && changed) {
-        std::fprintf(stderr, "%s\n", what);
+    } else if (!terminal_ && (changed || done >= told_ + 0.05)) {
+        std::fprintf(stderr, "[%3.0f %%] %s\n", std::floor(100.0 * done), what);
+        told_ = done;
     }
     last_ = what;
     return !cancelled();

@@ -1,7 +1,8 @@
 // What a person sees while tact-prep works, and how they stop it.
 //
 // On a terminal one line that is written over, with an estimate of the time left; elsewhere one line for each
-// kind of work, so that a log stays short. Ctrl-C and SIGTERM make the next report() cancel.
+// kind of work and each twentieth of the whole, "[ 45 %] simplify", so that a log stays short. Ctrl-C and SIGTERM make
+// the next report() cancel.
 #pragma once
 
 #include <chrono>
@@ -28,6 +29,7 @@ private:
     bool terminal_;
     bool drawn_ = false;
     std::string last_;
+    double told_ = 0.0;  // elsewhere
     std::chrono::steady_clock::time_point started_, drawn_at_;
 };
 

@@ -33,14 +33,14 @@ void simplify_file(const SimplifyOptions& o) {
     Console console;
     const Progress progress = console.progress();
     const auto begin = std::chrono::steady_clock::now();
-    const ImportedMesh in = import_mesh(o.in, progress);
+    const ImportedMesh in = import_mesh(o.in, part(progress, 0.0, 0.2));
     const TriangleMesh mesh = cleaned(in.mesh);
     if (mesh.triangles() == 0)
         throw StartupError("simplify " + o.in, "each of its triangles has two equal corners",
                            "export it again");
     const double read_s = seconds_since(begin);
     const auto start = std::chrono::steady_clock::now();
-    const Kept kept = simplify_to_keep(mesh, o.settings, progress);
+    const Kept kept = simplify_to_keep(mesh, o.settings, part(progress, 0.2, 0.98));
     const Simplified& result = kept.simplified;
     const double simplify_s = seconds_since(start);
     report(progress, 0.99, "writing the mesh");

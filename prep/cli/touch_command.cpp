@@ -61,15 +61,15 @@ void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& u
 }
 
 // One of those made in code, or from a file.
-void add_tool(const TouchSettings& o, SurfaceInput& input, Console& console) {
+void add_tool(const TouchSettings& o, SurfaceInput& input, const Progress& progress) {
     if (o.tool.empty()) return;
     input.tool = made_tool(o.tool);
     if (input.tool.triangles() > 0) {
         input.tool_sampling.grip_in_middle = false;
         input.note.push_back("tool mesh: " + o.tool + ", made by tact-prep");
     } else {
-        ImportedMesh in = import_mesh(o.tool, console.progress());
-        const CleanReport cleaned = clean_mesh(in.mesh, 0.0, console.progress());
+        ImportedMesh in = import_mesh(o.tool, part(progress, 0.0, 0.5));
+        const CleanReport cleaned = clean_mesh(in.mesh, 0.0, part(progress, 0.5, 1.0));
         to_metres(in.mesh, o.tool_unit, o.tool_up);
         input.tool = std::move(in.mesh);
         input.tool_sampling.grip_in_middle = o.tool_grip == "middle";
@@ -82,9 +82,9 @@ void add_tool(const TouchSettings& o, SurfaceInput& input, Console& console) {
     input.tool_size_m = 1e-3 * o.tool_size_mm;
 }
 
-SurfaceInput touch_file(const TouchSettings& o, Console& console) {
+SurfaceInput touch_file(const TouchSettings& o, const Progress& progress) {
     SurfaceInput input;
-    ImportedMesh in = import_mesh(o.mesh, console.progress(), [&o](const MeshNeeds& needs) {
+    ImportedMesh in = import_mesh(o.mesh, part(progress, 0.0, 0.5), [&o](const MeshNeeds& needs) {
         // Mesh, order, surface and the file's bytes lie side by side at the most; what contracts holds more (245
         // bytes a triangle: 8.8 GB at 30 million).
         const double bytes_a_triangle = o.no_forest && o.no_picture ? 65.0 : 245.0;
@@ -93,7 +93,7 @@ SurfaceInput touch_file(const TouchSettings& o, Console& console) {
                       bytes_a_triangle * static_cast<double>(needs.triangles)) *
                          1e-9);
     });
-    const CleanReport cleaned = clean_mesh(in.mesh, 0.0, console.progress());
+    const CleanReport cleaned = clean_mesh(in.mesh, 0.0, part(progress, 0.5, 1.0));
     to_metres(in.mesh, o.unit, o.up);
     input.note = {"mesh: " + shown_plain(fs::absolute(o.mesh).string()), "mesh format: " + in.format,
                   "mesh unit: " + o.unit + ", " + o.up + " up",
@@ -121,8 +121,9 @@ void touch(const TouchSettings& o, bool made) {
     check_target("write scene", o.scene, inputs);
     const auto started = std::chrono::steady_clock::now();
     Console console;
-    SurfaceInput input = made ? touch_made(o) : touch_file(o, console);
-    add_tool(o, input, console);
+    const Progress progress = console.progress();
+    SurfaceInput input = made ? touch_made(o) : touch_file(o, part(progress, 0.0, 0.1));
+    add_tool(o, input, part(progress, 0.1, 0.12));
     input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
     input.size_m = 1e-3 * o.size_mm;
     input.picture = !o.no_picture;
@@ -130,8 +131,8 @@ void touch(const TouchSettings& o, bool made) {
     input.compare_locality = o.compare_locality;
     input.vertices_max = o.vertices_max;
     SceneWriter out;
-    const BakedSurface baked = bake_surface(std::move(input), out, console.progress());
-    report(console.progress(), 0.99, "writing the scene");
+    const BakedSurface baked = bake_surface(std::move(input), out, part(progress, 0.12, 0.98));
+    report(progress, 0.99, "writing the scene");
     out.write(o.scene);
     console.clear();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

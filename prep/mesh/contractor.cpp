@@ -239,7 +239,7 @@ Simplified Contractor::run(const Progress& progress) {
     float due = 0.0F;
     std::uint64_t turn = 0;
     while (alive_ > settings_.vertices_min && ahead(pair, due)) {
-        if (++turn % 65536 == 0)
+        if (++turn % 4096 == 0)
             report(progress, 0.1 + 0.9 * (1.0 - static_cast<double>(alive_) / start), "simplify");
         if (!is_due(pair, due)) continue;
         Tried tried = Tried::refused;

@@ -145,8 +145,7 @@ void Contractor::gather(std::uint32_t u) {
 
 void Contractor::queue_all(const Progress& progress) {
     for (std::uint32_t u = 0; u < vertex_.size(); ++u) {
-        if (u % 65536 == 0)
-            report(progress, 0.1 * u / static_cast<double>(vertex_.size()), "simplify: pairs");
+        if (u % 4096 == 0) report(progress, 0.1 * u / static_cast<double>(vertex_.size()), "simplify: pairs");
         gather(u);
         for (const std::uint32_t w : ring_) {
             if (w > u) push(u, w);

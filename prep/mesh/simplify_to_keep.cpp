@@ -19,9 +19,9 @@ Kept kept_with(const TriangleMesh& mesh, const KeepSettings& settings, double bo
     const SimplifySettings how{.vertices_min = settings.vertices_min,
                                .boundary_weight = boundary_weight,
                                .pair_distance = settings.pair_distance};
-    Kept kept{simplify(mesh, how, progress), boundary_weight};
+    Kept kept{simplify(mesh, how, part(progress, 0.0, 0.5)), boundary_weight};
     relax(mesh, kept.simplified, settings.relax_rounds.value_or(relax_rounds(mesh, kept.simplified)),
-          progress);
+          part(progress, 0.5, 1.0));
     return kept;
 }
 
@@ -46,11 +46,9 @@ Kept simplify_to_keep(const TriangleMesh& mesh, const KeepSettings& settings, co
     };
     std::vector<Try> tries;
     for (const double weight : kWeightsTried) {
-        const Progress part = progress ? Progress([&](double done, const char* what) {
-            return progress((static_cast<double>(tries.size()) + done) / kWeightsTried.size(), what);
-        })
-                                       : Progress();
-        Kept kept = kept_with(mesh, settings, weight, part);
+        const auto share = [&](std::size_t n) { return static_cast<double>(n) / kWeightsTried.size(); };
+        Kept kept =
+            kept_with(mesh, settings, weight, part(progress, share(tries.size()), share(tries.size() + 1)));
         const TriangleMesh& made = kept.simplified.mesh;
         if (made.triangles() == 0) return kept;  // nothing left to compare
         const double surface_m = two_sided(mesh, made, kDistancePoints).rms_m;

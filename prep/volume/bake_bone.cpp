@@ -103,12 +103,10 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
                 critical.push_back(static_cast<std::uint8_t>(i + 1));
         double error_m = 0.0, spacing_m = 0.0;
         for (std::size_t i = 0; i < critical.size(); ++i) {
-            const auto part = [&](double fraction, const char* what) {
-                return !progress || progress(0.5 + 0.48 * (static_cast<double>(i) + fraction) /
-                                                       static_cast<double>(critical.size()),
-                                             what);
-            };
-            const BuiltDistances built = build_distances(b, bone.label, critical[i], part);
+            const double share = 0.48 / static_cast<double>(critical.size()),
+                         from = 0.5 + share * static_cast<double>(i);
+            const BuiltDistances built =
+                build_distances(b, bone.label, critical[i], part(progress, from, from + share));
             write_distance_field(out, baked.distance_fields++, built.view());
             error_m = built.field.error_m;
             spacing_m = built.field.spacing_m;

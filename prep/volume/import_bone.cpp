@@ -238,15 +238,16 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             input.note.push_back(
                 note_line("bone: values above %g, solid at %g and above", range.low, range.high));
         }
-        bone.density = sample_density(scan, plan, range.low, range.high, progress);
+        const double labels_from = o.labels.empty() ? 1.0 : 0.5;
+        bone.density = sample_density(scan, plan, range.low, range.high, part(progress, 0.0, labels_from));
         if (!o.labels.empty()) {
-            OpenedScan labels = open_scan(o.labels, o, progress);
+            OpenedScan labels = open_scan(o.labels, o, part(progress, labels_from, labels_from));
             if (labels.palette)
                 throw StartupError("read the labels", "pictures in colour cannot be laid on a scan",
                                    "save them as NRRD, NIfTI or MetaImage");
             if (o.label_names.empty()) known = labels.scan.label;
             if (o.crop && !(scan.oriented && labels.scan.oriented)) crop_scan(labels.scan, *o.crop);
-            bone.label = sample_labels(scan, plan, labels.scan, progress);
+            bone.label = sample_labels(scan, plan, labels.scan, part(progress, labels_from, 1.0));
             if (std::all_of(bone.label.begin(), bone.label.end(), [](std::uint8_t l) { return l == 0; }))
                 throw StartupError("put labels on the scan", "none of them lies in the volume",
                                    "give labels that were made on this scan, or another --crop");

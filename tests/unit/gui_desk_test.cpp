@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "gui/desk/dropped_files.hpp"
+#include "gui/desk/import_said.hpp"
 #include "gui/desk/recent_scenes.hpp"
 #include "gui/desk/scene_list.hpp"
 #include "ipc/assets/scene_peek.hpp"
@@ -203,6 +204,17 @@ TEST_F(Desk, RawDataAndFoldersShareTheRowsThatScenesLeave) {
     fill("", true);
     EXPECT_EQ(count(raw), (kFolderRowsMost - 1) / 2);
     EXPECT_EQ(count([](const SceneRow& row) { return row.kind == "docking"; }), 1U);
+}
+
+TEST_F(Desk, WhatAnImportPrintedTellsHowFarItIs) {
+    EXPECT_EQ(share_done(""), std::nullopt);
+    EXPECT_EQ(share_done("reading\n[no share]\n[ 12 % of it\n"), std::nullopt);
+    EXPECT_EQ(share_done("[ 45 %] simplify\nwarning: a [99 %] b\n"), 0.45);
+    EXPECT_EQ(share_done("[  5 %] reading\n[100 %] writing the scene"), 1.0);
+    EXPECT_EQ(share_done("[101 %] x\n[-1 %] x\n"), std::nullopt);
+    EXPECT_EQ(last_line("one\n[ 45 %] two\n\n"), "[ 45 %] two");
+    EXPECT_EQ(last_line("\n"), "");
+    EXPECT_EQ(errors_said("[  0 %] reading\ntact-prep: no\n  mend: x\n"), "tact-prep: no\n  mend: x");
 }
 
 TEST_F(Desk, SizesAndTimesReadWell) {

@@ -265,6 +265,32 @@ TEST_F(Program, BakesBoneToDrillFromAScanOrMadeHere) {
     expect_refused({"drill", scan, "--labels", scan, "-o", scene, "--threshold-hu", "200"}, {"no voxel"});
 }
 
+TEST_F(Program, SaysInALogWhichShareOfTheWholeIsDone) {
+    const std::string dock = folder_ / "dock.tact", mesh = write("tetra.obj",
+                                                                 "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n"
+                                                                 "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"demo", "dock", "-o", dock},
+          {"contour", dock, "--level", "50", "-o", folder_ / "contour.tact"},
+          {"touch", mesh, "--tool", mesh, "-o", folder_ / "touch.tact"},
+          {"demo", "touch", "--parts", "40", "--vertices-max", "2000", "-o", folder_ / "made.tact"},
+          {"drill", "--synthetic", "--voxels", "32", "-o", folder_ / "bone.tact"}}) {
+        const Ended e = run(words);
+        ASSERT_EQ(e.code, 0) << e.err;
+        std::istringstream lines(e.err);
+        int before = 0, seen = 0;
+        for (std::string line; std::getline(lines, line);) {
+            int percent = 0;
+            if (std::sscanf(line.c_str(), "[%3d %%] ", &percent) != 1) continue;
+            EXPECT_GE(percent, before) << words[0] << ' ' << words[1] << ":\n" << e.err;
+            before = percent;
+            ++seen;
+        }
+        EXPECT_GE(before, 50) << e.err;
+        EXPECT_TRUE(seen >= 3 && seen < 60) << seen << " lines:\n" << e.err;
+    }
+}
+
 TEST_F(Program, CtrlCLeavesNothingHalfWritten) {
     // The demo takes a part of a second; on a busy machine the signal may come too late, so it is tried
     // again.
