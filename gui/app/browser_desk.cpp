@@ -38,13 +38,15 @@ void BrowserDesk::used(const std::filesystem::path& scene, BrowserFacts& facts) 
     if (hand_over_.empty() || folder.empty() || keeping_.valid()) return;
     keeping_ = std::async(std::launch::async, [folder, path]() -> std::string {
         const auto file = folder / kRecentName;
-        std::vector<RecentScene> scenes;
         try {
-            scenes = read_recents(file);
-        } catch (const StartupError& e) {
-            spdlog::warn("{}", e.what());  // and written anew
-        }
-        try {
+            std::vector<RecentScene> scenes;
+            try {
+                scenes = read_recents(file);
+            } catch (const StartupError& e) {
+                spdlog::warn("{}", e.what());
+                spdlog::warn("the list of scenes begins anew; the old file is kept as {}",
+                             set_aside(file).string());
+            }
             write_whole_file(file, recents_text(with_recent(scenes, {path.string(), unix_now_s()})));
         } catch (const StartupError& e) {
             return e.what();

@@ -15,6 +15,8 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kRecentPathMost = 4096;
+constexpr const char* kRecentsMend =
+    "mend it, or remove it: with the next scene it is set aside and written anew";
 constexpr std::int64_t kLatestUnixS = 253402300799;  // the year 9999
 
 }  // namespace
@@ -31,8 +33,7 @@ std::filesystem::path state_folder() {
 
 std::vector<RecentScene> read_recents_text(std::string_view text, const std::string& name) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError("reading the scenes used before, " + name, why,
-                           "remove the file: it is written anew with the next scene");
+        throw StartupError("reading the scenes used before, " + name, why, kRecentsMend);
     };
     if (text.size() > kRecentsBytesMost) fail("it is larger than such a list may be");
     const nlohmann::json all = nlohmann::json::parse(text, nullptr, false);
@@ -79,11 +80,19 @@ std::vector<RecentScene> read_recents(const std::filesystem::path& file) {
     }
     const std::string why = fd >= 0 && !S_ISREG(info.st_mode) ? "it is no regular file" : last_error();
     if (fd >= 0) ::close(fd);
-    if (got < 0)
-        throw StartupError("reading the scenes used before, " + file.string(), why,
-                           "remove it: it is written anew with the next scene");
+    if (got < 0) throw StartupError("reading the scenes used before, " + file.string(), why, kRecentsMend);
     text.resize(static_cast<std::size_t>(got));
     return read_recents_text(text, file.string());
+}
+
+std::filesystem::path set_aside(const std::filesystem::path& file) {
+    const std::filesystem::path aside = file.string() + ".damaged";
+    std::error_code failed;
+    std::filesystem::rename(file, aside, failed);
+    if (failed)
+        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.message(),
+                           "move the file away, or mend the permissions of its folder");
+    return aside;
 }
 
 std::vector<RecentScene> with_recent(std::vector<RecentScene> scenes, RecentScene used) {

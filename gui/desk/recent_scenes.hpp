@@ -28,6 +28,10 @@ inline constexpr std::size_t kRecentsMost = 24, kRecentsBytesMost = 256 * 1024;
 // Of a file that is not there: none.
 [[nodiscard]] std::vector<RecentScene> read_recents(const std::filesystem::path& file);
 
+// A file that cannot be read becomes FILE.damaged, in the place of one that was there, and is written anew then. Returns
+// where it is.
+std::filesystem::path set_aside(const std::filesystem::path& file);
+
 // The scene in front, once; the oldest goes where there are too many.
 [[nodiscard]] std::vector<RecentScene> with_recent(std::vector<RecentScene> scenes, RecentScene used);
 

@@ -58,6 +58,20 @@ TEST_F(Desk, AListThatIsWrongIsToldWithItsMend) {
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
 
+TEST_F(Desk, AFileThatIsSetAsideIsKeptOnce) {
+    const fs::path file = folder_ / "recent.json";
+    for (const char* const content : {"first", "second"}) {
+        std::ofstream(file) << content;
+        const fs::path aside = set_aside(file);
+        EXPECT_FALSE(fs::exists(file));
+        std::string kept;
+        std::ifstream(aside) >> kept;
+        EXPECT_EQ(kept, content);
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+    EXPECT_NE(error_of([&] { (void)set_aside(file); }).find("mend:"), std::string::npos);
+}
+
 TEST_F(Desk, TheStateFolderIsTheUsersOwn) {
     setenv("XDG_STATE_HOME", "/x/state", 1);
     EXPECT_EQ(state_folder(), "/x/state/tact");

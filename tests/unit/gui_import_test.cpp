@@ -129,6 +129,20 @@ TEST_F(Import, ACancelledImportLeavesNothing) {
     EXPECT_EQ(scenes(), 0U);
 }
 
+TEST_F(Import, AListOfScenesThatCannotBeReadIsKeptAside) {
+    setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
+    const auto list = folder_ / "state" / "tact" / "recent.json";
+    std::filesystem::create_directories(list.parent_path());
+    std::ofstream(list) << "by hand, and wrong";
+    {
+        BrowserDesk desk(folder_);
+        desk.used("/a/b.tact", facts_);
+    }  // waits for the disk
+    EXPECT_EQ(read_recents(list).at(0).path, "/a/b.tact");
+    std::ifstream aside(list.string() + ".damaged");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), "by hand, and wrong");
+}
+
 TEST_F(Import, WithoutALauncherTheWindowSaysHowToOpenAScene) {
     BrowserDesk desk({});
     desk.drop({"/a/b.tact"}, facts_);
