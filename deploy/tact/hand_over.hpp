@@ -21,6 +21,8 @@ class HandOver {
 public:
     explicit HandOver(const RunOptions& options) : bound_by_(bound_to_one_scene(options)) {}
     [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
+    // How the window was left, for the next one of this run where a person keeps no such file.
+    [[nodiscard]] std::filesystem::path desk() const { return folder() / "desk.toml"; }
     // The scene that was asked for and can be opened.
     [[nodiscard]] std::optional<std::filesystem::path> poll();
     void refuse(const std::string& why);

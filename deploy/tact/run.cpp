@@ -105,9 +105,16 @@ private:
         if (options_.gui) {
             ChildSettings gui;
             gui.arguments = {facts_.scene.string(), "--session", options_.session};
+            const auto desk = std::find(options_.visual.begin(), options_.visual.end(), "--desk");
+            const bool desk_given = desk != options_.visual.end();
+            // What a person set in the window goes on with the next scene.
+            if (!desk_given && hand_over_ != nullptr)
+                gui.arguments.insert(gui.arguments.end(), {"--desk", hand_over_->desk().string()});
+            const std::filesystem::path left = desk_given              ? std::filesystem::path(desk[1])
+                                               : hand_over_ != nullptr ? hand_over_->desk()
+                                                                       : "";
             // A desk file has a size of its own.
-            if (options_.size_given ||
-                std::find(options_.visual.begin(), options_.visual.end(), "--desk") == options_.visual.end())
+            if (first_ ? options_.size_given || !desk_given : !std::filesystem::exists(left))
                 gui.arguments.insert(gui.arguments.end(), {"--size", options_.size});
             gui.environment = display_;
             if (!options_.screenshot.empty())

@@ -19,6 +19,7 @@ protected:
         ask(other_);
         setenv("TOLD", (scratch_.path() / "told").c_str(), 1);
         setenv("CONTROLLERS", (scratch_.path() / "controllers").c_str(), 1);
+        setenv("WINDOWS", (scratch_.path() / "windows").c_str(), 1);
     }
     static void ask(const std::filesystem::path& scene) { setenv("ASKS_FOR", scene.c_str(), 1); }
     [[nodiscard]] std::vector<std::string> lines(const char* name) const {
@@ -41,6 +42,35 @@ TEST_F(OtherScene, the_launcher_ends_one_and_starts_the_other_unarmed_with_the_o
     EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
     EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
     EXPECT_NE(said_.find("another scene was asked for"), std::string::npos) << said_;
+}
+
+TEST_F(OtherScene, the_next_window_is_as_a_person_left_the_one_before) {
+    ASSERT_EQ(run(), 0) << said_;
+    const auto windows = lines("windows");
+    ASSERT_EQ(windows.size(), 2U) << said_;
+    const auto desk_of = [](const std::string& words) {
+        const auto at = words.find("--desk ");
+        return at == std::string::npos ? std::string()
+                                       : words.substr(at + 7, words.find(' ', at + 7) - at - 7);
+    };
+    EXPECT_NE(windows[0].find("--size 1280x800"), std::string::npos) << windows[0];
+    EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];
+    ASSERT_FALSE(desk_of(windows[0]).empty()) << windows[0];
+    EXPECT_EQ(desk_of(windows[0]), desk_of(windows[1]));
+    EXPECT_FALSE(std::filesystem::exists(desk_of(windows[0]))) << "the run is over";
+}
+
+TEST_F(OtherScene, a_size_that_was_given_is_that_of_the_first_window) {
+    options_.size = "640x480";
+    options_.size_given = true;
+    options_.visual = {"--desk", scratch_.path() / "mine.toml"};
+    ASSERT_EQ(run(), 0) << said_;
+    const auto windows = lines("windows");
+    ASSERT_EQ(windows.size(), 2U) << said_;
+    EXPECT_NE(windows[0].find("--size 640x480"), std::string::npos) << windows[0];
+    EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];
+    for (const std::string& words : windows) EXPECT_EQ(words.find("--desk"), words.rfind("--desk")) << words;
+    EXPECT_TRUE(std::filesystem::exists(scratch_.path() / "mine.toml"));
 }
 
 TEST_F(OtherScene, a_file_that_is_no_scene_is_refused_in_the_window_and_the_old_one_goes_on) {

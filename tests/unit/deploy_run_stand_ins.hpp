@@ -41,6 +41,14 @@ inline std::string misbehaviour() {
     return m != nullptr ? m : "";
 }
 
+// One line, in the file that this variable names.
+inline void log_words(const char* variable, int argc, char** argv) {
+    const char* const log = std::getenv(variable);
+    if (log == nullptr) return;
+    std::ofstream told(log, std::ios::app);
+    for (int i = 1; i < argc; ++i) told << argv[i] << (i + 1 < argc ? ' ' : '\n');
+}
+
 inline void fill(RtRegion& region, std::uint64_t cycle, double off_m = 3e-10) {
     HealthTopic h{};
     h.taken_at_ns = to_ns(Monotonic::now());
@@ -94,10 +102,7 @@ inline int controller(int argc, char** argv) {
     }
     if (misbehaviour() == "refuse") return 3;
     if (misbehaviour() == "refuse-other" && std::strcmp(argv[1], std::getenv("ASKS_FOR")) == 0) return 3;
-    if (const char* const log = std::getenv("CONTROLLERS"); log != nullptr) {
-        std::ofstream told(log, std::ios::app);
-        for (int i = 1; i < argc; ++i) told << argv[i] << (i + 1 < argc ? ' ' : '\n');
-    }
+    log_words("CONTROLLERS", argc, argv);
     OwnedRegion<RtRegion> region;
     std::strcpy(region->scene_path, argv[1]);
     region->scene_checksum = 0xABCD;
@@ -119,8 +124,11 @@ inline int controller(int argc, char** argv) {
     return 0;
 }
 
-// Lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
+// Leaves its desk file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
 inline int window(int argc, char** argv) {
+    log_words("WINDOWS", argc, argv);
+    if (const std::string desk = value_of(argc, argv, "--desk"); !desk.empty())
+        std::ofstream(desk) << "as left";
     LinkClient link(value_of(argc, argv, "--session"), -1);
     while (!link.attached()) {
         link.poll();
@@ -183,7 +191,8 @@ protected:
         options_.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang
     }
     void TearDown() override {
-        for (const char* const name : {"MISBEHAVE", "ASKS_FOR", "TOLD", "CONTROLLERS"}) unsetenv(name);
+        for (const char* const name : {"MISBEHAVE", "ASKS_FOR", "TOLD", "CONTROLLERS", "WINDOWS"})
+            unsetenv(name);
     }
     static void misbehave(const char* how) { setenv("MISBEHAVE", how, 1); }
 
