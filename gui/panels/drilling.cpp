@@ -23,7 +23,7 @@ void tools(const Theme& theme, const DrillingFacts& d) {
 void figures(const Theme& theme, const DrillingFacts& d) {
     row(theme, "Bone taken", fixed(1e9 * d.removed_m3, 1) + " mm³",
         format("in %.0f s of drilling", d.drilling_s));
-    row(theme, "Force", fixed(d.force_n, 2) + " N", force_verdict(d.force_n, d.excess_s));
+    row(theme, "Force felt", fixed(d.force_n, 2) + " N", force_verdict(d.force_n, d.excess_s));
     row(theme, "Strokes", grouped(d.strokes),
         d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
                       : std::string());
