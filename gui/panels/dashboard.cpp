@@ -26,7 +26,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCar
     const float usable = height_px - 4.0F * gap;
     const float health = std::round(std::min(theme.px(344.0F), 0.48F * usable));
     const float wanted = middle == MiddleCard::fit        ? std::min(theme.px(212.0F), 0.3F * usable)
-                         : middle == MiddleCard::drilling ? std::min(theme.px(300.0F), 0.42F * usable)
+                         : middle == MiddleCard::drilling ? std::min(theme.px(300.0F), 0.37F * usable)
                                                           : 0.0F;
     const float between = std::round(wanted);
     const float inner = at_least_one(left - 2.0F * gap);
