@@ -52,6 +52,7 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.span_choice = options.desk.span_choice;
         state_.lateness_choice = options.desk.lateness_choice;
     }
+    state_.toggles.smooth_edges = !window_.software();
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
     if (options.stage.mode != StereoMode::off) make_stage(options.stage);
     if (!options.scene.empty())

@@ -75,6 +75,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     view_options_.box = t.box;
     view_options_.style = static_cast<SurfaceStyle>(t.style);
     view_options_.depth_cue = t.depth_cue;
+    view_options_.smooth_edges = t.smooth_edges;
     view_->molecules().set_look(
         {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
     if (stage_)

@@ -39,6 +39,7 @@ void surface_card(const Theme& theme, DashboardState& state) {
     text_coloured(colour::kDim, "Surface as");
     ImGui::SameLine(theme.px(104.0F));
     choose(theme, kStyles, state.toggles.style);
+    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
     draw_detail(theme, state);
 }
 
@@ -48,6 +49,8 @@ void bone_card(const Theme& theme, DashboardState& state) {
         format("of %.3g mm", 1e3 * s.voxel_m));
     row(theme, "File", s.file, "");
     ImGui::Checkbox("Frame times", &state.toggles.frame_times);
+    ImGui::SameLine(theme.px(130.0F));
+    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
 }
 
 void toggles(const Theme& theme, SceneToggles& t) {
@@ -65,6 +68,8 @@ void toggles(const Theme& theme, SceneToggles& t) {
     ImGui::Checkbox("Depth cue", &t.depth_cue);
     ImGui::SameLine(second);
     ImGui::Checkbox("Frame times", &t.frame_times);
+    ImGui::SameLine(third);
+    ImGui::Checkbox("Smooth", &t.smooth_edges);
     static constexpr std::array<const char*, 4> kMolecule{"trace", "tube", "sticks", "spheres"};
     static constexpr std::array<const char*, 3> kColouring{"by chain", "by element", "by body"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};

@@ -134,6 +134,10 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
     draw_in_front(pass);
     glBindVertexArray(0);
     glUseProgram(0);
+    if (!options.smooth_edges) return;
+    const PassClock::Scope scope(frame.passes, tact::Pass::edges);
+    if (!edges_) edges_ = std::make_unique<EdgeSmoothing>();
+    edges_->smooth(frame.x_px, frame.y_px, frame.width_px, frame.height_px);
 }
 
 void SceneView::draw_structures(const Pass& pass) {

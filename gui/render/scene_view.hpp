@@ -16,6 +16,7 @@
 #include "gui/render/contours.hpp"
 #include "gui/render/detail_mesh.hpp"
 #include "gui/render/drill_tools.hpp"
+#include "gui/render/edge_smoothing.hpp"
 #include "gui/render/eye_view.hpp"
 #include "gui/render/molecules.hpp"
 #include "gui/render/particle_cloud.hpp"
@@ -33,7 +34,8 @@ struct ViewOptions {
     bool detail = false;  // what show_detail() was given, in place of the surface
     SurfaceStyle style = SurfaceStyle::glass;
     bool depth_cue = true;  // what lies far behind fades into the background
-    bool gradient = true;   // background; off: plain_ground, cheaper
+    bool smooth_edges = true;
+    bool gradient = true;  // background; off: plain_ground, cheaper
     Eigen::Vector3f plain_ground =
         Eigen::Vector3f::Zero();  // the colour cleared to where there is no gradient
 };
@@ -121,6 +123,7 @@ private:
     std::unique_ptr<ParticleCloud> cloud_;  // from the first particles on
     TriangleBuffers arrow_, second_hand_, touched_wall_, touch_marks_, tool_, detail_;
     Points box_;
+    std::unique_ptr<EdgeSmoothing> edges_;  // from the first smooth picture on
     std::unique_ptr<BoneView> bone_;
     std::string bone_error_;
     struct ToolInHand {

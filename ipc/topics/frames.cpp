@@ -8,9 +8,9 @@
 namespace tact {
 namespace {
 
-constexpr const char* kPassText[kPasses] = {"ground",  "adapt",     "structures", "bone",
-                                            "surface", "marks",     "motion",     "particles",
-                                            "stereo",  "dashboard", "swap"};
+constexpr const char* kPassText[kPasses] = {"ground",  "adapt",  "structures", "bone",
+                                            "surface", "marks",  "motion",     "particles",
+                                            "edges",   "stereo", "dashboard",  "swap"};
 constexpr const char* kVisualPathText[kVisualPaths] = {kMeshPath, kVolumePath, kParticlesPath};
 
 bool time(float s) noexcept { return s >= 0.0F && s < 1e6F; }  // NaN is in no range

@@ -26,6 +26,7 @@ enum class Pass : std::uint8_t {
     marks,    // codebook, box, forces, hands
     motion,   // of particles
     particles,
+    edges,   // made smooth
     stereo,  // both eyes put together
     dashboard,
     swap,  // or waiting for the picture
@@ -57,23 +58,23 @@ struct FrameFigures {
     PassFigures pass[kPasses];
     PassFigures path[kVisualPaths];  // what each path costs, of its passes together
 };
-static_assert(std::is_trivially_copyable_v<FrameFigures> && sizeof(FrameFigures) == 296);
+static_assert(std::is_trivially_copyable_v<FrameFigures> && sizeof(FrameFigures) == 312);
 
 struct alignas(64) FramesTopic {
-    static constexpr TopicInfo kInfo{.name = "frames", .version = 1, .writer = Writer::gui};
+    static constexpr TopicInfo kInfo{.name = "frames", .version = 2, .writer = Writer::gui};
     std::int64_t taken_at_ns;
     FrameFigures figures;
-    std::uint8_t reserved[16];  // zero
+    std::uint8_t reserved[64];  // zero
 };
-static_assert(std::is_trivially_copyable_v<FramesTopic> && sizeof(FramesTopic) == 320);
+static_assert(std::is_trivially_copyable_v<FramesTopic> && sizeof(FramesTopic) == 384);
 
 struct alignas(64) PictureTopic {
-    static constexpr TopicInfo kInfo{.name = "picture", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "picture", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     FrameFigures figures;
-    std::uint8_t reserved[16];  // zero
+    std::uint8_t reserved[64];  // zero
 };
-static_assert(std::is_trivially_copyable_v<PictureTopic> && sizeof(PictureTopic) == 320);
+static_assert(std::is_trivially_copyable_v<PictureTopic> && sizeof(PictureTopic) == 384);
 
 // Numbers that can be: finite, in order, not beyond any run. Both sides ask before they use them.
 [[nodiscard]] bool plausible(const FrameFigures& figures) noexcept;

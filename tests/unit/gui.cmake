@@ -13,6 +13,7 @@ if(TACT_GUI)
         SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_cloud_test.cpp USES gui_app gui_particles gui_panels gui_render launch assets base
         TIMEOUT 300)
+    tact_test(unit/gui_edges_test.cpp USES gui_app gui_render launch base)
     tact_test(unit/gui_drilling_test.cpp USES gui_drilling topics shm assets base SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_bone_test.cpp USES gui_app gui_render topics shm assets base)
     tact_test(unit/gui_bone_draw_test.cpp USES gui_app gui_panels gui_render launch assets base TIMEOUT 300)
