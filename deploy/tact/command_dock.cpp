@@ -1,37 +1,33 @@
 // tact dock MAP MODEL...: bakes the scene once, then runs it.
 #include <memory>
 
+#include "deploy/tact/baked_run.hpp"
 #include "deploy/tact/commands.hpp"
-#include "deploy/tact/run.hpp"
-#include "deploy/tact/scene_cache.hpp"
 
 namespace tact::launch {
 namespace {
 
-struct DockOptions {
-    RunOptions run;
-    std::filesystem::path map;
-    std::vector<std::filesystem::path> models;
-    std::vector<std::string> prep;
-    bool bake_only = false;
+constexpr PrepOption kDockPrep[] = {
+    {"--contour", "LEVEL", "level of the drawn surface, in the map's unit"},
+    {"--resolution-a", "A", "resolution of the map, where its header does not say it"},
+    {"--felt-resolution-a", "A", "feel the map smoothed to this, which draws a structure from farther away"},
+    {"--vertices-max", "N", "of the drawn surface"},
 };
 
-void dock(const DockOptions& o, int& exit_code) {
+struct DockOptions {
+    std::filesystem::path map;
+    std::vector<std::filesystem::path> models;
+    BakedRun baked;
+};
+
+int dock(const DockOptions& o) {
     BakeRequest request{
-        .inputs = {o.map}, .words = {"dock", std::filesystem::absolute(o.map)}, .options = o.prep};
+        .inputs = {o.map}, .words = {"dock", std::filesystem::absolute(o.map)}, .options = o.baked.prep};
     for (const auto& m : o.models) {
         request.inputs.push_back(m);
         request.words.push_back(std::filesystem::absolute(m));
     }
-    const auto scene = baked_scene(request);
-    if (scene.empty()) {
-        exit_code = 130;
-    } else if (o.bake_only) {
-        std::puts(scene.c_str());
-        exit_code = 0;
-    } else {
-        exit_code = run_scene(scene, o.run);
-    }
+    return bake_and_run(request, o.baked);
 }
 
 }  // namespace
@@ -45,24 +41,8 @@ void add_dock(CLI::App& app, int& exit_code) {
     command->add_option("MODEL", o->models, "structures: PDB or mmCIF, also .gz")
         ->required()
         ->check(CLI::ExistingFile);
-    command->add_flag("--bake-only", o->bake_only, "bake the scene, print its path and stop");
-    for (const auto& [name, type, help] :
-         {std::tuple("--contour", "LEVEL", "level of the drawn surface, in the map's unit"),
-          std::tuple("--resolution-a", "A", "resolution of the map, where its header does not say it"),
-          std::tuple("--felt-resolution-a", "A",
-                     "feel the map smoothed to this, which draws a structure from farther away"),
-          std::tuple("--vertices-max", "N", "of the drawn surface")}) {
-        command
-            ->add_option_function<std::string>(
-                name,
-                [o, n = std::string(name)](const std::string& v) {
-                    o->prep.insert(o->prep.end(), {n, v});
-                },
-                help)
-            ->type_name(type);
-    }
-    add_run_options(*command, o->run);
-    command->callback([o, &exit_code] { dock(*o, exit_code); });
+    add_baked_run_options(*command, kDockPrep, o->baked);
+    command->callback([o, &exit_code] { exit_code = dock(*o); });
 }
 
 }  // namespace tact::launch

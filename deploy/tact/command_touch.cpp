@@ -1,36 +1,32 @@
 // tact touch MESH: bakes the surface once, then runs it.
 #include <memory>
 
+#include "deploy/tact/baked_run.hpp"
 #include "deploy/tact/commands.hpp"
-#include "deploy/tact/run.hpp"
-#include "deploy/tact/scene_cache.hpp"
 #include "deploy/tact/tool_options.hpp"
 
 namespace tact::launch {
 namespace {
 
-struct TouchOptions {
-    RunOptions run;
-    std::filesystem::path mesh;
-    std::vector<std::string> prep;
-    std::shared_ptr<ToolOptions> tool;
-    bool bake_only = false;
+constexpr PrepOption kTouchPrep[] = {
+    {"--unit", "UNIT", "of the file: m, cm, mm (default), um, nm or a (angstrom)"},
+    {"--up", "AXIS", "of the file that points up: y (default) or z"},
+    {"--size-mm", "MM", "how wide its diagonal is in the hand's space; default 150"},
+    {"--vertices-max", "N", "of the drawn surface"},
 };
 
-void touch(TouchOptions& o, int& exit_code) {
+struct TouchOptions {
+    std::filesystem::path mesh;
+    std::shared_ptr<ToolOptions> tool;
+    BakedRun baked;
+};
+
+int touch(TouchOptions& o) {
     BakeRequest request{
-        .inputs = {o.mesh}, .words = {"touch", std::filesystem::absolute(o.mesh)}, .options = o.prep};
+        .inputs = {o.mesh}, .words = {"touch", std::filesystem::absolute(o.mesh)}, .options = o.baked.prep};
     o.tool->add_to(request);
-    const auto scene = baked_scene(request);
-    if (scene.empty()) {
-        exit_code = 130;
-    } else if (o.bake_only) {
-        std::puts(scene.c_str());
-        exit_code = 0;
-    } else {
-        let_the_hand_stroke(o.run);
-        exit_code = run_scene(scene, o.run);
-    }
+    let_the_hand_stroke(o.baked.run);
+    return bake_and_run(request, o.baked);
 }
 
 }  // namespace
@@ -41,24 +37,9 @@ void add_touch(CLI::App& app, int& exit_code) {
     command->add_option("MESH", o->mesh, "triangle mesh: PLY, OBJ, STL or OFF, also .gz")
         ->required()
         ->check(CLI::ExistingFile);
-    command->add_flag("--bake-only", o->bake_only, "bake the scene, print its path and stop");
-    for (const auto& [name, type, help] :
-         {std::tuple("--unit", "UNIT", "of the file: m, cm, mm (default), um, nm or a (angstrom)"),
-          std::tuple("--up", "AXIS", "of the file that points up: y (default) or z"),
-          std::tuple("--size-mm", "MM", "how wide its diagonal is in the hand's space; default 150"),
-          std::tuple("--vertices-max", "N", "of the drawn surface")}) {
-        command
-            ->add_option_function<std::string>(
-                name,
-                [o, n = std::string(name)](const std::string& v) {
-                    o->prep.insert(o->prep.end(), {n, v});
-                },
-                help)
-            ->type_name(type);
-    }
     o->tool = add_tool_options(*command);
-    add_run_options(*command, o->run);
-    command->callback([o, &exit_code] { touch(*o, exit_code); });
+    add_baked_run_options(*command, kTouchPrep, o->baked);
+    command->callback([o, &exit_code] { exit_code = touch(*o); });
 }
 
 }  // namespace tact::launch

@@ -45,12 +45,23 @@ constexpr Passed kController[] = {
 
 constexpr Passed kVisual[] = {
     {"--fps-max", "FPS", "draw no more often"},
+    {"--ui-scale", "X", "letters and panels so many times as large as the display asks for"},
     {"--particles", "N", "keep so many over bone, to measure what they cost"},
     {"--stereo", "MODE", "anaglyph, side-by-side, top-bottom, two-windows or quad-buffer"},
     {"--desk", "FILE",
      "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
     {"--stage", "FILE", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
     {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
+};
+
+struct PassedFlag {
+    const char* name;
+    const char* help;
+};
+constexpr PassedFlag kVisualFlags[] = {
+    {"--traces", "begin with the traces of every servo cycle in place of the plots"},
+    {"--swap-eyes", "the other eye's picture for each eye"},
+    {"--test-picture", "begin with the stereo test picture: are eyes, scale and tool where they should be?"},
 };
 
 }  // namespace
@@ -160,9 +171,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
         ->type_name("WxH")
         ->each([&options](const std::string&) { options.size_given = true; })
         ->capture_default_str();
-    visual->add_flag_callback(
-        "--test-picture", [&options] { options.visual.emplace_back("--test-picture"); },
-        "begin with the stereo test picture: are eyes, scale and tool where they should be?");
+    for (const PassedFlag& p : kVisualFlags)
+        visual->add_flag_callback(
+            p.name, [&options, name = p.name] { options.visual.emplace_back(name); }, p.help);
     for (const Passed& p : kVisual)
         visual
             ->add_option_function<std::string>(
