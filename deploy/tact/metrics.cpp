@@ -189,13 +189,13 @@ void picture(Page& page, const FrameFigures& f) {
              "pictures that came more than half a period after they were due", count(f.late));
     if (f.due_s > 0.0)
         page.one("tact_frame_due_seconds", "gauge", "period that a picture is due in", f.due_s);
-    page.about("tact_frame_seconds", "gauge", "from picture to picture, of the last ones");
+    page.about("tact_frame_seconds", "summary", "from picture to picture, of the last ones");
     for (const auto& [q, s] :
          {std::pair{"0.5", f.p50_s}, std::pair{"0.99", f.p99_s}, std::pair{"1", f.most_s}})
         page.value(static_cast<double>(s), label("quantile", q));
     const auto times = [&page](const char* name, const char* help, const char* key, std::size_t n,
                                const auto& text, const PassFigures* of, bool drawn) {
-        page.about(name, "gauge", help);
+        page.about(name, "summary", help);
         for (std::size_t i = 0; i < n; ++i) {
             const float p50_s = drawn ? of[i].drawn_p50_s : of[i].work_p50_s;
             const float p99_s = drawn ? of[i].drawn_p99_s : of[i].work_p99_s;
