@@ -106,7 +106,9 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
            state.lateness_choice);
     ImGui::PopFont();
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float shares = wide ? 5.8F : 4.8F, gaps = wide ? 4.0F : 3.0F;
+    // A narrow one leaves out what the controller's card says as well.
+    const bool narrow = inside.x < theme.px(500.0F);
+    const float shares = narrow ? 2.8F : wide ? 5.8F : 4.8F, gaps = narrow ? 1.0F : wide ? 4.0F : 3.0F;
     const float unit = (room.x - gaps * gap) / shares;
     const auto sized = [&](float share) { return ImVec2{std::floor(share * unit), room.y}; };
 
@@ -122,8 +124,10 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     rate_spec.goal = 1e-3 * (state.have_levels   ? state.levels.goal_hz
                              : state.have_health ? state.health.goal_hz
                                                  : 0.0);
-    draw_plot(theme, rate_spec, sized(1.0F));
-    ImGui::SameLine(0.0F, gap);
+    if (!narrow) {
+        draw_plot(theme, rate_spec, sized(1.0F));
+        ImGui::SameLine(0.0F, gap);
+    }
     if (wide || state.lateness_choice == 2) {
         lateness_over_time(theme, h, spec, sized(wide ? 1.0F : 1.2F));
         ImGui::SameLine(0.0F, gap);
@@ -133,6 +137,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
         ImGui::SameLine(0.0F, gap);
     }
     levels(theme, state, spec, sized(1.6F));
+    if (narrow) return end_card();
     ImGui::SameLine(0.0F, gap);
 
     const PlotLine frame[] = {{&h.frame_s, colour::kAccent, "frame"}, {&h.busy_s, colour::kPink, "busy"}};

@@ -73,14 +73,16 @@ void axes(const Pen& pen, const DashboardState& state, const PixelRect& v) {
 
 void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
     const float x = v.x + pen.theme.px(16.0F);
-    float y = v.y + pen.theme.px(12.0F);
+    float y = v.y + pen.theme.px(12.0F), taken = x;  // to the right of it is room for numbers
     if (state.scene.loaded) {
         pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
+        taken = x + pen.width(pen.theme.bold, state.scene.title);
         y += pen.theme.px(22.0F);
         const auto line = [&](ImU32 swatch, const std::string& text) {
             pen.draw->AddRectFilled({x, y + pen.theme.px(6.0F)},
                                     {x + pen.theme.px(18.0F), y + pen.theme.px(9.0F)}, swatch);
             pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText, text);
+            taken = std::max(taken, x + pen.theme.px(24.0F) + pen.width(pen.theme.small, text));
             y += pen.theme.px(18.0F);
         };
         if (state.toggles.force && state.attached)
@@ -103,20 +105,13 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
                  : format("%s %s", grouped(state.load.vertices_drawn).c_str(),
                           state.scene.bone ? "rays" : "vertices");
     if (state.scene.bone) fps += format("   %s particles", grouped(state.load.particles).c_str());
-    pen.text(
-        pen.theme.small,
-        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, fps), v.y + pen.theme.px(12.0F)},
-        colour::kDim, fps);
-    const std::string times = frame_line(state.frames);
-    pen.text(
-        pen.theme.small,
-        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, times), v.y + pen.theme.px(30.0F)},
-        colour::kDim, times);
-    const std::string help = "? keys";
-    pen.text(
-        pen.theme.small,
-        {v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, help), v.y + pen.theme.px(48.0F)},
-        colour::kDim, help);
+    float at = v.y + pen.theme.px(12.0F);
+    for (const std::string& words : {fps, frame_line(state.frames), std::string("? keys")}) {
+        const float left = v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, words);
+        // In a narrow view, what is drawn goes before how fast.
+        if (left > taken + pen.theme.px(8.0F)) pen.text(pen.theme.small, {left, at}, colour::kDim, words);
+        at += pen.theme.px(18.0F);
+    }
 }
 
 // What the colours of the detail stand for: short edges above.
