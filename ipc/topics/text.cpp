@@ -25,7 +25,11 @@ std::string number(double value, int digits = 6) {
     return text;
 }
 
-std::string late_text(double us) { return us < 1e3 ? number(us, 3) + " us" : number(1e-3 * us, 3) + " ms"; }
+std::string late_text(double us) {
+    return us < 1e3   ? number(us, 3) + " us"
+           : us < 1e6 ? number(1e-3 * us, 3) + " ms"
+                      : number(1e-6 * us, 3) + " s";
+}
 
 std::string path_text(double index) {
     if (index == static_cast<double>(kPicturePathIndex)) return "picture";
@@ -286,7 +290,9 @@ std::string event_text(const EventTopic& event) {
             return what + ": " + run_state_text(code_of<RunState>(event.a)) + " to " +
                    run_state_text(code_of<RunState>(event.b));
         case EventCode::fault_latched:
-            return what + ": " + run_reason_text(code_of<RunReason>(event.a)) + " (" + b + ")";
+            // What was measured, where the reason is a number too large.
+            return what + ": " + run_reason_text(code_of<RunReason>(event.a)) +
+                   (event.b == 0.0 ? std::string() : " (" + b + ")");
         case EventCode::overrun:
             return what + ": " + late_text(event.a) + " late, " + b + " so far";
         case EventCode::force_limited:
@@ -298,7 +304,7 @@ std::string event_text(const EventTopic& event) {
         case EventCode::torque_slew_limited:
             return what + ": " + number(event.a, 3) + " N m a cycle wanted, " + b + " N m allowed";
         case EventCode::gui_silent:
-            return what + ": for " + a + " ms";
+            return what + ": for " + late_text(1e3 * event.a);
         case EventCode::command_done:
             return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
                    command_result_text(code_of<CommandResult>(event.b));
@@ -310,7 +316,7 @@ std::string event_text(const EventTopic& event) {
         case EventCode::stopping:
             return event.a < 0.0 ? what + ": the time is over" : what + ": signal " + a;
         case EventCode::device_watchdog:
-            return what + ": " + a + " ms without a cycle";
+            return what + ": " + late_text(1e3 * event.a) + " without a cycle";
         case EventCode::body_selected:
             if (event.a == static_cast<double>(kNoBody)) return "no body in the hand";
             return what + ": body " + a + ", " + b + " points";

@@ -55,6 +55,10 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     };
     EXPECT_EQ(text(EventCode::overrun, 120, 3), "overrun: 120 us late, 3 so far");
     EXPECT_EQ(text(EventCode::overrun, 8987.07, 4), "overrun: 8.99 ms late, 4 so far");
+    EXPECT_EQ(text(EventCode::overrun, 2.5e6, 1), "overrun: 2.5 s late, 1 so far");
+    EXPECT_EQ(text(EventCode::gui_silent, 500.52, 0), "visual process silent: for 501 ms");
+    EXPECT_EQ(text(EventCode::fault_latched, static_cast<double>(RunReason::emergency_stop), 0),
+              "fault: the emergency stop is pressed");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
