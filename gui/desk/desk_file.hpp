@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "gui/panels/dashboard.hpp"
+#include "gui/panels/scene_toggles.hpp"
 #include "ipc/base/pose.hpp"
 
 namespace tact {

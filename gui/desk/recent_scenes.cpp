@@ -49,7 +49,7 @@ std::vector<RecentScene> read_recents_text(std::string_view text, const std::str
         RecentScene scene{each["path"].get<std::string>(), each["used_unix_s"].get<std::int64_t>()};
         if (scene.path.empty() || scene.path.front() != '/' || scene.path.size() > kRecentPathMost ||
             std::any_of(scene.path.begin(), scene.path.end(),
-                        [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+                        [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
             fail("a path in it is not absolute, too long, or holds a control character");
         if (scene.used_unix_s < 0 || scene.used_unix_s > kLatestUnixS) fail("a time in it is impossible");
         scenes.push_back(std::move(scene));

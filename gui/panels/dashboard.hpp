@@ -18,6 +18,7 @@
 #include "gui/panels/knob_changes.hpp"
 #include "gui/panels/lateness_window.hpp"
 #include "gui/panels/plot_series.hpp"
+#include "gui/panels/scene_toggles.hpp"
 #include "gui/panels/theme.hpp"
 #include "gui/panels/traces.hpp"
 #include "ipc/assets/fit_metrics.hpp"
@@ -67,17 +68,6 @@ struct FittingFacts {
     std::vector<std::string> snapshots;
     std::string said;  // what the last act did
     Grade said_grade = Grade::unknown;
-};
-
-struct SceneToggles {
-    bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
-    int style = 0;  // glass, solid, wire
-    bool depth_cue = true;
-    bool smooth_edges = true;  // begins as the renderer allows; not kept
-    bool frame_times = false;  // the table of passes
-    bool detail = false;       // the length of edges as colour, where the scene has a forest
-    int molecule = 1;          // trace, tube, sticks, spheres
-    int colouring = 0;         // by chain, element, body
 };
 
 struct SceneFacts {

@@ -57,7 +57,7 @@ SceneMeta peek_scene(const std::filesystem::path& path) {
     SceneWriter alone;
     for (const TableRow& row : table) {
         std::vector<std::byte> bytes;
-        if (row.tag == SceneMeta::kTag) {
+        if (row.tag == SceneMeta::kTag && row.index == 0) {
             if (row.bytes != sizeof(SceneMeta)) fail("its section META has another size");
             bytes.resize(sizeof(SceneMeta));
             read_at(bytes.data(), bytes.size(), row.offset);

@@ -47,6 +47,7 @@ TEST_F(Desk, AListThatIsWrongIsToldWithItsMend) {
          {"", "[", "{}", "{\"scenes\": 3}", "{\"scenes\": [3]}", "{\"scenes\": [{\"path\": \"/a\"}]}",
           "{\"scenes\": [{\"path\": \"a\", \"used_unix_s\": 1}]}",
           "{\"scenes\": [{\"path\": \"/a\\u0000b\", \"used_unix_s\": 1}]}",
+          "{\"scenes\": [{\"path\": \"/a\\u007f\", \"used_unix_s\": 1}]}",
           "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": -1}]}",
           "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": 1e300}]}"})
         EXPECT_NE(error_of([&] { (void)read_recents_text(bad, "recent.json"); }).find("mend:"),

@@ -1,0 +1,76 @@
+// What the window and the launcher leave for each other, of any bytes: the same ones are found as what is asked and as what was
+// refused. It is gone then, whatever it was.
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "ipc/assets/scene_hand_over.hpp"
+#include "ipc/base/error.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace tact::fuzz {
+namespace {
+
+bool control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+// In memory: the files are synced.
+struct Folder {
+    std::filesystem::path path;
+    Folder() {
+        char name[] = "/dev/shm/tact-fuzz-XXXXXX";
+        require(mkdtemp(name) != nullptr);
+        path = name;
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() { std::filesystem::remove_all(path); }
+    void put(const char* name, std::string_view text) const {
+        std::ofstream(path / name, std::ios::binary) << text;
+    }
+};
+
+void judge_refusal(const Folder& folder, std::string_view text) {
+    folder.put("refused", text);
+    const auto refusal = take_refusal(folder.path);
+    require(refusal.has_value() && !take_refusal(folder.path));
+    require(refusal->size() == (text.size() <= kRefusalMost ? text.size() : 0));
+    require(std::none_of(refusal->begin(), refusal->end(), [](char c) { return control(c) && c != '\n'; }));
+    refuse_scene(folder.path, *refusal);
+    require(take_refusal(folder.path) == refusal);
+}
+
+}  // namespace
+
+bool run(std::span<const std::byte> input) {
+    static const Folder folder;
+    const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
+    judge_refusal(folder, text);
+    folder.put("open", text);
+    std::optional<std::filesystem::path> asked;
+    try {
+        asked = take_asked_scene(folder.path);
+        require(asked.has_value());
+    } catch (const StartupError& error) {
+        require(std::strstr(error.what(), "mend:") != nullptr);
+    }
+    require(!take_asked_scene(folder.path));
+    if (!asked) return false;
+    const std::string& path = asked->native();
+    require(path.size() < kAskedPathMost && path.front() == '/' && text == path + "\n");
+    require(std::none_of(path.begin(), path.end(), control));
+    ask_for_scene(folder.path, *asked);
+    require(take_asked_scene(folder.path) == asked->lexically_normal());
+    return true;
+}
+
+std::vector<Input> seeds() {
+    std::vector<Input> all;
+    for (const std::string& text :
+         {std::string("/data/a b.tact\n"), std::string("/a/../\u00fc/./b//c.tact\n"),
+          "/" + std::string(kAskedPathMost - 2, 'x') + "\n"})
+        all.emplace_back(std::as_bytes(std::span(text)).begin(), std::as_bytes(std::span(text)).end());
+    return all;
+}
+
+}  // namespace tact::fuzz
