@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +8,7 @@
 
 #include "gui/stage/stage_file.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_file.hpp"
 
 namespace tact {
 namespace {
@@ -37,20 +37,6 @@ std::string remark(const std::string& text) {
     for (const char c : text.substr(0, kRemarkMost)) out += c >= ' ' && c <= '~' ? c : ' ';
     return out + "\n";
 }
-
-// Closes and removes what is half written, however the function is left.
-struct Partial {
-    std::string path;
-    int fd = -1;
-    bool kept = false;
-    explicit Partial(std::string at) : path(std::move(at)) {}
-    Partial(const Partial&) = delete;
-    Partial& operator=(const Partial&) = delete;
-    ~Partial() {
-        if (fd >= 0) ::close(fd);
-        if (!kept) ::unlink(path.c_str());
-    }
-};
 
 std::string moment_text() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -121,24 +107,16 @@ std::filesystem::path write_stage_file(const std::filesystem::path& path, const 
         throw StartupError("writing the stage file '" + path.string() + "'", why,
                            "choose a folder that exists and can be written, with space left (--stage FILE)");
     };
-    const auto system = [](int error) { return std::string(std::generic_category().message(error)); };
-    Partial partial(path.string() + "." + std::to_string(::getpid()) + ".partial");
-    partial.fd = ::open(partial.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (partial.fd < 0) {
-        const int error = errno;
-        partial.kept = true;  // not ours
-        fail(system(error));
-    }
-    for (std::size_t done = 0; done < text.size();) {
-        const ssize_t n = ::write(partial.fd, text.data() + done, text.size() - done);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) fail(system(errno));
-        done += static_cast<std::size_t>(n);
-    }
-    if (::fsync(partial.fd) != 0) fail(system(errno));
+    std::error_code error;
+    if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), error))
+        fail("there is no folder " + path.parent_path().string());
     std::filesystem::path old = keep_old(path, fail);
-    if (::rename(partial.path.c_str(), path.c_str()) != 0) fail(system(errno));
-    partial.kept = true;
+    try {
+        write_whole_file(path, text);
+    } catch (const StartupError&) {
+        if (!old.empty()) std::filesystem::remove(old, error);  // the stage file itself is as it was
+        throw;
+    }
     return old;
 }
 

@@ -1,8 +1,10 @@
 // The calibration of a stage without a window: measuring at rest, the steps, the file, and what is shown.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -365,6 +367,9 @@ protected:
         folder_ = mkdtemp(name);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::ptrdiff_t files() const {
+        return std::distance(std::filesystem::directory_iterator(folder_), {});
+    }
     std::filesystem::path folder_;
 };
 
@@ -413,8 +418,7 @@ TEST_F(StageFileWritten, IsReadBackAsTheSameStageAndTheOldOneIsKept) {
     same(StageSettings{}, read_stage_file(path));
     same(s, read_stage_file(second));
     EXPECT_TRUE(write_stage_file(folder_ / "new.toml", s).empty());
-    for (const auto& entry : std::filesystem::directory_iterator(folder_))
-        EXPECT_NE(entry.path().extension(), ".partial");
+    EXPECT_EQ(files(), 4);  // and nothing that is half written
 }
 
 TEST_F(StageFileWritten, WhatCannotBeReadAgainIsNotWrittenAndAFolderThatIsNotThereIsTold) {
@@ -425,6 +429,28 @@ TEST_F(StageFileWritten, WhatCannotBeReadAgainIsNotWrittenAndAFolderThatIsNotThe
     EXPECT_THROW(write_stage_file(path, s), StartupError);
     EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
     EXPECT_THROW(write_stage_file(folder_ / "none" / "lab.toml", StageSettings{}), StartupError);
+    EXPECT_EQ(files(), 1);
+}
+
+TEST_F(StageFileWritten, WhereThereIsNoRoomTheFolderStaysAsItWas) {
+    const auto path = folder_ / "lab.toml";
+    std::ofstream(path) << "mode = \"anaglyph\"\n";
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{64, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    std::string why;
+    try {
+        write_stage_file(path, StageSettings{});
+    } catch (const StartupError& e) {
+        why = e.what();
+    }
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_NE(why.find("mend:"), std::string::npos) << why;
+    EXPECT_EQ(files(), 1);
+    EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
 }
 
 TEST(TestPicture, ItsStepsStandWhereTheySayAndTheToolIsWhereTheHandIs) {
