@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "gui/panels/widgets.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {
@@ -16,21 +14,6 @@ constexpr std::int64_t kOldNs = 100'000'000;
 constexpr std::uint8_t kFresh = 2;  // TrackerState of the hardware layer, which is out of sight here
 constexpr std::uint8_t kReady = 1, kFault = 4;  // DeviceState, likewise
 constexpr double kToolShownMm = 3000.0;
-constexpr int kModes = static_cast<int>(std::size(kStereoModes)) - 1;  // all but "off"
-
-Grade grade_of(FitGrade grade) {
-    switch (grade) {
-        case FitGrade::green:
-            return Grade::good;
-        case FitGrade::amber:
-            return Grade::watch;
-        case FitGrade::red:
-            return Grade::bad;
-        case FitGrade::none:
-            break;
-    }
-    return Grade::unknown;
-}
 
 CalibrationInput input_of(const Controller& c, std::int64_t now_ns) {
     CalibrationInput in;
@@ -51,13 +34,6 @@ CalibrationInput input_of(const Controller& c, std::int64_t now_ns) {
     in.button = t.buttons != 0;
     return in;
 }
-
-template <std::size_t n>
-void put_mm(std::array<double, n>& to, const double* from_m) {
-    for (std::size_t i = 0; i < n; ++i) to[i] = 1e3 * from_m[i];
-}
-
-Vec3 metres(const std::array<double, 3>& mm) { return 1e-3 * Vec3(mm[0], mm[1], mm[2]); }
 
 }  // namespace
 
@@ -164,93 +140,6 @@ bool CalibrationDesk::follow(const Controller& controller, std::int64_t now_ns, 
     return leave_;
 }
 
-void CalibrationDesk::take_typed(CalibrationFacts& f) {
-    using Typed = CalibrationFacts::Typed;
-    Calibration& c = *calibration_;
-    switch (std::exchange(f.edited, Typed::none)) {
-        case Typed::none:
-            break;
-        case Typed::size:
-            c.set_picture_size(1e-3 * f.width_mm[0], 1e-3 * f.height_mm[0]);
-            break;
-        case Typed::tip:
-            c.set_wand_tip(metres(f.tip_mm));
-            break;
-        case Typed::corners:
-            c.set_screen({metres(f.corners_mm[0]), metres(f.corners_mm[1]), metres(f.corners_mm[2])});
-            break;
-        case Typed::eyes:
-            c.set_eyes({.apart_m = 1e-3 * f.apart_mm[0],
-                        .middle_head_m = metres(f.middle_mm),
-                        .swapped = f.swapped});
-            break;
-        case Typed::mode:
-            c.set_mode(static_cast<StereoMode>(std::clamp(f.mode, 0, kModes - 1) + 1));
-            break;
-        case Typed::place:
-            c.set_in_workspace(f.place == 1);
-            break;
-        case Typed::touched_with:
-            c.set_workspace_by_wand(f.touched_with == 1);
-            break;
-    }
-}
-
-void CalibrationDesk::tell(CalibrationFacts& f) const {
-    const Calibration& c = *calibration_;
-    f.open = true;
-    f.step = static_cast<std::size_t>(c.step());
-    f.steps.resize(kCalibrationSteps);
-    for (std::size_t i = 0; i < kCalibrationSteps; ++i) {
-        const auto step = static_cast<CalibrationStep>(i);
-        const Calibration::Verdict v = c.verdict(step);
-        f.steps[i] = {calibration_step_title(step), v.words, grade_of(v.grade)};
-    }
-    const Calibration::Verdict verdict = c.verdict();
-    f.verdict = {grade_of(verdict.grade), verdict.words};
-    f.instruction = c.instruction();
-    f.live = c.live();
-    f.said = c.said();
-    f.measuring = c.measuring();
-    f.progress = static_cast<float>(c.progress());
-    f.size_offered = c.measured_size_m().x() > 0.0;
-    f.points.resize(kMarks);
-    for (std::size_t i = 0; i < kMarks; ++i) {
-        const Calibration::Mark& mark = c.marks().mark[i];
-        const auto left = c.marks().residual_m(i);
-        CalibrationFacts::Point& p = f.points[i];
-        p.taken = mark.taken;
-        p.current = c.marks().current == i;
-        p.grade = !left                      ? Grade::unknown
-                  : c.marks().outlier() == i ? Grade::bad
-                  : *left <= kGreenWorstM    ? Grade::good
-                  : *left <= kAmberWorstM    ? Grade::watch
-                                             : Grade::bad;
-        p.words = !mark.taken ? std::string(p.current ? "now" : "-")
-                  : left      ? format("%.1f mm left, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
-                              : format("taken, spread %.1f mm", 1e3 * mark.spread_m);
-    }
-    f.file = file_.filename().string();
-    f.saved = saved_;
-    f.saved_grade = saved_grade_;
-    f.changed = stage_text(c.draft()) != stage_text(kept_);
-    f.modes.assign(std::begin(kStereoModes) + 1, std::end(kStereoModes));
-    if (f.editing) return;
-    const StageSettings& s = c.draft();
-    f.width_mm = {1e3 * s.screen.width_m()};
-    f.height_mm = {1e3 * s.screen.height_m()};
-    put_mm(f.tip_mm, s.wand_tip_sensor_m.data());
-    put_mm(f.corners_mm[0], s.screen.lower_left_m.data());
-    put_mm(f.corners_mm[1], s.screen.lower_right_m.data());
-    put_mm(f.corners_mm[2], s.screen.upper_left_m.data());
-    f.apart_mm = {1e3 * s.eyes.apart_m};
-    put_mm(f.middle_mm, s.eyes.middle_head_m.data());
-    f.swapped = s.eyes.swapped;
-    f.mode = static_cast<int>(s.mode) - 1;
-    f.place = s.in_workspace ? 1 : 0;
-    f.touched_with = c.workspace_by_wand() ? 1 : 0;
-}
-
 void CalibrationDesk::refuse_mode(StereoMode back_to, const std::string& why) {
     calibration_->set_mode(back_to);
     saved_ = why;
@@ -273,20 +162,6 @@ double CalibrationDesk::reach_mm(const GlassSize& glass) const {
     return std::max(0.6 * std::hypot(glass.width_mm, glass.height_mm), tool ? tool->norm() : 0.0);
 }
 
-std::string CalibrationDesk::words_on_glass() const {
-    const Calibration& c = *calibration_;
-    const std::size_t now = c.marks().current;
-    const std::string point = std::to_string(now + 1);
-    if (c.measuring())
-        return c.step() == CalibrationStep::wand ? "TILT THE WAND TO ALL SIDES"
-                                                 : "HOLD STILL: POINT " + point;
-    if (c.step() == CalibrationStep::wand) return "WAND: PUT ITS TIP INTO A HOLLOW";
-    if (now >= kMarks) return "ALL POINTS ARE TAKEN";
-    if (c.step() == CalibrationStep::workspace)
-        return c.workspace_by_wand() ? "STYLUS TO WAND: POINT " + point : "STYLUS: TOUCH MARK " + point;
-    return "WAND: TOUCH MARK " + point;
-}
-
 std::vector<PictureVertex> CalibrationDesk::picture(const GlassSize& glass, std::size_t eye) const {
     const Calibration& c = *calibration_;
     if (c.step() == CalibrationStep::picture) return frame_picture(glass, c.draft().screen_measured);
@@ -294,12 +169,14 @@ std::vector<PictureVertex> CalibrationDesk::picture(const GlassSize& glass, std:
     MarksPicture what;
     what.marks = c.step() == CalibrationStep::screen ||
                  (c.step() == CalibrationStep::workspace && !c.workspace_by_wand());
+    const bool lit = c.lacking() != Calibration::Lacking::size;
     for (std::size_t i = 0; i < kMarks; ++i)
-        what.look[i] = i == c.marks().current    ? MarkLook::current
-                       : c.marks().mark[i].taken ? MarkLook::taken
-                                                 : MarkLook::open;
+        what.look[i] = lit && i == c.marks().current ? MarkLook::current
+                       : c.marks().outlier() == i    ? MarkLook::outlier
+                       : c.marks().mark[i].taken     ? MarkLook::taken
+                                                     : MarkLook::open;
     what.progress = c.progress();
-    what.words = words_on_glass();
+    what.words = c.glass_words();
     return marks_picture(glass, what);
 }
 

@@ -42,7 +42,6 @@ private:
     void take_typed(CalibrationFacts& facts);
     void tell(CalibrationFacts& facts) const;
     void save();
-    [[nodiscard]] std::string words_on_glass() const;
     [[nodiscard]] std::optional<Eigen::Vector3d> tool_mm() const;
 
     std::filesystem::path file_;

@@ -24,6 +24,7 @@ struct Form {
     template <std::size_t n>
     void numbers(const char* what, std::array<double, n>& values, Typed typed) const {
         ImGui::PushID(what);
+        ImGui::AlignTextToFramePadding();
         text_coloured(colour::kDim, what);
         const float gap = theme.px(4.0F), left = theme.px(92.0F);
         ImGui::SameLine(left);
@@ -115,7 +116,7 @@ void points(const Form& form) {
         ImGui::PopID();
     }
     const float gap = form.theme.px(6.0F), width = (ImGui::GetContentRegionAvail().x - 2.0F * gap) / 3.0F;
-    form.button(f.measuring ? "Stop" : "Take  T", width, CalibrationAct::take);
+    form.button(f.measuring ? "Stop" : "Take  T", width, CalibrationAct::take, f.can_take);
     ImGui::SameLine(0.0F, gap);
     form.button("Skip  N", width, CalibrationAct::skip);
     ImGui::SameLine(0.0F, gap);

@@ -40,7 +40,7 @@ struct CalibrationFacts {
     std::string instruction, live, said;
     Verdict verdict;
     std::vector<Point> points;
-    bool measuring = false, size_offered = false;
+    bool measuring = false, can_take = true, size_offered = false;
     float progress = 0.0F;
     std::string file;   // that is written
     std::string saved;  // what became of it

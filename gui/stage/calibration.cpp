@@ -1,72 +1,21 @@
 #include "gui/stage/calibration.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 namespace tact {
-namespace {
-
-constexpr double kEyesApartMostM = 0.2, kMiddleMostM = 0.5, kTipMostM = 1.0;
-
-// What a stage file takes.
-bool within(const Vec3& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
-
-ScreenPlace of_frame(const Pose& T_screen_glass, double width_m, double height_m) {
-    const ScreenPlace flat = ScreenPlace::of_size(width_m, height_m);
-    return {T_screen_glass * flat.lower_left_m, T_screen_glass * flat.lower_right_m,
-            T_screen_glass * flat.upper_left_m};
-}
-
-Pose glass_of(const ScreenPlace& screen) {
-    const Vec3 right = screen.right(), towards = screen.towards_viewer();
-    Eigen::Matrix3d axes;
-    axes << right, towards.cross(right), towards;
-    return {screen.centre_m(), Quat(axes).normalized()};
-}
-
-// Lengths of the picture by the marks alone: the plane that best holds them, stretched along both axes as it likes.
-Eigen::Vector2d size_by_marks(const Calibration::Marks& marks) {
-    std::vector<std::size_t> taken;
-    for (std::size_t i = 0; i < kMarks; ++i)
-        if (marks.mark[i].taken && marks.outlier() != i) taken.push_back(i);
-    if (taken.size() < kMarksMin) return Eigen::Vector2d::Zero();
-    Eigen::MatrixXd a(static_cast<Eigen::Index>(taken.size()), 3),
-        b(static_cast<Eigen::Index>(taken.size()), 3);
-    for (std::size_t k = 0; k < taken.size(); ++k) {
-        const auto row = static_cast<Eigen::Index>(k);
-        a.row(row) << 1.0, kMarkPlaces[taken[k]][0], kMarkPlaces[taken[k]][1];
-        b.row(row) = marks.mark[taken[k]].to_m.transpose();
-    }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-    if (qr.rank() < 3) return Eigen::Vector2d::Zero();
-    const Eigen::MatrixXd x = qr.solve(b);
-    return {x.row(1).norm(), x.row(2).norm()};
-}
-
-}  // namespace
-
-std::size_t Calibration::Marks::taken() const {
-    return static_cast<std::size_t>(
-        std::count_if(mark.begin(), mark.end(), [](const Mark& m) { return m.taken; }));
-}
-
-std::optional<double> Calibration::Marks::residual_m(std::size_t of_mark) const {
-    for (std::size_t i = 0; i < std::min(of_fit.size(), fit.residual_m.size()); ++i)
-        if (of_fit[i] == of_mark) return fit.residual_m[i];
-    return std::nullopt;
-}
-
-std::optional<std::size_t> Calibration::Marks::outlier() const {
-    if (!fit.outlier || *fit.outlier >= of_fit.size()) return std::nullopt;
-    return of_fit[*fit.outlier];
-}
 
 Vec3 Calibration::glass_m(std::size_t mark) const {
     return {(kMarkPlaces[mark][0] - 0.5) * draft_.screen.width_m(),
             (kMarkPlaces[mark][1] - 0.5) * draft_.screen.height_m(), 0.0};
+}
+
+Pose Calibration::T_screen_glass() const {
+    const Vec3 right = draft_.screen.right(), towards = draft_.screen.towards_viewer();
+    Eigen::Matrix3d axes;
+    axes << right, towards.cross(right), towards;
+    return {draft_.screen.centre_m(), Quat(axes).normalized()};
 }
 
 std::optional<Vec3> Calibration::wand_tip_screen_m() const {
@@ -109,23 +58,13 @@ void Calibration::follow(const CalibrationInput& input) {
     if (wand_.measuring() || stylus_.measuring()) follow_mark();
 }
 
-void Calibration::follow_turning() {
-    if (input_.sensor_good && input_.sensor_at_ns != turned_at_ns_) {
-        turned_at_ns_ = input_.sensor_at_ns;
-        turned_.push_back(input_.T_screen_sensor);
-    }
-    if (input_.now_s - turning_from_s_ < kTurningS) return;
-    turning_ = false;
-    pivot_ = fit_pivot(turned_);
-    if (!pivot_->good) {
-        say("Not taken: " + pivot_->refusal + ".");
-    } else if (!within(pivot_->tip_sensor_m, kTipMostM)) {
-        pivot_->good = false;
-        say("Not taken: the tip came out more than a metre from the sensor; turn farther, about one place.");
-    } else {
-        draft_.wand_tip_sensor_m = pivot_->tip_sensor_m;
-        say("The tip is measured.");
-    }
+Calibration::Lacking Calibration::lacking() const {
+    const bool screen = step_ == CalibrationStep::screen, hand = step_ == CalibrationStep::workspace,
+               wand = step_ == CalibrationStep::wand || screen || (hand && by_wand_);
+    if ((screen || (hand && !by_wand_)) && !draft_.screen_measured) return Lacking::size;
+    if (wand && !(input_.now_s - sensor_heard_s_ < kAwayS)) return Lacking::tracker;
+    if (hand && !(input_.now_s - hand_heard_s_ < kAwayS)) return Lacking::hand;
+    return Lacking::nothing;
 }
 
 void Calibration::take() {
@@ -136,11 +75,17 @@ void Calibration::take() {
         turning_ = false;
         return say("Stopped.");
     }
-    const bool sensor_there = input_.now_s - sensor_heard_s_ < kAwayS,
-               hand_there = input_.now_s - hand_heard_s_ < kAwayS;
-    if (step_ == CalibrationStep::wand) {
-        if (!sensor_there)
+    switch (lacking()) {
+        case Lacking::size:
+            return say("The picture's size comes first: go back and type it.");
+        case Lacking::tracker:
             return say("Nothing is heard of the tracker: is one configured, and is the sensor in reach?");
+        case Lacking::hand:
+            return say("Nothing is heard of the hand's device: is the controller running?");
+        case Lacking::nothing:
+            break;
+    }
+    if (step_ == CalibrationStep::wand) {
         turning_ = true;
         turned_.clear();
         turning_from_s_ = input_.now_s;
@@ -152,9 +97,6 @@ void Calibration::take() {
         return say("All marks are taken: Enter goes on; click one to take it again.");
     const bool hand = step_ == CalibrationStep::workspace;
     const bool sensor = !hand || by_wand_;
-    if (sensor && !sensor_there)
-        return say("Nothing is heard of the tracker: is one configured, and is the sensor in reach?");
-    if (hand && !hand_there) return say("Nothing is heard of the hand's device: is the controller running?");
     if (sensor) wand_.start(input_.now_s);
     if (hand) stylus_.start(input_.now_s);
 }
@@ -185,7 +127,7 @@ void Calibration::keep_mark() {
     Mark& mark = marks.mark[marks.current];
     const Vec3 on_glass_m = glass_m(marks.current);
     mark.from_m = hand ? stylus_.mean_m() : on_glass_m;
-    mark.to_m = sensor ? wand_.mean_m() : glass_of(draft_.screen) * on_glass_m;
+    mark.to_m = sensor ? wand_.mean_m() : T_screen_glass() * on_glass_m;
     mark.spread_m = std::max(sensor ? wand_.spread_m() : 0.0, hand ? stylus_.spread_m() : 0.0);
     mark.samples = sensor ? wand_.samples() : stylus_.samples();
     mark.taken = true;
@@ -236,78 +178,6 @@ void Calibration::clear() {
     if (step_ == CalibrationStep::screen) measured_size_m_.setZero();
     last_taken_ = kMarks;
     say("All points of this step are forgotten.");
-}
-
-void Calibration::fit() {
-    Marks& marks = own_marks();
-    std::vector<PointPair> pairs;
-    marks.of_fit.clear();
-    for (std::size_t i = 0; i < kMarks; ++i) {
-        const Mark& m = marks.mark[i];
-        if (!m.taken) continue;
-        // On the glass, by the size that it has now.
-        pairs.push_back({step_ == CalibrationStep::workspace ? m.from_m : glass_m(i), m.to_m});
-        marks.of_fit.push_back(i);
-    }
-    marks.fit = {};
-    if (&marks == &screen_) measured_size_m_ = Eigen::Vector2d::Zero();
-    if (pairs.size() < kMarksMin) return;
-    marks.fit = register_points(pairs);
-    if (&marks == &screen_) measured_size_m_ = size_by_marks(marks);
-    if (!marks.fit.good) return;
-    if (step_ == CalibrationStep::workspace) {
-        if (!within(marks.fit.T_to_from.p_m, 10.0)) return;
-        draft_.T_screen_world = marks.fit.T_to_from;
-        draft_.in_workspace = true;
-    } else {
-        draft_.screen = of_frame(marks.fit.T_to_from, draft_.screen.width_m(), draft_.screen.height_m());
-        draft_.screen_measured = true;
-        typed_screen_ = false;
-    }
-}
-
-void Calibration::set_picture_size(double width_m, double height_m) {
-    if (!(width_m >= 0.01 && width_m <= 100.0 && height_m >= 0.01 && height_m <= 100.0))
-        return say("The picture is between 10 mm and 100 m wide and high.");
-    draft_.screen = of_frame(glass_of(draft_.screen), width_m, height_m);
-    draft_.screen_measured = true;
-    if (screen_.taken() == 0) return;
-    const CalibrationStep here = std::exchange(step_, CalibrationStep::screen);
-    fit();
-    step_ = here;
-}
-
-void Calibration::use_measured_size() {
-    if (measured_size_m_.x() > 0.0) set_picture_size(measured_size_m_.x(), measured_size_m_.y());
-}
-
-void Calibration::set_screen(const ScreenPlace& place) {
-    for (const Vec3& corner : {place.lower_left_m, place.lower_right_m, place.upper_left_m})
-        if (!within(corner, 100.0)) return say("A corner is not a number, or farther than 100 m.");
-    if (!place.possible())
-        return say(
-            "These corners are no rectangle of 1 cm to 100 m an edge: its edges at the lower left have to be "
-            "upright on "
-            "each other within two degrees.");
-    draft_.screen = place;
-    draft_.screen_measured = true;
-    screen_ = {};
-    measured_size_m_.setZero();
-    typed_screen_ = true;
-    say("The corners are taken as typed.");
-}
-
-void Calibration::set_wand_tip(const Vec3& tip_sensor_m) {
-    if (!within(tip_sensor_m, kTipMostM)) return say("The tip is within a metre of the sensor.");
-    draft_.wand_tip_sensor_m = tip_sensor_m;
-    pivot_.reset();
-}
-
-void Calibration::set_eyes(const EyesOfHead& eyes) {
-    if (!(eyes.apart_m >= 0.0 && eyes.apart_m <= kEyesApartMostM)) return say("Eyes are 0 to 200 mm apart.");
-    if (!within(eyes.middle_head_m, kMiddleMostM))
-        return say("The eyes are within half a metre of the sensor on the glasses.");
-    draft_.eyes = eyes;
 }
 
 void Calibration::set_workspace_by_wand(bool by_wand) {

@@ -74,6 +74,9 @@ public:
     }
     void back() { go(static_cast<CalibrationStep>(std::max(static_cast<int>(step_) - 1, 0))); }
 
+    // What has to be there before a mark can be measured, or the wand turned about its tip.
+    enum class Lacking : std::uint8_t { nothing, size, tracker, hand };
+    [[nodiscard]] Lacking lacking() const;
     // Measures the current mark, or stops doing so; in the step of the wand: turns about its tip.
     void take();
     void skip();                  // to the next mark that is not taken
@@ -106,8 +109,9 @@ public:
     [[nodiscard]] std::optional<Vec3> stylus_screen_m() const;
 
     [[nodiscard]] std::string instruction() const;
-    [[nodiscard]] std::string live() const;  // what is measured now
-    [[nodiscard]] Verdict verdict() const;   // of this step
+    [[nodiscard]] std::string glass_words() const;  // the same in capitals, for who stands before the picture
+    [[nodiscard]] std::string live() const;         // what is measured now
+    [[nodiscard]] Verdict verdict() const;          // of this step
     [[nodiscard]] Verdict verdict(CalibrationStep step) const;
     [[nodiscard]] const std::string& said() const { return said_; }  // what became of the last act
     [[nodiscard]] std::vector<std::string> remarks() const;          // of what was measured, for the file
@@ -115,6 +119,7 @@ public:
 private:
     [[nodiscard]] Marks& own_marks() { return step_ == CalibrationStep::workspace ? workspace_ : screen_; }
     [[nodiscard]] Vec3 glass_m(std::size_t mark) const;
+    [[nodiscard]] Pose T_screen_glass() const;
     void follow_mark();
     void follow_turning();
     void keep_mark();

@@ -48,6 +48,9 @@ const char* calibration_step_title(CalibrationStep step) {
 }
 
 std::string Calibration::instruction() const {
+    const bool marks_step = step_ == CalibrationStep::screen || step_ == CalibrationStep::workspace;
+    if (marks_step && marks().current >= kMarks)
+        return "All points are taken: Enter goes on. Click a point to take it again.";
     switch (step_) {
         case CalibrationStep::picture:
             return "How large is the lit picture? Measure its width and height between the outer edges of "
@@ -63,8 +66,13 @@ std::string Calibration::instruction() const {
             return draft_.screen_measured ? "Touch the lit mark of the picture with the wand's tip, press "
                                             "T (or the stylus's button) and "
                                             "hold still for a second. Or type the corners below."
-                                          : "The picture's size comes first: go back and type it.";
+                                          : "The picture's size comes first: go back and type it, or type "
+                                            "the corners below.";
         case CalibrationStep::workspace:
+            if (!by_wand_ && !draft_.screen_measured)
+                return "The picture's size comes first: go back and type it. Or touch the wand, which needs "
+                       "no "
+                       "picture.";
             return by_wand_ ? "Hold the stylus's tip to the wand's tip, both still, and press T. Take "
                               "places at least "
                               "10 cm apart, not all in one plane, where the hand will work."
@@ -83,6 +91,29 @@ std::string Calibration::instruction() const {
                    "and the cross sits on the stylus's tip, wherever you stand. Then save.";
     }
     return {};
+}
+
+std::string Calibration::glass_words() const {
+    const std::string point = std::to_string(marks().current + 1);
+    if (measuring())
+        return step_ == CalibrationStep::wand ? "TILT THE WAND TO ALL SIDES" : "HOLD STILL: POINT " + point;
+    if (marks().current >= kMarks && step_ != CalibrationStep::wand) {
+        const auto out = marks().outlier();
+        return out ? "POINT " + std::to_string(*out + 1) + " DOES NOT FIT" : "ALL POINTS ARE TAKEN";
+    }
+    switch (lacking()) {
+        case Lacking::size:
+            return "FIRST TYPE THE SIZE OF THE PICTURE";
+        case Lacking::tracker:
+            return "THE TRACKER SEES NO SENSOR";
+        case Lacking::hand:
+            return "NOTHING IS HEARD OF THE STYLUS";
+        case Lacking::nothing:
+            break;
+    }
+    if (step_ == CalibrationStep::wand) return "WAND: PUT ITS TIP INTO A HOLLOW";
+    if (step_ == CalibrationStep::screen) return "WAND: TOUCH MARK " + point;
+    return by_wand_ ? "STYLUS TO WAND: POINT " + point : "STYLUS: TOUCH MARK " + point;
 }
 
 std::string Calibration::live() const {

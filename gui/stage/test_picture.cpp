@@ -15,7 +15,7 @@ constexpr Ink kLeft{255, 196, 120, 255}, kRight{110, 220, 255, 255};
 constexpr Ink kGrid{70, 84, 104, 255}, kAxis{120, 138, 164, 255}, kLine{225, 232, 242, 255},
     kDim{150, 160, 176, 255};
 constexpr Ink kNow{255, 190, 60, 255}, kTaken{80, 214, 140, 255}, kOpen{120, 132, 150, 255},
-    kTool{255, 92, 92, 255};
+    kWrong{255, 92, 92, 255}, kTool = kWrong;
 constexpr Ink kStep{46, 62, 86, 255};
 constexpr double kCellsAcross = 14.0;
 
@@ -123,7 +123,10 @@ std::vector<PictureVertex> marks_picture(const GlassSize& glass, const MarksPict
     if (!marks.marks) pen.ring(Point::Zero(), 3.0 * radius, radius, kNow, marks.progress);
     for (std::size_t i = 0; marks.marks && i < kMarks; ++i) {
         const MarkLook look = marks.look[i];
-        const Ink ink = look == MarkLook::current ? kNow : look == MarkLook::taken ? kTaken : kOpen;
+        const Ink ink = look == MarkLook::current   ? kNow
+                        : look == MarkLook::outlier ? kWrong
+                        : look == MarkLook::taken   ? kTaken
+                                                    : kOpen;
         const Point at((kMarkPlaces[i][0] - 0.5) * glass.width_mm,
                        (kMarkPlaces[i][1] - 0.5) * glass.height_mm, 0.0);
         const double arm = look == MarkLook::current ? 1.5 * radius : radius;
@@ -151,10 +154,13 @@ std::vector<PictureVertex> test_picture(const GlassSize& glass, const TestPictur
     corners(pen, glass, kNow);
     const double radius = 0.39 * glass.height_mm, letters = letters_mm(glass, 0.04);
     pen.ring(Point::Zero(), radius, 0.006 * glass.height_mm, kLine);
-    const double words = letters_mm(glass, 0.075);
+    // Beside each other where both eyes look at once, within the circle.
     const bool left = what.eye == 0;
-    pen.text_centred({(left ? -0.21 : 0.21) * glass.height_mm, 0.16 * glass.height_mm, 0.0}, words,
-                     left ? "LEFT" : "RIGHT", left ? kLeft : kRight);
+    const std::string eye = left ? "LEFT" : "RIGHT";
+    const double high = std::min(letters_mm(glass, 0.07), 0.07 * glass.height_mm),
+                 gap = 0.03 * glass.height_mm;
+    pen.text({left ? -gap - PicturePen::text_width_mm(high, eye) : gap, 0.14 * glass.height_mm, 0.0}, high,
+             eye, left ? kLeft : kRight);
     pen.text_centred({0.0, 0.3 * glass.height_mm, 0.0}, letters, "ROUND", kDim);
     const double below = -0.5 * glass.height_mm + 1.6 * letters;
     pen.text({-0.5 * glass.width_mm + 0.1 * glass.height_mm, below, 0.0}, letters,

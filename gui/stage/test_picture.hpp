@@ -21,7 +21,7 @@ struct GlassSize {
 // The edges that a ruler is laid along; with numbers where the size is known.
 [[nodiscard]] std::vector<PictureVertex> frame_picture(const GlassSize& glass, bool known);
 
-enum class MarkLook : std::uint8_t { open, taken, current };
+enum class MarkLook : std::uint8_t { open, taken, outlier, current };
 struct MarksPicture {
     bool marks = true;  // else the words alone, and how far the measuring is
     std::array<MarkLook, kMarks> look{};

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -197,11 +198,15 @@ TEST(Calibration, AMarkThatWasMissedIsNamedAndTakenAgainItIsGreen) {
         if (missed < kMarksMin && calibration.verdict().grade == FitGrade::red) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
+        EXPECT_EQ(calibration.glass_words(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
+        EXPECT_NE(calibration.instruction().find("All points are taken"), std::string::npos);
         calibration.redo(missed);
         EXPECT_EQ(calibration.marks().current, missed);
+        EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
         EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
         EXPECT_FALSE(calibration.marks().outlier());
+        EXPECT_EQ(calibration.glass_words(), "ALL POINTS ARE TAKEN");
     }
 }
 
@@ -302,6 +307,40 @@ TEST(Calibration, StylusAndWandHaveToRestTogether) {
     EXPECT_EQ(calibration.marks().taken(), 0U);  // the wand alone rested for long
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3(1.0, 0.0, 0.0));
     EXPECT_EQ(calibration.marks().taken(), 1U);
+}
+
+TEST(Calibration, NothingIsAskedForOnTheGlassBeforeItCanBeDone) {
+    const Lab lab;
+    Calibration calibration(start_of(lab));
+    Person person(lab, calibration);
+    person.frame(Vec3::Zero(), Vec3::Zero());
+    using Lacking = Calibration::Lacking;
+    for (const CalibrationStep step : {CalibrationStep::screen, CalibrationStep::workspace}) {
+        calibration.go(step);
+        EXPECT_EQ(calibration.lacking(), Lacking::size);
+        EXPECT_EQ(calibration.glass_words(), "FIRST TYPE THE SIZE OF THE PICTURE");
+        EXPECT_NE(calibration.instruction().find("size comes first"), std::string::npos);
+        calibration.take();
+        EXPECT_FALSE(calibration.measuring());
+        EXPECT_NE(calibration.said().find("size comes first"), std::string::npos) << calibration.said();
+    }
+    calibration.set_workspace_by_wand(true);  // which needs no picture
+    EXPECT_EQ(calibration.lacking(), Lacking::nothing);
+    EXPECT_EQ(calibration.glass_words(), "STYLUS TO WAND: POINT 1");
+    EXPECT_EQ(calibration.instruction().find("size comes first"), std::string::npos);
+    calibration.set_workspace_by_wand(false);
+    calibration.set_picture_size(lab.width_m, lab.height_m);
+    EXPECT_EQ(calibration.glass_words(), "STYLUS: TOUCH MARK 1");
+    calibration.go(CalibrationStep::screen);
+    EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK 1");
+    calibration.take();
+    EXPECT_EQ(calibration.glass_words(), "HOLD STILL: POINT 1");
+    calibration.take();
+    person.seen = person.arm = false;
+    for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
+    EXPECT_EQ(calibration.glass_words(), "THE TRACKER SEES NO SENSOR");
+    calibration.go(CalibrationStep::workspace);
+    EXPECT_EQ(calibration.glass_words(), "NOTHING IS HEARD OF THE STYLUS");
 }
 
 TEST(Calibration, TheStylusButtonTakesOncePerPress) {
@@ -480,6 +519,28 @@ TEST(TestPicture, ItsStepsStandWhereTheySayAndTheToolIsWhereTheHandIs) {
     // Each eye has a word of its own.
     const auto right = test_picture(glass, {1, {}});
     EXPECT_NE(plain.size(), right.size());
+}
+
+TEST(TestPicture, TheWordsOfTheEyesStandWithinTheCircleAndApart) {
+    for (const GlassSize& glass : {GlassSize{530.0, 300.0, 0.28}, GlassSize{400.0, 400.0, 2.0}}) {
+        const auto inks_of = [&](std::size_t eye) {
+            std::set<std::array<int, 3>> inks;
+            for (const PictureVertex& v : test_picture(glass, {eye, {}}))
+                inks.insert({v.ink.r, v.ink.g, v.ink.b});
+            return inks;
+        };
+        for (const std::size_t eye : {std::size_t{0}, std::size_t{1}}) {
+            const auto others = inks_of(1 - eye);
+            std::size_t of_word = 0;
+            for (const PictureVertex& v : test_picture(glass, {eye, {}})) {
+                if (others.count({v.ink.r, v.ink.g, v.ink.b}) > 0) continue;
+                ++of_word;
+                EXPECT_LT(std::hypot(v.x_mm, v.y_mm), 0.38 * glass.height_mm);
+                EXPECT_GT(eye == 0 ? -v.x_mm : v.x_mm, 0.0F);
+            }
+            EXPECT_GT(of_word, 0U);
+        }
+    }
 }
 
 }  // namespace
