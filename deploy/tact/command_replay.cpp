@@ -36,12 +36,7 @@ std::optional<XServer> screen_of(const ReplayOptions& o, const ScratchFolder& sc
                                "add --headless to draw without a screen, or leave --show away");
         return std::nullopt;
     }
-    int width = 0, height = 0;
-    if (std::sscanf(o.size.c_str(), "%dx%d", &width, &height) != 2 || width < 64 || height < 64 ||
-        width > 16384 || height > 16384)
-        throw StartupError("reading --size " + o.size, "it is not WIDTHxHEIGHT in 64..16384",
-                           "--size 1280x800");
-    return std::make_optional<XServer>(scratch.path(), width, height);
+    return std::make_optional<XServer>(scratch.path(), o.size);
 }
 
 // Until window and replay have ended: the one that ends first takes the other along.

@@ -141,12 +141,7 @@ private:
 
     void prepare_display() {
         if (options_.headless) {
-            int width = 0, height = 0;
-            if (std::sscanf(options_.size.c_str(), "%dx%d", &width, &height) != 2 || width < 64 ||
-                height < 64 || width > 16384 || height > 16384)
-                throw StartupError("reading --size " + options_.size, "it is not WIDTHxHEIGHT in 64..16384",
-                                   "--size 1280x800");
-            x_.emplace(scratch().path(), width, height);
+            x_.emplace(scratch().path(), options_.size);
             display_ = x_->environment();
             return;
         }

@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -12,6 +13,7 @@
 #include <fstream>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_numbers.hpp"
 
 namespace tact::launch {
 namespace {
@@ -22,6 +24,14 @@ constexpr std::array kStartLimits{std::chrono::seconds(10), std::chrono::seconds
 // Numbers are drawn from here: searching from 0 on meets servers of other containers that share the network's
 // names.
 constexpr unsigned kDisplayFirst = 100, kDisplays = 20000;
+
+std::array<int, 2> typed_size(const std::string& size) {
+    const auto px = numbers_between(size, "x");
+    if (!px || std::min((*px)[0], (*px)[1]) < 64 || std::max((*px)[0], (*px)[1]) > 16384)
+        throw StartupError("reading --size " + size, "it is not WIDTHxHEIGHT in 64..16384",
+                           "--size 1280x800");
+    return {static_cast<int>((*px)[0]), static_cast<int>((*px)[1])};
+}
 
 unsigned random_display() {
     unsigned number = 0;
@@ -77,6 +87,9 @@ std::string last_line(const std::filesystem::path& log) {
 }
 
 }  // namespace
+
+XServer::XServer(const std::filesystem::path& scratch, const std::string& size)
+    : XServer(scratch, typed_size(size)) {}
 
 XServer::XServer(const std::filesystem::path& scratch, int width, int height)
     : cookie_file_(scratch / "xauthority") {

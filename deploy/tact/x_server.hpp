@@ -9,6 +9,7 @@
 // Life                   ended by stop() or the destructor; if tact is killed, the kernel ends it.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,12 +24,17 @@ class XServer {
 public:
     // scratch: an existing folder of this user alone. Throws StartupError: not installed, did not start.
     XServer(const std::filesystem::path& scratch, int width, int height);
+    // size: as typed behind --size, "1280x800". Throws as well where it is none in 64..16384.
+    XServer(const std::filesystem::path& scratch, const std::string& size);
     [[nodiscard]] const std::string& display() const { return display_; }  // ":1"
     // What a program needs to use it.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> environment() const;
     Child& child() { return *child_; }
 
 private:
+    XServer(const std::filesystem::path& scratch, std::array<int, 2> size)
+        : XServer(scratch, size[0], size[1]) {}
+
     std::filesystem::path cookie_file_;
     std::string display_;
     std::optional<Child> child_;

@@ -3,7 +3,6 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <fstream>
 
 #include "ipc/base/error.hpp"
@@ -13,12 +12,10 @@ namespace tact {
 namespace {
 
 std::uint64_t resident_bytes() {
-    std::FILE* const file = std::fopen("/proc/self/statm", "re");
-    if (file == nullptr) return 0;
-    unsigned long long all = 0, resident = 0;
-    const int read = std::fscanf(file, "%llu %llu", &all, &resident);
-    std::fclose(file);
-    return read == 2 ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+    std::ifstream pages("/proc/self/statm");
+    std::uint64_t all = 0, resident = 0;
+    if (!(pages >> all >> resident)) return 0;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace

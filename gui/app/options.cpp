@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_numbers.hpp"
 
 namespace tact {
 
@@ -38,13 +39,11 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         app.add_option("--size", size, "size of the window in pixels, as 1280x720");
     size_option->check(CLI::Validator(
         [&options](std::string& text) -> std::string {
-            int width = 0, height = 0;
-            char rest = '\0';
-            if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 ||
-                height < 240 || width > 16384 || height > 16384)
+            const auto px = numbers_between(text, "x");
+            if (!px || (*px)[0] < 320 || (*px)[1] < 240 || (*px)[0] > 16384 || (*px)[1] > 16384)
                 return "--size: '" + text + "' is not WIDTHxHEIGHT between 320x240 and 16384x16384";
-            options.width_px = width;
-            options.height_px = height;
+            options.width_px = static_cast<int>((*px)[0]);
+            options.height_px = static_cast<int>((*px)[1]);
             return {};
         },
         "WxH"));

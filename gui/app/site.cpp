@@ -141,7 +141,9 @@ void Site::spray(double dt_s, const DrillTopic& drill, const DrillHand& burr) no
     const double radius_m = static_cast<double>(burr.radius_m) / world_per_model_;
     const Vec3 head = vec(burr.pos_model_m), shaft = q * Vec3(0.0, 0.0, 1.0);
     const Vec3 nozzle = head + radius_m * (kNozzle * shaft + q * Vec3(0.0, 0.9, 0.0));
-    for (; water_owed_ >= 1.0; water_owed_ -= 1.0) {
+    const int drops = static_cast<int>(water_owed_);
+    water_owed_ -= drops;
+    for (int i = 0; i < drops; ++i) {
         const Vec3 from = nozzle + 0.35 * radius_m * random_.direction();
         const Vec3 to = head + 0.6 * radius_m * random_.direction();
         static_cast<void>(

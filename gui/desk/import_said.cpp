@@ -1,7 +1,8 @@
 #include "gui/desk/import_said.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <system_error>
 
 namespace tact {
 
@@ -16,10 +17,13 @@ std::string last_line(const std::string& said) {
 std::optional<double> share_done(const std::string& said) {
     for (std::size_t at = said.rfind('['); at != std::string::npos;
          at = at > 0 ? said.rfind('[', at - 1) : said.npos) {
-        int percent = 0, read = 0;
+        const std::size_t first = said.find_first_not_of(' ', at + 1);
         const bool begins = at == 0 || said[at - 1] == '\n';
-        if (begins && std::sscanf(said.c_str() + at, "[%3d %%]%n", &percent, &read) == 1 && read > 0 &&
-            percent >= 0 && percent <= 100)
+        if (!begins || first == said.npos) continue;
+        unsigned percent = 0;
+        const auto [behind, error] = std::from_chars(said.data() + first, said.data() + said.size(), percent);
+        const auto rest = static_cast<std::size_t>(behind - said.data());
+        if (error == std::errc{} && percent <= 100 && said.compare(rest, 3, " %]") == 0)
             return 0.01 * percent;
     }
     return std::nullopt;

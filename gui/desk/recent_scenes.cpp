@@ -86,7 +86,7 @@ std::vector<RecentScene> read_recents(const std::filesystem::path& file) {
 }
 
 std::filesystem::path set_aside(const std::filesystem::path& file) {
-    const std::filesystem::path aside = file.string() + ".damaged";
+    std::filesystem::path aside = file.string() + ".damaged";
     std::error_code failed;
     std::filesystem::rename(file, aside, failed);
     if (failed)

@@ -18,7 +18,7 @@ struct RecentScene {
     bool operator==(const RecentScene&) const = default;
 };
 
-inline constexpr std::size_t kRecentsMost = 24, kRecentsBytesMost = 256 * 1024;
+inline constexpr std::size_t kRecentsMost = 24, kRecentsBytesMost = std::size_t{256} * 1024;
 
 // $XDG_STATE_HOME/tact, else ~/.local/state/tact; empty: neither is said.
 [[nodiscard]] std::filesystem::path state_folder();

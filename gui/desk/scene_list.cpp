@@ -71,7 +71,7 @@ std::string ago_text(std::int64_t then, std::int64_t now) {
     const std::int64_t s = now - then;
     if (s > -60 && s < 60) return "just now";
     if (s > 0 && s < 3600) return std::to_string(s / 60) + " min ago";
-    if (s > 0 && s < 24 * 3600) return std::to_string(s / 3600) + " h ago";
+    if (s > 0 && s < std::int64_t{24} * 3600) return std::to_string(s / 3600) + " h ago";
     const std::time_t t = then;
     std::tm local{};
     localtime_r(&t, &local);

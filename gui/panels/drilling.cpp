@@ -1,5 +1,6 @@
 // Drilling: the tools, what they took, the force, and how far the burr is from each structure to keep away from.
 #include <algorithm>
+#include <cmath>
 
 #include "gui/panels/panels.hpp"
 #include "gui/panels/widgets.hpp"
@@ -13,7 +14,7 @@ void tools(const Theme& theme, const DrillingFacts& d) {
     static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
     const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
     std::string does =
-        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(d.burr.rpm + 0.5)) + " rpm" : "stands";
+        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stands";
     if (d.burr.water) does += ", water";
     row(theme, "Burr", size, does);
     if (d.sucker.there)

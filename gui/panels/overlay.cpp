@@ -129,14 +129,16 @@ void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& 
     // Round lengths between the ends; from one to the next at least as much as a line of text is high.
     const double octaves = std::log2(d.coarsest_m / d.finest_m);
     float last = y0 - h;
-    for (double length = round_up(d.finest_m); length <= d.coarsest_m * 1.001;
-         length = round_up(1.001 * length)) {
+    double length = round_up(d.finest_m);
+    while (length <= d.coarsest_m * 1.001) {
         const float y = y0 + h * static_cast<float>(std::log2(length / d.finest_m) / octaves);
-        if (y < last + 1.1F * pen.theme.small->FontSize) continue;
-        last = y;
-        pen.draw->AddRectFilled({x + w, y - 0.5F}, {x + w + pen.theme.px(4.0F), y + 0.5F}, colour::kText);
-        pen.text(pen.theme.small, {x + w + pen.theme.px(8.0F), y - 0.5F * pen.theme.small->FontSize},
-                 colour::kText, length_text(length));
+        if (y >= last + 1.1F * pen.theme.small->FontSize) {
+            last = y;
+            pen.draw->AddRectFilled({x + w, y - 0.5F}, {x + w + pen.theme.px(4.0F), y + 0.5F}, colour::kText);
+            pen.text(pen.theme.small, {x + w + pen.theme.px(8.0F), y - 0.5F * pen.theme.small->FontSize},
+                     colour::kText, length_text(length));
+        }
+        length = round_up(1.001 * length);
     }
 }
 
@@ -194,7 +196,8 @@ void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(18, 22, 29, 245), pen.theme.px(8.0F));
     pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(8.0F));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const float x = at.x + pad + column * static_cast<float>(i / each);
+        const std::size_t in_column = i / each;
+        const float x = at.x + pad + column * static_cast<float>(in_column);
         const float y = at.y + pad + line * static_cast<float>(i % each);
         pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent, rows[i]->keys);
         pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {x + pen.theme.px(112.0F), y},

@@ -1,5 +1,6 @@
 #include "gui/particles/burr_sight.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,6 +12,7 @@ constexpr double kFromHead = 1.15;  // of the radius: bone that the head rests i
 constexpr double kAcross = 0.6;     // of the radius, of the rays about the middle one
 constexpr double kBeside = 1.0;     // cells: how far a particle reaches
 constexpr double kStep = 0.5;       // cells, along a ray through bone
+constexpr double kStepsMost = 1e6;  // no site has as many cells
 
 double opacity(Matter matter) {
     switch (matter) {
@@ -26,7 +28,8 @@ double opacity(Matter matter) {
 }
 
 bool ends_in_bone(const ParticleCells& cells, Vec3 at, const Vec3& towards, double length) {
-    for (double s = 0.0; s < length; s += kStep, at += kStep * towards) {
+    const int steps = static_cast<int>(std::ceil(std::clamp(length / kStep, 0.0, kStepsMost)));
+    for (int i = 0; i < steps; ++i, at += kStep * towards) {
         const Cell c = {static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())),
                         static_cast<int>(std::floor(at.z()))};
         if (!cells.inside(c)) return false;  // the site is a box, and the ray began in it

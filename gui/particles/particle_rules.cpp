@@ -182,10 +182,9 @@ Particles::Fate Particles::settle(Particle& p, Cell at) noexcept {
 bool Particles::room_near(Cell& at) noexcept {
     if (cells_.inside(at) && cells_.free(at)) return true;
     for (int attempt = 0; attempt < 40; ++attempt) {
-        const int reach = attempt < 12 ? 1 : 2;
+        const std::uint64_t reach = attempt < 12 ? 1 : 2;
         Cell c = at;
-        for (int& x : c)
-            x += static_cast<int>(random_.below(static_cast<std::uint64_t>(2 * reach + 1))) - reach;
+        for (int& x : c) x += static_cast<int>(random_.below(2 * reach + 1)) - static_cast<int>(reach);
         if (!cells_.inside(c) || !cells_.free(c)) continue;
         at = c;
         return true;

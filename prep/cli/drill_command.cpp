@@ -10,6 +10,7 @@
 #include <set>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_numbers.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/target.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
@@ -55,12 +56,14 @@ T drill_value(const std::pair<const char*, T> (&table)[n], const std::string& na
 // "0:256,0:256,10:90"
 ScanCrop parse_crop(const std::string& text) {
     ScanCrop crop;
-    int end = 0;
-    const int read = std::sscanf(text.c_str(), "%9u:%9u,%9u:%9u,%9u:%9u%n", &crop.low[0], &crop.high[0],
-                                 &crop.low[1], &crop.high[1], &crop.low[2], &crop.high[2], &end);
-    if (read != 6 || static_cast<std::size_t>(end) != text.size() || text.find('-') != std::string::npos)
+    const auto ends = numbers_between(text, ":,:,:");
+    if (!ends)
         throw StartupError("--crop " + text, "it is not three times first:end",
                            "give columns, rows and slices, as in --crop 0:256,0:256,10:90");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        crop.low[axis] = (*ends)[2 * axis];
+        crop.high[axis] = (*ends)[2 * axis + 1];
+    }
     return crop;
 }
 
