@@ -191,7 +191,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const std::array hands{HandParts{device.get(), model.get(), info},
                            HandParts{device2.get(), second.get(), info2}};
 
-    ServoClock clock(duration_us(config.servo.spin_us));
+    ServoClock clock(spin_tail(config.servo));
     Servo servo({.clock = clock,
                  .hands = std::span(hands).first(two_hands ? 2 : 1),
                  .region = *region,
@@ -221,12 +221,11 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     }
 
     Platform platform;
-    const bool sleeps = !config.servo.free_running && config.servo.spin_us < config.servo.period_us;
     ServoThread thread{servo,
                        {.priority = static_cast<int>(config.servo.priority),
                         .core = static_cast<int>(config.servo.core),
                         .lock_memory = config.servo.lock_memory,
-                        .limit_processor_time = sleeps},
+                        .limit_processor_time = sleeps(config.servo)},
                        platform,
                        mail};
     prepare_process(thread.wish, platform);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <utility>
 
@@ -314,6 +315,8 @@ std::string event_text(const EventTopic& event) {
         case EventCode::input_refused:
             return what + ": " + a + " so far";
         case EventCode::stopping:
+            if (event.a == SIGXCPU)
+                return what + ": the servo did not sleep for a second; choose a lower rate";
             return event.a < 0.0 ? what + ": the time is over" : what + ": signal " + a;
         case EventCode::device_watchdog:
             return what + ": " + late_text(1e3 * event.a) + " without a cycle";

@@ -319,6 +319,12 @@ void check_config(const RtConfig& config, const std::string& where) {
 
 Duration duration_us(double us) { return Duration(std::llround(us * 1e3)); }
 
+bool sleeps(const RtConfig::Servo& servo) { return !servo.free_running && servo.spin_us < servo.period_us; }
+
+Duration spin_tail(const RtConfig::Servo& servo) {
+    return duration_us(sleeps(servo) ? std::min(servo.spin_us, 0.4 * servo.period_us) : servo.spin_us);
+}
+
 ServoSettings settings_from(const RtConfig& c, bool emulated) {
     ServoSettings s;
     s.emulated = emulated;

@@ -145,5 +145,10 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);
 [[nodiscard]] Duration duration_us(double us);
+// Whether the loop leaves its core to others between two cycles. Not where it was asked to spin all the time.
+[[nodiscard]] bool sleeps(const RtConfig::Servo& servo);
+// What is spent spinning: of a fast loop at most two fifths of its period, or it would hardly ever sleep, and a thread
+// under FIFO that does not sleep for a second is ended by the kernel.
+[[nodiscard]] Duration spin_tail(const RtConfig::Servo& servo);
 
 }  // namespace tact

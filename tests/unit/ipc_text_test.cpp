@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <set>
 #include <string>
@@ -59,6 +60,9 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::gui_silent, 500.52, 0), "visual process silent: for 501 ms");
     EXPECT_EQ(text(EventCode::fault_latched, static_cast<double>(RunReason::emergency_stop), 0),
               "fault: the emergency stop is pressed");
+    EXPECT_EQ(text(EventCode::stopping, SIGTERM, 0), "stopping: signal 15");
+    EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
+              "stopping: the servo did not sleep for a second; choose a lower rate");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");

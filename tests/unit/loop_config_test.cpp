@@ -294,5 +294,20 @@ TEST(Config, the_second_emulated_hand_has_a_script_of_its_own) {
     EXPECT_TRUE(device2_settings_from(config).sim.hand.at_m.isApprox(Vec3(-8e-3, 2e-3, 0.0)));
 }
 
+TEST(Config, AFastLoopSpinsNoMoreThanLeavesItTimeToSleep) {
+    RtConfig::Servo servo;
+    EXPECT_EQ(spin_tail(servo), duration_us(100.0));
+    EXPECT_TRUE(sleeps(servo));
+    servo.period_us = 125.0;
+    EXPECT_EQ(spin_tail(servo), duration_us(50.0));
+    EXPECT_TRUE(sleeps(servo));
+    servo.spin_us = 125.0;  // all of it, as asked
+    EXPECT_EQ(spin_tail(servo), duration_us(125.0));
+    EXPECT_FALSE(sleeps(servo));
+    servo.spin_us = 10.0;
+    servo.free_running = true;
+    EXPECT_FALSE(sleeps(servo));
+}
+
 }  // namespace
 }  // namespace tact
