@@ -1,11 +1,14 @@
-#include <httplib.h>
+#include "deploy/tact/metrics.hpp"
 
 #include <fstream>
 #include <mutex>
 #include <thread>
 
-#include "deploy/tact/metrics.hpp"
 #include "ipc/base/error.hpp"
+
+// Last: through <resolv.h> it defines a macro _res, which is the name of a parameter in Eigen's headers.
+#include <httplib.h>
+#undef _res
 
 namespace tact::launch {
 namespace {

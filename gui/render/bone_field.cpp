@@ -94,7 +94,7 @@ void BoneField::mark_own() {
 // Distances by two sweeps: forward from the thirteen neighbours before a cell, backward from those behind.
 void BoneField::measure() {
     constexpr int kMost = 255;
-    const auto [nx, ny, nz] = cells_;
+    const std::uint32_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
     const auto place = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         return (std::size_t{z} * ny + y) * nx + x;
     };

@@ -2,9 +2,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <gemmi/cif.hpp>
+#include <optional>
 
 #include "ipc/base/error.hpp"
+#include "prep/cif/cif_document.hpp"
 
 namespace tact {
 namespace {
@@ -87,51 +88,48 @@ std::vector<FileAtom> pdb_atoms(std::string_view text, const std::string& name) 
 }
 
 std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name) {
-    gemmi::cif::Document document;
+    std::optional<CifDocument> document;
     try {
-        document = gemmi::cif::read_memory(text.data(), text.size(), name.c_str());
+        document = CifDocument::read(text, name);
     } catch (const std::exception&) {
         throw StartupError("read structure " + name, "it is not mmCIF", "fetch the file again");
     }
     std::vector<FileAtom> atoms;
-    for (gemmi::cif::Block& block : document.blocks) {
-        gemmi::cif::Table table = block.find("_atom_site.", {"Cartn_x",
-                                                             "Cartn_y",
-                                                             "Cartn_z",
-                                                             "?group_PDB",
-                                                             "?type_symbol",
-                                                             "?auth_atom_id",
-                                                             "?label_atom_id",
-                                                             "?auth_comp_id",
-                                                             "?label_comp_id",
-                                                             "?auth_asym_id",
-                                                             "?label_asym_id",
-                                                             "?auth_seq_id",
-                                                             "?label_seq_id",
-                                                             "?pdbx_PDB_ins_code",
-                                                             "?label_alt_id",
-                                                             "?occupancy",
-                                                             "?B_iso_or_equiv",
-                                                             "?pdbx_formal_charge",
-                                                             "?pdbx_PDB_model_num",
-                                                             "?id"});
-        if (table.length() == 0) continue;
+    for (std::size_t block = 0; block < document->blocks(); ++block) {
+        const CifTable table = document->table(block, "_atom_site.",
+                                               {"Cartn_x",
+                                                "Cartn_y",
+                                                "Cartn_z",
+                                                "?group_PDB",
+                                                "?type_symbol",
+                                                "?auth_atom_id",
+                                                "?label_atom_id",
+                                                "?auth_comp_id",
+                                                "?label_comp_id",
+                                                "?auth_asym_id",
+                                                "?label_asym_id",
+                                                "?auth_seq_id",
+                                                "?label_seq_id",
+                                                "?pdbx_PDB_ins_code",
+                                                "?label_alt_id",
+                                                "?occupancy",
+                                                "?B_iso_or_equiv",
+                                                "?pdbx_formal_charge",
+                                                "?pdbx_PDB_model_num",
+                                                "?id"});
+        if (table.rows() == 0) continue;
         std::vector<std::pair<std::string, std::size_t>> ids;
-        std::size_t row_number = 0;
-        for (gemmi::cif::Table::Row r : table) {
-            const std::string where = "atom_site row " + std::to_string(++row_number);
-            const auto one = [&](int column) {
-                return r.has2(static_cast<std::size_t>(column)) ? gemmi::cif::as_string(r[column])
-                                                                : std::string();
-            };
-            const auto either = [&](int column) {
+        for (std::size_t row = 0; row < table.rows(); ++row) {
+            const std::string where = "atom_site row " + std::to_string(row + 1);
+            const auto one = [&](std::size_t column) { return table.value(row, column); };
+            const auto either = [&](std::size_t column) {
                 const std::string value = one(column);
                 return value.empty() ? one(column + 1) : value;
             };
             FileAtom a;
-            a.place_a =
-                Vec3(file_number(r[0], "Cartn_x", name, where), file_number(r[1], "Cartn_y", name, where),
-                     file_number(r[2], "Cartn_z", name, where));
+            a.place_a = Vec3(file_number(table.raw(row, 0), "Cartn_x", name, where),
+                             file_number(table.raw(row, 1), "Cartn_y", name, where),
+                             file_number(table.raw(row, 2), "Cartn_z", name, where));
             a.het = one(3) == "HETATM";
             a.element = one(4);
             a.name = either(5);
@@ -147,17 +145,18 @@ std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name
             ids.emplace_back(one(19), atoms.size());
             atoms.push_back(std::move(a));
         }
-        gemmi::cif::Table adp = block.find("_atom_site_anisotrop.", {"id", "U[1][1]", "U[2][2]", "U[3][3]",
-                                                                     "U[1][2]", "U[1][3]", "U[2][3]"});
+        const CifTable adp =
+            document->table(block, "_atom_site_anisotrop.",
+                            {"id", "U[1][1]", "U[2][2]", "U[3][3]", "U[1][2]", "U[1][3]", "U[2][3]"});
         const std::unordered_map<std::string, std::size_t> atom_of(ids.begin(), ids.end());
-        for (gemmi::cif::Table::Row r : adp) {
-            const auto at = atom_of.find(gemmi::cif::as_string(r[0]));
+        for (std::size_t row = 0; row < adp.rows(); ++row) {
+            const auto at = atom_of.find(adp.value(row, 0));
             bool known = at != atom_of.end();
-            for (std::size_t k = 1; k <= 6; ++k) known = known && r.has2(k);  // neither '.' nor '?'
+            for (std::size_t k = 1; k <= 6; ++k) known = known && adp.known(row, k);
             if (!known) continue;
             Adp u{};
-            for (int k = 0; k < 6; ++k)
-                u[static_cast<std::size_t>(k)] = file_number(r[k + 1], "U", name, "atom_site_anisotrop");
+            for (std::size_t k = 0; k < 6; ++k)
+                u[k] = file_number(adp.raw(row, k + 1), "U", name, "atom_site_anisotrop");
             atoms[at->second].adp_u = u;
         }
         break;

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <gemmi/cif.hpp>
 #include <gemmi/elem.hpp>
 #include <gemmi/model.hpp>
 #include <gemmi/pdb.hpp>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "ipc/base/error.hpp"
+#include "prep/cif/cif_document.hpp"
 
 namespace tact {
 namespace {
@@ -132,15 +132,15 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
 }
 
 std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) {
-    gemmi::cif::Document document;
+    std::optional<CifDocument> document;
     try {
-        document = gemmi::cif::read_memory(text.data(), text.size(), name.c_str());
+        document = CifDocument::read(text, name);
     } catch (const std::exception& error) {
         throw StartupError("read structure " + name, printable(error.what(), 200), kMendFile);
     }
     std::vector<AtomRow> rows;
-    for (gemmi::cif::Block& block : document.blocks) {
-        enum : int {
+    for (std::size_t block = 0; block < document->blocks(); ++block) {
+        enum : std::size_t {
             x,
             y,
             z,
@@ -158,32 +158,28 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
             occupancy,
             model
         };
-        gemmi::cif::Table table = block.find(
-            "_atom_site.",
+        const CifTable table = document->table(
+            block, "_atom_site.",
             {"Cartn_x", "Cartn_y", "Cartn_z", "?type_symbol", "?label_comp_id", "?auth_comp_id",
              "?auth_atom_id", "?label_atom_id", "?auth_asym_id", "?label_asym_id", "?auth_seq_id",
              "?label_seq_id", "?pdbx_PDB_ins_code", "?label_alt_id", "?occupancy", "?pdbx_PDB_model_num"});
-        if (table.length() == 0) continue;
-        check_count(table.length(), name);
+        if (table.rows() == 0) continue;
+        check_count(table.rows(), name);
         std::string first_model;
-        std::size_t index = 0;
-        for (gemmi::cif::Table::Row r : table) {
-            const std::string where = "atom_site row " + std::to_string(++index);
-            // "." and "?" are "not applicable" and "unknown".
-            const auto text_of = [&](int column) -> std::string {
-                return r.has2(static_cast<size_t>(column)) ? gemmi::cif::as_string(r[column]) : std::string();
-            };
-            const auto either = [&](int first, int second) {
+        for (std::size_t index = 0; index < table.rows(); ++index) {
+            const std::string where = "atom_site row " + std::to_string(index + 1);
+            const auto text_of = [&](std::size_t column) { return table.value(index, column); };
+            const auto either = [&](std::size_t first, std::size_t second) {
                 const std::string value = text_of(first);
                 return value.empty() ? text_of(second) : value;
             };
             const std::string model_name = text_of(model);
-            if (index == 1) first_model = model_name;
+            if (index == 0) first_model = model_name;
             if (model_name != first_model) continue;
             AtomRow row;
-            row.position_a =
-                Vec3(coordinate(r[x], "Cartn_x", name, where), coordinate(r[y], "Cartn_y", name, where),
-                     coordinate(r[z], "Cartn_z", name, where));
+            row.position_a = Vec3(coordinate(table.raw(index, x), "Cartn_x", name, where),
+                                  coordinate(table.raw(index, y), "Cartn_y", name, where),
+                                  coordinate(table.raw(index, z), "Cartn_z", name, where));
             row.chain = printable(either(auth_chain, label_chain), 8);
             row.residue_name = either(auth_name, residue_name);
             row.atom_name = either(auth_atom, label_atom);

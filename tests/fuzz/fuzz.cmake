@@ -1,15 +1,10 @@
 # tact_fuzz(scene_fuzz SOURCES fuzz/scene_fuzz.cpp USES assets): an entry point of fuzz/fuzz.hpp becomes
 #   scene_fuzz           replays its seeds and thousands of seeded mutations of them; in every suite (label replay)
 #   scene_fuzz_libfuzzer with TACT_FUZZ (clang): guided by coverage for TACT_FUZZ_SECONDS (environment; 10), from
-#                        the same seeds; skipped with a word if the compiler is older than CLANG_FROM
+#                        the same seeds
 add_custom_target(fuzz_all)
 function(tact_fuzz name)
-    cmake_parse_arguments(arg "" "CLANG_FROM" "SOURCES;USES;SYSTEM" ${ARGN})
-    if(TACT_FUZZ AND arg_CLANG_FROM AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS arg_CLANG_FROM)
-        add_test(NAME ${name}_libfuzzer COMMAND sh -c "echo needs clang ${arg_CLANG_FROM} or newer && exit 77")
-        set_tests_properties(${name}_libfuzzer PROPERTIES LABELS fuzz SKIP_RETURN_CODE 77)
-        return()
-    endif()
+    cmake_parse_arguments(arg "" "" "SOURCES;USES;SYSTEM" ${ARGN})
     tact_program(${name} SOURCES ${arg_SOURCES} fuzz/replay_main.cpp USES ${arg_USES} SYSTEM ${arg_SYSTEM})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
     add_test(NAME ${name} COMMAND ${name})

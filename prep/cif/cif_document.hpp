@@ -1,0 +1,75 @@
+// A CIF document: read, changed in place, written. Wraps gemmi's, whose headers only cif_document.cpp includes.
+//
+// Tables    columns are chosen by tag, in any order; a tag that begins with "?" may be absent. A table is empty where a
+//           required column is absent. It refers to its document and is valid while the document lives and no table or
+//           pair is added or erased.
+// Errors    read() throws std::runtime_error or a class derived from it with line and cause; indices are not checked.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tact {
+
+class CifTable {
+public:
+    CifTable(CifTable&&) noexcept;
+    CifTable& operator=(CifTable&&) noexcept;
+    CifTable(const CifTable&) = delete;
+    CifTable& operator=(const CifTable&) = delete;
+    ~CifTable();
+    [[nodiscard]] std::size_t rows() const;
+    // Is the column there at all?
+    [[nodiscard]] bool has(std::size_t column) const;
+    // As it stands in the file, with quotes; the column must be there.
+    [[nodiscard]] const std::string& raw(std::size_t row, std::size_t column) const;
+    // Without quotes; "" where the column is absent or the value is "." (not applicable) or "?" (unknown).
+    [[nodiscard]] std::string value(std::size_t row, std::size_t column) const;
+    // Is there a value other than "." and "?"?
+    [[nodiscard]] bool known(std::size_t row, std::size_t column) const;
+    void set(std::size_t row, std::size_t column, std::string raw);
+
+private:
+    friend class CifDocument;
+    struct Table;
+    explicit CifTable(std::unique_ptr<Table> table);
+    std::unique_ptr<Table> table_;
+};
+
+class CifDocument {
+public:
+    // `name` stands in error texts.
+    static CifDocument read(std::string_view text, const std::string& name);
+    // One empty block.
+    static CifDocument with_block(const std::string& name);
+    CifDocument(CifDocument&&) noexcept;
+    CifDocument& operator=(CifDocument&&) noexcept;
+    CifDocument(const CifDocument&) = delete;
+    CifDocument& operator=(const CifDocument&) = delete;
+    ~CifDocument();
+
+    [[nodiscard]] std::size_t blocks() const;
+    [[nodiscard]] CifTable table(std::size_t block, const std::string& prefix,
+                                 const std::vector<std::string>& tags);
+    // Replaces the value where the tag is there. `value` is quoted as needed.
+    void set_pair(std::size_t block, const std::string& tag, const std::string& value);
+    // Removes all pairs and tables whose tags begin with one of the prefixes.
+    void erase(std::size_t block, const std::vector<std::string>& prefixes);
+    // Each row holds one raw value for each tag, row after row.
+    void add_table(std::size_t block, const std::string& prefix, std::vector<std::string> tags,
+                   std::vector<std::string> raw_values);
+    [[nodiscard]] std::string text() const;
+
+private:
+    struct Document;
+    explicit CifDocument(std::unique_ptr<Document> document);
+    std::unique_ptr<Document> document_;
+};
+
+// With quotes where CIF needs them.
+std::string cif_quoted(const std::string& value);
+
+}  // namespace tact
