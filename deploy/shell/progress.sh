@@ -1,0 +1,60 @@
+# Sourced. Shows long work as a share of the whole: on a terminal one line that is written over, elsewhere a line at the
+# start of each step and after every tenth of the whole.
+#
+#   tact_plan STEP SECONDS...     the steps to come and how long each is likely to take; the clock starts
+#   tact_step STEP TEXT           a step begins; those before it are done
+#   tact_share PERCENT TEXT       the share of the current step that is done
+#   tact_plan_end                 the line is closed, where one was written
+
+tact_plan() {
+    tact_plan_steps=() tact_plan_seconds=() tact_plan_all=0 tact_plan_before=0 tact_plan_now=0 tact_plan_shown=-1
+    tact_plan_text='' tact_plan_start=$SECONDS
+    while [ $# -ge 2 ]; do
+        tact_plan_steps+=("$1")
+        tact_plan_seconds+=("$(($2 > 0 ? $2 : 1))")
+        tact_plan_all=$((tact_plan_all + ($2 > 0 ? $2 : 1)))
+        shift 2
+    done
+}
+
+tact_step() {
+    local i
+    tact_plan_before=0 tact_plan_now=0
+    for i in "${!tact_plan_steps[@]}"; do
+        if [ "${tact_plan_steps[i]}" = "$1" ]; then
+            tact_plan_now=${tact_plan_seconds[i]}
+            break
+        fi
+        tact_plan_before=$((tact_plan_before + tact_plan_seconds[i]))
+    done
+    tact_share 0 "$2"
+}
+
+# 400 -> "7 min", 40 -> "under a minute"
+tact_duration() {
+    if [ "$1" -lt 60 ]; then echo "under a minute"; else echo "$((($1 + 30) / 60)) min"; fi
+}
+
+tact_share() {
+    local percent left elapsed=$((SECONDS - tact_plan_start))
+    percent=$(((tact_plan_before * 100 + tact_plan_now * $1) / (tact_plan_all > 0 ? tact_plan_all : 1)))
+    # From the plan at first, then from what it took so far.
+    if [ "$percent" -lt 10 ]; then
+        left=$((tact_plan_all - tact_plan_all * percent / 100))
+    else
+        left=$((elapsed * (100 - percent) / percent))
+    fi
+    if [ -t 1 ]; then
+        printf '\r\033[K%3d %%  %s; about %s left' "$percent" "$2" "$(tact_duration "$left")"
+        tact_plan_shown=$percent
+    elif [ "$2" != "$tact_plan_text" ] && [ "$1" = 0 ] || [ $((percent / 10)) != $((tact_plan_shown / 10)) ]; then
+        printf '%3d %%  %s; about %s left\n' "$percent" "$2" "$(tact_duration "$left")"
+        tact_plan_shown=$percent
+    fi
+    tact_plan_text=$2
+}
+
+tact_plan_end() {
+    if [ -t 1 ] && [ "${tact_plan_shown:--1}" -ge 0 ]; then printf '\r\033[K'; fi
+    tact_plan_shown=-1
+}
