@@ -75,7 +75,7 @@ tact_archive_reached() {
 # Why apt-get failed, from what it printed.
 tact_explain_apt() {
     local log=$1 missing=$2 held
-    held=$(apt-mark showhold 2>/dev/null | tr '\n' ' ')
+    held=$(apt-mark showhold 2>/dev/null | xargs)
     if grep -q 'Could not get lock\|is another process using it' "$log"; then
         tact_fail "install packages" "another package manager still holds its lock after ${TACT_LOCK_SECONDS:-180} s: $(grep -m 1 -o 'Could not get lock.*' "$log")" \
             "wait for it or end it (ps -fp NUMBER), then run this again"
@@ -87,7 +87,7 @@ tact_explain_apt() {
             tact_fail "install packages" "packages on hold are in the way: $held" \
                 "sudo apt-mark unhold $held, or set them free one at a time; $log has apt's reasons"
         else
-            tact_fail "install packages" "their dependencies cannot be met: $(grep -m 1 -A 1 'unmet dependencies' "$log" | tail -n 1 | tr -s ' ')" \
+            tact_fail "install packages" "their dependencies cannot be met: $(grep -m 1 -A 1 'unmet dependencies' "$log" | tail -n 1 | xargs)" \
                 "sudo apt-get --fix-broken install; remove packages of other releases; $log has apt's reasons"
         fi
     elif grep -q 'dpkg was interrupted' "$log"; then
@@ -169,7 +169,7 @@ tact_install_packages() {
     count=${bytes% *} bytes=${bytes#* }
     if [ "$count" -gt 0 ]; then
         echo "With what they need: $count packages, $(((bytes + 999999) / 1000000)) MB to download."
-        [ "$build_s" = 0 ] || echo "Then the build: about $(tact_duration "$build_s") on $(nproc) processor cores."
+        [ "$build_s" = 0 ] || echo "Then the build: $(tact_duration "$build_s") on $(nproc) processor cores."
     fi
     tact_plan packages "$((bytes / 8000000 + count / 5 + 1))" build "$build_s"
     tact_step packages "Downloading packages"

@@ -30,9 +30,9 @@ tact_step() {
     tact_share 0 "$2"
 }
 
-# 400 -> "7 min", 40 -> "under a minute"
+# 400 -> "about 7 min", 40 -> "less than a minute"
 tact_duration() {
-    if [ "$1" -lt 60 ]; then echo "under a minute"; else echo "$((($1 + 30) / 60)) min"; fi
+    if [ "$1" -lt 60 ]; then echo "less than a minute"; else echo "about $((($1 + 30) / 60)) min"; fi
 }
 
 tact_share() {
@@ -45,10 +45,10 @@ tact_share() {
         left=$((elapsed * (100 - percent) / percent))
     fi
     if [ -t 1 ]; then
-        printf '\r\033[K%3d %%  %s; about %s left' "$percent" "$2" "$(tact_duration "$left")"
+        printf '\r\033[K%3d %%  %s; %s left' "$percent" "$2" "$(tact_duration "$left")"
         tact_plan_shown=$percent
     elif [ "$2" != "$tact_plan_text" ] && [ "$1" = 0 ] || [ $((percent / 10)) != $((tact_plan_shown / 10)) ]; then
-        printf '%3d %%  %s; about %s left\n' "$percent" "$2" "$(tact_duration "$left")"
+        printf '%3d %%  %s; %s left\n' "$percent" "$2" "$(tact_duration "$left")"
         tact_plan_shown=$percent
     fi
     tact_plan_text=$2

@@ -24,7 +24,7 @@ room_base() {
     # shellcheck disable=SC2016
     mirror=$(LC_ALL=C apt-get indextargets --format '$(REPO_URI)' 'ORIGIN: Debian' 'LABEL: Debian' | head -n 1)
     mkdir -p "$(dirname "$base")" || return
-    mmdebstrap --quiet --mode=root --variant=apt "${options[@]}" --include=ca-certificates,git,locales,sudo \
+    mmdebstrap --quiet --mode=root --variant=apt "${options[@]}" --include=ca-certificates,git,locales,login,passwd,sudo \
         --customize-hook='echo "de_DE.UTF-8 UTF-8" >"$1/etc/locale.gen"; chroot "$1" locale-gen >/dev/null' \
         --customize-hook='echo LANG=de_DE.UTF-8 >"$1/etc/default/locale"' \
         --customize-hook='chroot "$1" useradd --create-home --shell /bin/bash --uid 1000 anna' \
