@@ -23,15 +23,15 @@ room_base() {
     done
     # shellcheck disable=SC2016
     mirror=$(LC_ALL=C apt-get indextargets --format '$(REPO_URI)' 'ORIGIN: Debian' 'LABEL: Debian' | head -n 1)
-    mkdir -p "$(dirname "$base")" || return
+    mkdir -p "$(dirname "$base")" && rm -f "$base.partial.tar" || return
     mmdebstrap --quiet --mode=root --variant=apt "${options[@]}" --include=ca-certificates,git,locales,login,passwd,sudo \
         --customize-hook='echo "de_DE.UTF-8 UTF-8" >"$1/etc/locale.gen"; chroot "$1" locale-gen >/dev/null' \
         --customize-hook='echo LANG=de_DE.UTF-8 >"$1/etc/default/locale"' \
         --customize-hook='chroot "$1" useradd --create-home --shell /bin/bash --uid 1000 anna' \
         --customize-hook='echo "anna ALL=(ALL) NOPASSWD: ALL" >"$1/etc/sudoers.d/anna"' \
         --customize-hook='printf "127.0.0.1 localhost room\n" >"$1/etc/hosts"; echo room >"$1/etc/hostname"' \
-        "$suite" "$base.partial" "${mirror:-http://deb.debian.org/debian}" >&2 &&
-        mv "$base.partial" "$base" && echo "$base"
+        "$suite" "$base.partial.tar" "${mirror:-http://deb.debian.org/debian}" >&2 &&
+        mv "$base.partial.tar" "$base" && echo "$base"
 }
 
 room_make() {
