@@ -80,8 +80,7 @@ void on_char(GLFWwindow* window, unsigned int character) {
 
 }  // namespace
 
-Window::Window(int width_px, int height_px, bool hidden, float ui_scale)
-    : hidden_(hidden), ui_scale_(ui_scale) {
+Window::Window(int width_px, int height_px, bool hidden, float ui_scale) : ui_scale_(ui_scale) {
     try {
         open(width_px, height_px, hidden);
         start_imgui();

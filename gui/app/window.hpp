@@ -59,7 +59,7 @@ private:
     [[nodiscard]] float density(const Size& size) const;
 
     GLFWwindow* window_ = nullptr;
-    bool hidden_ = false, software_ = false, paced_ = false, imgui_ = false;
+    bool software_ = false, paced_ = false, imgui_ = false;
     float ui_scale_ = 1.0F;
     double display_period_s_ = 0.0;
     std::string renderer_;

@@ -51,6 +51,7 @@ room_remove() {
 room_as() {
     local user=$1
     shift
+    [ -n "$room" ] || return 1
     # shellcheck disable=SC2086
     unshare --mount --pid --fork --kill-child --uts --ipc ${ROOM_UNSHARE:-} bash -c '
         set -e
@@ -67,11 +68,12 @@ room_as() {
         mount -t tmpfs -o mode=1777 tmpfs "$1/dev/shm"
         mount --bind "$2" "$1/ccache"
         eval "${ROOM_MOUNT:-}"
-        exec env -i TERM=dumb chroot "$1" su -l "$3" -c "$4"
+        exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb chroot "$1" su -l "$3" -c "$4"
     ' room "$room" "$room_cache" "$user" "export CCACHE_DIR=/ccache; $*" </dev/null
 }
 
 room_clone() {
+    [ -n "$room" ] || return 1
     git -c safe.directory="*" clone --quiet --no-hardlinks "file://$room_root" "$room$room_checkout" &&
         chown -R 1000:1000 "$room$room_home"
 }
