@@ -48,22 +48,20 @@ tact_become_root() {
 
 # Is the first package archive within reach? In seconds, where apt itself would try for minutes.
 tact_archive_reached() {
-    local site release uri
-    # shellcheck disable=SC2016
-    read -r site release < <(LC_ALL=C apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 2>/dev/null | head -n 1)
-    if [ -z "$site" ]; then
+    local uri
+    uri=$(LC_ALL=C apt-get update --print-uris 2>/dev/null | sed -n "s/^'\([^']*InRelease\)'.*/\1/p" | head -n 1)
+    if [ -z "$uri" ]; then
         tact_fail "install packages" "apt knows no package archive (/etc/apt/sources.list and sources.list.d are empty)" \
             "add: deb http://deb.debian.org/debian $(. /etc/os-release && echo "$VERSION_CODENAME") main"
         return
     fi
-    case $site in http:* | https:*) ;; *) return 0 ;; esac  # a disk or a mirror on this machine: apt will tell
-    uri=${site%/}/dists/$release/InRelease
+    case $uri in http:* | https:*) ;; *) return 0 ;; esac  # a disk or a mirror on this machine: apt will tell
     # In /tmp, which apt's own user may write.
     local probe
     probe=$(mktemp -d /tmp/tact-probe.XXXXXX) && chmod 755 "$probe"
     if ! LC_ALL=C timeout 8 /usr/lib/apt/apt-helper -o Acquire::Retries=0 -o Acquire::http::Timeout=6 \
         -o Acquire::https::Timeout=6 -o APT::Sandbox::User=root -qq download-file "$uri" "$probe/InRelease" >"$probe/log" 2>&1; then
-        tact_fail "install packages" "the package archive ${site%/} cannot be reached: $(grep -m 1 -oE 'Temporary failure resolving.*|Could not .*|Connection .*|[0-9]{3} .*' "$probe/log" || echo 'no answer within 8 s')" \
+        tact_fail "install packages" "the package archive ${uri%/dists/*} cannot be reached: $(grep -m 1 -oE 'Temporary failure resolving.*|Could not .*|Connection .*|[0-9]{3} .*' "$probe/log" || echo 'no answer within 8 s')" \
             "check the network, the proxy (/etc/apt/apt.conf.d) and /etc/apt/sources.list; then run this again" \
             "without a network: install the packages by other means, then set TACT_NO_INSTALL=1"
         rm -rf "$probe"

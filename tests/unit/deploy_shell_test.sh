@@ -16,7 +16,7 @@ mkdir "$work/bin"
 cat >"$work/bin/apt-get" <<'STUB'
 #!/bin/sh
 case " $* " in
-    *indextargets*) [ -f "$STUB/no-archive" ] || echo "file:/archive/ stable" ;;
+    *" update --print-uris "*) [ -f "$STUB/no-archive" ] || echo "'file:/archive/dists/stable/InRelease' x 0" ;;
     *print-uris*) printf "'http://a/x.deb' x.deb 12000000 SHA256:0\n'http://a/y.deb' y.deb 500000 SHA256:0\n" ;;
     *" update "*) [ ! -f "$STUB/update" ] || { cat "$STUB/update"; exit 100; } ;;
     *" install "*)
