@@ -99,4 +99,3 @@ tact_build() {
     # Only a build of (nearly) everything says how long the next one may take.
     if [ "$steps" -gt 100 ]; then echo "$preset $((SECONDS - start)) $steps" >>build/times.txt; fi
 }
-tact_plan_steps=()

@@ -58,3 +58,5 @@ tact_plan_end() {
     if [ -t 1 ] && [ "${tact_plan_shown:--1}" -ge 0 ]; then printf '\r\033[K'; fi
     tact_plan_shown=-1
 }
+
+tact_plan

@@ -40,7 +40,7 @@ unset TACT_NO_INSTALL
 # install: the output and, as its last line, the exit code.
 install() {
     rm -f "$work/installed"
-    bash -c '. "$1/deploy/shell/progress.sh"; . "$1/deploy/shell/packages.sh"; tact_install_packages "$2" 2>&1; echo "exit $?"' \
+    bash -uc '. "$1/deploy/shell/progress.sh"; . "$1/deploy/shell/packages.sh"; tact_install_packages "$2" 2>&1; echo "exit $?"' \
         _ "$root" "$work/list" </dev/null
 }
 
@@ -49,7 +49,7 @@ expect_text "$out" "2 Debian packages are missing: held lack"
 expect_text "$out" "With what they need: 2 packages, 13 MB to download."
 expect_text "$out" "Downloading packages"
 expect_text "$out" "exit 0"
-out=$(bash -c '. "$1/deploy/shell/packages.sh"; tact_packages_missing "$2"' _ "$root" "$work/list")
+out=$(bash -uc '. "$1/deploy/shell/packages.sh"; tact_packages_missing "$2"' _ "$root" "$work/list")
 [ -z "$out" ] || fail "an installed package that is on hold counts as missing: $out"
 out=$(TACT_NO_INSTALL=1 install)
 expect_text "$out" "not installed because TACT_NO_INSTALL=1"
@@ -95,20 +95,20 @@ expect_text "$out" "exit 0"
 rm -f "$work/install-once"
 
 # Without root.
-out=$(STUB_UID=1000 PATH=$work/bin:/nowhere /bin/bash -c 'hash -p /usr/bin/awk awk; . "$1/deploy/shell/packages.sh"
+out=$(STUB_UID=1000 PATH=$work/bin:/nowhere /bin/bash -uc 'hash -p /usr/bin/awk awk; . "$1/deploy/shell/packages.sh"
     tact_become_root "Installing packages" "apt-get install lack" 2>&1; echo "exit $?"' _ "$root")
 expect_text "$out" "sudo is not installed"
 expect_text "$out" "as root, run: apt-get install lack"
 expect_text "$out" "exit 1"
 printf '#!/bin/sh\nexit 1\n' >"$work/bin/sudo"
 chmod +x "$work/bin/sudo"
-out=$(STUB_UID=1000 setsid bash -c '. "$1/deploy/shell/packages.sh"
+out=$(STUB_UID=1000 setsid bash -uc '. "$1/deploy/shell/packages.sh"
     tact_become_root "Installing packages" "apt-get install lack" 2>&1; echo "exit $?"' _ "$root" </dev/null)
 expect_text "$out" "sudo asks for a password, and there is no terminal to ask on"
 expect_text "$out" "run first: sudo apt-get install lack"
 
 # Shares: they grow, name the step, and end at the plan's last.
-out=$(bash -c '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
+out=$(bash -uc '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
     tact_step b second; for i in 20 40 60 80 100; do tact_share $i second; done; tact_plan_end' _ "$root")
 [ "$(sed 's/ *\([0-9]*\) %.*/\1/' <<<"$out" | tr '\n' ' ')" = "0 12 25 40 55 70 85 100 " ] || fail "shares: $out"
 expect_text "$out" "first; about 4 min left"
@@ -121,7 +121,7 @@ printf 'cmake_minimum_required(VERSION 3.25)\nproject(p LANGUAGES CXX)\nadd_exec
 printf '{"version": 4, "configurePresets": [{"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release"}], "buildPresets": [{"name": "release", "configurePreset": "release"}]}\n' >CMakePresets.json
 echo 'int main() {}' >p.cpp
 build() {
-    PATH=${PATH#"$work/bin:"} bash -c '. deploy/shell/progress.sh; . deploy/shell/packages.sh; . deploy/shell/build.sh; tact_build release 2>&1; echo "exit $?"'
+    PATH=${PATH#"$work/bin:"} bash -uc '. deploy/shell/progress.sh; . deploy/shell/packages.sh; . deploy/shell/build.sh; tact_build release 2>&1; echo "exit $?"'
 }
 out=$(build)
 expect_text "$out" "Building release, 2 steps"
@@ -143,10 +143,10 @@ expect_text "$out" "build release: a step failed"
 expect_text "$out" "exit 1"
 echo 'project(' >>CMakeLists.txt
 expect_text "$(build)" "configure release: CMake failed"
-out=$(sh -c 'true'; bash -c '. deploy/shell/packages.sh; . deploy/shell/build.sh
+out=$(sh -c 'true'; bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.sh
     mkdir() { return 1; }; findmnt() { echo ro,noatime; }; tact_check_writable 2>&1')
 expect_text "$out" "the file system is read-only"
-out=$(bash -c '. deploy/shell/packages.sh; . deploy/shell/build.sh
+out=$(bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.sh
     mkdir() { return 1; }; findmnt() { echo rw,noatime; }; tact_check_writable 2>&1')
 expect_text "$out" "the folder is not this user's to write"
 expect_text "$out" "fix: clone it into a folder of your own"
