@@ -15,7 +15,7 @@ find_package(nlohmann_json REQUIRED)
 tact_test(unit/prep_cli_test.cpp USES assets SYSTEM nlohmann_json::nlohmann_json)
 target_compile_definitions(prep_cli_test PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
 add_dependencies(prep_cli_test tact-prep)
-tact_test(unit/prep_export_test.cpp USES prep_export prep_structure prep_input assets base SYSTEM tact_gemmi)
+tact_test(unit/prep_export_test.cpp USES prep_export prep_cif prep_structure prep_input assets base SYSTEM tact_gemmi)
 tact_test(unit/prep_poses_file_test.cpp USES prep_export assets base)
 tact_test(unit/prep_best_codebook_test.cpp USES prep_codebook)
 # Two of the ten pairs; all of them take a minute and are for a person to start.
