@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <random>
 
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "ipc/base/error.hpp"
 #include "ipc/record/recording_writer.hpp"
