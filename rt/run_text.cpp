@@ -5,6 +5,8 @@
 #include <iterator>
 #include <string>
 
+#include "ipc/version/version.hpp"
+
 namespace tact {
 namespace {
 
@@ -34,6 +36,8 @@ void tell_how_started(std::span<char* const> arguments, const StartOptions& opti
     text.arguments_bytes = keep_text(all, text.arguments);
     text.config_bytes = keep_file(options.config, text.config);
     text.poses_bytes = keep_file(options.poses, text.poses);
+    const std::string build = program_version("tact-rt");
+    build.copy(text.program, sizeof text.program - 1);
 }
 
 }  // namespace tact

@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "ipc/version/version.hpp"
 #include "rt/force/force_model.hpp"
 
 namespace tact {
 
 void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
+    app.set_version_flag("--version", program_version("tact-rt"));
     app.add_option("scene", o.scene, "baked scene, from tact-prep")->required();
     app.add_option("--session", o.session, "name under which the other programs find this one");
     app.add_option("--config", o.config, "TOML file; deploy/tact.toml shows every key");

@@ -17,6 +17,7 @@
 #include "deploy/record/flight.hpp"
 #include "deploy/record/recorder.hpp"
 #include "ipc/record/repair.hpp"
+#include "ipc/version/version.hpp"
 
 namespace {
 
@@ -175,14 +176,14 @@ void describe(CLI::App& app, Wishes& w) {
         ->needs(csv);
     app.add_flag("--json", w.json, "the outcome as JSON on standard output");
     app.add_flag("--quiet", w.quiet, "only the outcome and errors");
-    app.set_version_flag("--version", TACT_VERSION);
+    app.set_version_flag("--version", program_version("tact-record"));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     Wishes w;
-    w.settings.program = "tact-record " TACT_VERSION;
+    w.settings.program = program_version("tact-record");
     CLI::App app{
         "tact-record: writes what a controller's rings hold into an HDF5 file.\n"
         "Ctrl-C ends the recording; kill -9 loses at most a second."};

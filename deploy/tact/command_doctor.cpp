@@ -5,6 +5,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/doctor.hpp"
 #include "deploy/tact/findings.hpp"
+#include "ipc/version/version.hpp"
 
 namespace tact::launch {
 namespace {
@@ -16,7 +17,7 @@ int doctor(const std::string& session, bool as_json) {
     const bool good = none_fails(findings);
     if (as_json) {
         const nlohmann::json report = {
-            {"ok", good}, {"version", TACT_VERSION}, {"findings", findings_json(findings)}};
+            {"ok", good}, {"version", version()}, {"findings", findings_json(findings)}};
         std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     } else {
         print_findings(findings);

@@ -5,6 +5,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/findings.hpp"
 #include "deploy/tact/probe.hpp"
+#include "ipc/version/version.hpp"
 
 namespace tact::launch {
 namespace {
@@ -55,7 +56,7 @@ int run_probe(const std::string& config, const std::string& root, bool as_json) 
     const bool good = none_fails(findings);
     if (as_json) {
         const nlohmann::json report = {{"ok", good},
-                                       {"version", TACT_VERSION},
+                                       {"version", version()},
                                        {"buses", buses_json(buses)},
                                        {"findings", findings_json(findings)}};
         std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());

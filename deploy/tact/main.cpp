@@ -6,10 +6,11 @@
 
 #include "deploy/tact/commands.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/version/version.hpp"
 
 int main(int argc, char** argv) {
     CLI::App app{"Tact: feel density maps, structures, surfaces and bone. Start with: tact demo dock"};
-    app.set_version_flag("--version", "tact " TACT_VERSION);
+    app.set_version_flag("--version", tact::program_version("tact"));
     app.require_subcommand(1);
     app.footer("Exit codes: 0 as asked; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
     int exit_code = 0;

@@ -12,6 +12,7 @@
 #include "ipc/base/units.hpp"
 #include "ipc/topics/frames_json.hpp"
 #include "ipc/topics/text.hpp"
+#include "ipc/version/version.hpp"
 
 namespace tact::launch {
 namespace {
@@ -236,7 +237,7 @@ json run_report(const RtRegion* region, const Places* places, const RunFacts& fa
     if (!j.contains("scene")) j["scene"] = {{"path", facts.scene.string()}, {"checksum", nullptr}};
     j["session"] = facts.session;
     j["seconds"] = facts.length_s;
-    j["versions"] = {{"tact", TACT_VERSION}, {"compiler", __VERSION__}};
+    j["versions"] = {{"tact", version()}, {"compiler", __VERSION__}};
     json ended = {{"ok", facts.intended}, {"why", facts.why_ended}};
     for (const auto& [name, ending] : facts.endings) ended[name] = ending_json(ending);
     j["ended"] = ended;

@@ -17,7 +17,6 @@ constexpr std::size_t kScenesKept = 16;  // a scene of a large map is some hundr
 
 std::filesystem::path path_for(const BakeRequest& request, const std::filesystem::path& prep) {
     ContentHash hash;
-    hash.add(TACT_VERSION);
     hash.add_file(prep);  // another tact-prep may bake otherwise
     for (const auto& file : request.inputs) {
         hash.add_file(file);

@@ -8,12 +8,14 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_numbers.hpp"
+#include "ipc/version/version.hpp"
 
 namespace tact {
 
 bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code) {
     CLI::App app(
         "tact-gui: shows what the hand is touching. Starts without the controller and waits for it.");
+    app.set_version_flag("--version", program_version("tact-gui"));
     std::string size;
     app.add_option("scene", options.scene, "baked scene; by default the one that the controller runs");
     app.add_option("--session", options.session, "name of the session that the controller runs in")

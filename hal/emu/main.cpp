@@ -24,6 +24,7 @@
 #include "hal/emu/usb_arm.hpp"
 #include "hal/emu/wishes.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/version/version.hpp"
 
 namespace {
 
@@ -264,6 +265,7 @@ int run(const Options& o) {
 int main(int argc, char** argv) {
     CLI::App app{
         "tact-emu: emulated devices behind the kernel's USB, CAN and GPIO, for tests without hardware"};
+    app.set_version_flag("--version", program_version("tact-emu"));
     Options options;
     describe(app, options);
     try {

@@ -39,6 +39,7 @@ void RecordingReader::read_about(const std::filesystem::path& path) {
         throw RecordError("it has " + std::to_string(about_.start.hands) + " hands");
     for (StartDevice& d : about_.start.device) d.name[sizeof d.name - 1] = 0;
     about_.known = hdf5::number(f, "/start", "known") == 1;
+    if (hdf5::has(f, "/start", "program")) about_.controller = hdf5::text(f, "/start", "program", kPathMax);
     const std::string arguments = hdf5::bytes(f, "/start/arguments", RunText::kArgumentsMax);
     for (std::size_t at = 0; at < arguments.size();) {
         about_.arguments.emplace_back(arguments.c_str() + at);

@@ -61,7 +61,8 @@ public:
         StartTopic start{};
         std::vector<std::string> arguments;  // of the controller
         std::string config, poses, scene_path, program;
-        bool known = false;  // all of those are there
+        std::string controller;  // the program that computed the forces; "" in files of before 2026-11-24
+        bool known = false;      // all of those are there
         std::uint64_t scene_checksum = 0, first_step = 0, cycles = 0, dropped = 0;
         RepairReport repair;
     };

@@ -105,6 +105,7 @@ void RecordingWriter::make(const RecordingHead& head) {
     const bool known = t.arguments_bytes <= RunText::kArgumentsMax && t.config_bytes <= RunText::kConfigMax &&
                        t.poses_bytes <= RunText::kPosesMax;
     hdf5::put_number(f, "/start", "known", known ? 1 : 0);
+    hdf5::put_text(f, "/start", "program", field(t.program, sizeof t.program));
     const std::span<const char> arguments = told(t.arguments, t.arguments_bytes, RunText::kArgumentsMax);
     hdf5::put_bytes(f, "/start/arguments", arguments_without_folders({arguments.data(), arguments.size()}));
     hdf5::put_bytes(f, "/start/config", told(t.config, t.config_bytes, RunText::kConfigMax));

@@ -158,7 +158,7 @@ static_assert(std::is_trivially_copyable_v<StartTopic> && sizeof(StartTopic) == 
 
 // How the controller was started, for whoever wants to start it again so. Written before the region is ready.
 struct RunText {
-    static constexpr TopicInfo kInfo{.name = "runtext", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "runtext", .version = 2, .writer = Writer::rt};
     static constexpr std::size_t kArgumentsMax = 4096, kConfigMax = 32768, kPosesMax = 65536;
     static constexpr std::uint32_t kTooLong = 0xFFFFFFFFU;  // as a count: there was more than fits
     std::uint32_t arguments_bytes;                          // each argument ends with 0
@@ -167,6 +167,7 @@ struct RunText {
     char arguments[kArgumentsMax];
     char config[kConfigMax];  // content of the file of --config
     char poses[kPosesMax];    // of --poses
+    char program[64];         // the controller and its version; ends with 0
 };
 static_assert(std::is_trivially_copyable_v<RunText>);
 

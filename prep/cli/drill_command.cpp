@@ -11,6 +11,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_numbers.hpp"
+#include "ipc/version/version.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/target.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
@@ -121,7 +122,7 @@ void drill(const DrillSettings& o, bool made) {
     const auto started = std::chrono::steady_clock::now();
     Console console;
     BoneInput input = made ? drill_made(o, console) : drill_scan(o, console);
-    input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
+    input.note.insert(input.note.begin(), "made by: " + program_version("tact-prep"));
     const BoneBricks bricks = input.bone.bricks;
     const std::size_t structures = input.bone.structure.size();
     SceneWriter out;

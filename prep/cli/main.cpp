@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/parent_death.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/version/version.hpp"
 #include "prep/bake/bake_contour.hpp"
 #include "prep/bake/bake_docking.hpp"
 #include "prep/cli/bench_command.hpp"
@@ -112,7 +113,8 @@ void bake(const BakeOptions& o, bool demo) {
     Console console;
     const Progress progress = console.progress();
     DockingInput input = demo ? from_ring(progress) : from_files(o, progress);
-    input.note.insert(input.note.begin(), {"made by: tact-prep " TACT_VERSION, "made at: " + now_utc()});
+    input.note.insert(input.note.begin(),
+                      {"made by: " + program_version("tact-prep"), "made at: " + now_utc()});
     if (o.contour) input.contour = o.contour;
     if (o.resolution_a) input.resolution_m = *o.resolution_a * kAngstromM;
     if (o.felt_resolution_a) input.felt_resolution_m = *o.felt_resolution_a * kAngstromM;
@@ -165,7 +167,7 @@ int run(int argc, char** argv) {
         "meshes.\n"
         "Exit code 0: done; 1: an error, said on stderr; 130: cancelled by Ctrl-C, nothing written.",
         "tact-prep");
-    app.set_version_flag("--version", "tact-prep " TACT_VERSION);
+    app.set_version_flag("--version", program_version("tact-prep"));
     app.require_subcommand(1);
     const auto output = [&](CLI::App* sub) {
         sub->add_option("-o,--output", o.scene, "the scene to write")->required();

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
+#include "ipc/version/version.hpp"
 #include "prep/cli/console.hpp"
 #include "prep/cli/target.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
@@ -124,7 +125,7 @@ void touch(const TouchSettings& o, bool made) {
     const Progress progress = console.progress();
     SurfaceInput input = made ? touch_made(o) : touch_file(o, part(progress, 0.0, 0.1));
     add_tool(o, input, part(progress, 0.1, 0.12));
-    input.note.insert(input.note.begin(), "made by: tact-prep " TACT_VERSION);
+    input.note.insert(input.note.begin(), "made by: " + program_version("tact-prep"));
     input.size_m = 1e-3 * o.size_mm;
     input.picture = !o.no_picture;
     input.forest = !o.no_forest;

@@ -20,6 +20,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/shm/link.hpp"
+#include "ipc/version/version.hpp"
 #include "rt/replay/replay.hpp"
 
 namespace {
@@ -173,7 +174,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.01, 100.0))
         ->needs(show);
     app.add_flag("--json", w.json, "the outcome as JSON on standard output");
-    app.set_version_flag("--version", TACT_VERSION);
+    app.set_version_flag("--version", program_version("tact-replay"));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -41,7 +41,7 @@ void clash(benchmark::State& state) {
         ++i;  // a body that moves a little, as in a hand
         const Pose pose{kA * Vec3(std::sin(1e-3 * i), std::cos(2e-3 * i), std::sin(3e-3 * i)),
                         quat_from_rotation_vector(0.1 * Vec3(std::cos(1e-3 * i), std::sin(1e-3 * i), 0.5))};
-        const ClashResult result = clash_force({&field, pose}, others, 6e6, {});
+        ClashResult result = clash_force({&field, pose}, others, 6e6, {});
         points = result.points;
         benchmark::DoNotOptimize(result);
     }

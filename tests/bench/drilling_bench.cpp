@@ -91,7 +91,7 @@ void stroke(benchmark::State& state) {
                      0.3 * radius_m * std::sin(9.0 * t), radius_m * (0.9 - 0.6 * std::min(1.0, t)));
             if (i == 0) model.reset(tool);
             mhz.push_back(counting_mhz());
-            const StepResult result = model.step(tool, budget);
+            StepResult result = model.step(tool, budget);
             benchmark::DoNotOptimize(result.wrench_world.force_n.x());
             if (i < 300) continue;  // the force fades in
             us.push_back(to_us(result.load.cost));

@@ -17,11 +17,12 @@ import tempfile
 # Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
 BELOW = {
     "ipc/base": [],
+    "ipc/version": [],
     "ipc/shm": ["ipc/base"],
     "ipc/topics": ["ipc/base", "ipc/shm"],
     "ipc/assets": ["ipc/base"],
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
-    "hal": ["ipc/base", "ipc/shm"],  # shm: mailboxes between a bus pump and the servo
+    "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/assets"],
     # Force models do not know each other.
     "rt/force/docking": ["ipc/base", "ipc/assets", "rt/force/force_model", "rt/force/force_fade"],
@@ -31,7 +32,7 @@ BELOW = {
     "rt/safety": ["ipc/base"],
     "rt": ["ipc", "hal"],
     "gui": ["ipc"],
-    "prep": ["ipc/base", "ipc/assets"],
+    "prep": ["ipc/base", "ipc/version", "ipc/assets"],
     "deploy": ["ipc", "rt/force", "hal/probe"],
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
@@ -52,7 +53,7 @@ WRAPPED = [
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT", "CLANG_FROM"}
+KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
 SKIP = {"build", "out", ".git", ".cache"}
 
 

@@ -39,6 +39,7 @@ protected:
         h.program = "test 1";
         h.text.arguments_bytes = 4;
         std::memcpy(h.text.arguments, "abc", 4);
+        std::memcpy(h.text.program, "tact-rt 1.2", 12);
         return h;
     }
     static CycleTopic cycle(std::uint64_t step) {
@@ -118,6 +119,8 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(hdf5::number(file.get(), "/", "scene_checksum"), 0xFEDCBA9876543210ULL);
     EXPECT_EQ(hdf5::text(file.get(), "/", "scene_path", 4096), "rod.tact");
     EXPECT_EQ(hdf5::bytes(file.get(), "/start/arguments", 100), std::string("abc\0", 4));
+    EXPECT_EQ(hdf5::text(file.get(), "/", "program", 100), "test 1");
+    EXPECT_EQ(hdf5::text(file.get(), "/start", "program", 100), "tact-rt 1.2");
     const auto cycles = Hdf5Table::open(file.get(), kCyclesGroup, cycle_columns(), sizeof(CycleTopic));
     ASSERT_EQ(cycles.rows(), 3000U);
     std::vector<CycleTopic> c(3);

@@ -1,0 +1,22 @@
+# cmake -DSOURCE=DIR -DPROJECT_VERSION=V -DBUILD_VERSION=V -DOUTPUT=FILE -P version.cmake
+# Writes the header that version.cpp includes. Run at every build; the file changes only where the version does.
+cmake_minimum_required(VERSION 3.25)
+set(version "${BUILD_VERSION}")
+if(NOT version)
+    set(version "${PROJECT_VERSION}")
+    find_program(GIT git)
+    if(GIT AND EXISTS "${SOURCE}/.git")
+        execute_process(COMMAND "${GIT}" -C "${SOURCE}" rev-list --count HEAD
+            OUTPUT_VARIABLE count OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+        # The tag of a release would hide the commit: without it, always the commit and whether it is what was built.
+        execute_process(COMMAND "${GIT}" -C "${SOURCE}" describe --always --abbrev=7 --exclude=* --dirty=.dirty
+            OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+        if(count AND commit)
+            set(version "${PROJECT_VERSION}+${count}.g${commit}")
+        endif()
+    endif()
+endif()
+if(NOT version MATCHES "^[A-Za-z0-9.+~-]+$")
+    message(FATAL_ERROR "version '${version}': only letters, digits and . + ~ - may stand in a version")
+endif()
+file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT "namespace tact {\nstatic constexpr char kVersionText[] = \"${version}\";\n}\n")
