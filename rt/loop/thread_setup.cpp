@@ -45,19 +45,6 @@ std::string first_line(const char* path) {
     return line;
 }
 
-bool in_cpu_list(const std::string& list, int cpu) {
-    std::istringstream in(list);
-    for (std::string part; std::getline(in, part, ',');) {
-        int low = 0, high = 0;
-        char dash = 0;
-        std::istringstream range(part);
-        if (!(range >> low)) continue;
-        high = range >> dash >> high ? high : low;
-        if (cpu >= low && cpu <= high) return true;
-    }
-    return false;
-}
-
 void lock_memory(Platform& platform) {
     // Pages that come later are locked only where the limit leaves room for them: with a small limit every
     // later map of this process would fail instead.
@@ -153,6 +140,19 @@ void warn_of_throttling(Platform& platform) {
 }
 
 }  // namespace
+
+bool in_cpu_list(const std::string& list, int cpu) {
+    std::istringstream in(list);
+    for (std::string part; std::getline(in, part, ',');) {
+        int low = 0, high = 0;
+        char dash = 0;
+        std::istringstream range(part);
+        if (!(range >> low)) continue;
+        high = range >> dash >> high ? high : low;
+        if (cpu >= low && cpu <= high) return true;
+    }
+    return false;
+}
 
 void prepare_process(const ScheduleWish& wish, Platform& platform) {
     mallopt(M_TRIM_THRESHOLD, -1);
