@@ -71,4 +71,30 @@ class Check(Folder):
         self.assertEqual(run("tact-rt", "a.tact", "--check-config", "b").returncode, 1)
 
 
+class Probe(Folder):
+    def test_probe_fails_on_what_the_controller_would_not_read(self):
+        root = os.path.join(self.folder, "root")
+        os.makedirs(root)
+
+        def probe(text):
+            done = run("tact", "probe", "--config", self.file(text), "--root", root, "--json")
+            rows = {}
+            for row in json.loads(done.stdout)["findings"]:
+                rows.setdefault(row["name"], []).append((row["level"], row["says"]))
+            return done.returncode, rows
+
+        code, rows = probe("[servo]\nperiod_us = 500\n")
+        self.assertEqual(code, 0, rows)
+        self.assertNotIn("configuration", rows)
+        self.assertNotIn("device2", rows)
+        code, rows = probe("[servo]\nperiod_uss = 500\n[safety]\nforce_n_max = -1\n")
+        self.assertEqual((code, len(rows["configuration"])), (1, 2))
+        self.assertIn("servo.period_uss: there is no such key", rows["configuration"][0][1])
+        code, rows = probe('[device2]\ndriver = "phantom-usb"\nserial = "R"\n')
+        self.assertEqual((code, rows["device2"][0][0]), (1, "fail"))
+        done = run("tact", "probe", "--config", os.path.join(self.folder, "none.toml"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("none.toml", done.stderr)
+
+
 unittest.main()
