@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "ipc/base/rights.hpp"
+
 namespace tact::launch {
 namespace {
 
@@ -10,9 +12,6 @@ using probe::Buses;
 using probe::CanInterface;
 using probe::GpioChip;
 using probe::UsbDevice;
-
-constexpr const char* kRightsMend =
-    "sudo deploy/install.sh --rights; log in again, and plug the device in again";
 
 std::string joined(const std::vector<std::string>& parts) {
     std::string all;
@@ -86,7 +85,7 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
             const std::string no = refusal(node_of(d));
             if (!no.empty()) {
                 f.level = wanted ? FindingLevel::fail : FindingLevel::warn;
-                f.mend = kRightsMend;
+                f.mend = kDeviceRightsFix;
             } else if (driver == "phantom-usb" && d.speed_mbit != "480" && !d.speed_mbit.empty()) {
                 f.level = FindingLevel::warn;
                 f.mend = "plug it into a port of USB 2 high speed, without a slow hub between";
@@ -202,21 +201,23 @@ Finding gpio(const Buses& b, const DeviceWish& wish) {
     if (mine.size() > 1)
         return {"gpio", bad, what + "several chips have this label; " + list, "name one by its path"};
     const std::string no = refusal(mine.front()->node);
-    if (!no.empty()) return {"gpio", bad, what + no, kRightsMend};
+    if (!no.empty()) return {"gpio", bad, what + no, kDeviceRightsFix};
     return {"gpio", FindingLevel::ok, what + "there, and may be opened; " + list, ""};
 }
 
 Finding groups(const Person& p) {
     if (p.root) return {"groups", FindingLevel::ok, "root: needs no group", ""};
-    std::vector<std::string> missing;
-    for (const char* const wanted : {"tact", "realtime"}) {
-        if (std::find(p.groups.begin(), p.groups.end(), wanted) == p.groups.end())
-            missing.emplace_back(wanted);
+    std::vector<std::string> texts;
+    Lacking worst = Lacking::nothing;
+    for (const char* const group : {"tact", "realtime"}) {
+        const Lacking lacking = lacking_group(p, group);
+        if (lacking == Lacking::nothing) continue;
+        texts.push_back(lacking_text(lacking, group));
+        if (worst != Lacking::membership) worst = lacking;
     }
-    if (missing.empty()) return {"groups", FindingLevel::ok, "a member of tact and realtime", ""};
+    if (texts.empty()) return {"groups", FindingLevel::ok, "a member of tact and realtime", ""};
     return {"groups", FindingLevel::warn,
-            "not a member of " + joined(missing) + " (tact: devices; realtime: priority, locked memory)",
-            "sudo deploy/install.sh --rights; log in again"};
+            joined(texts) + " (tact: devices; realtime: priority, locked memory)", lacking_fix(worst)};
 }
 
 }  // namespace

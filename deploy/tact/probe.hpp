@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deploy/tact/doctor.hpp"
+#include "deploy/tact/rights.hpp"
 #include "hal/probe/buses.hpp"
 
 namespace tact::launch {
@@ -30,12 +31,6 @@ struct DeviceWish {
 // From the answer of tact-rt --check-config FILE --json. The size of the firmware file is read too.
 [[nodiscard]] DeviceWish device_wish_from(const nlohmann::json& answer);
 
-struct Person {
-    bool root = false;
-    std::vector<std::string> groups;
-};
-
-[[nodiscard]] Person read_person();
 // The library of driver openhaptics: its path where one of the files is there, else "".
 [[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
 

@@ -1,5 +1,4 @@
 #include <fcntl.h>
-#include <grp.h>
 #include <unistd.h>
 
 #include <array>
@@ -71,21 +70,6 @@ DeviceWish read_device_wish(const std::string& path) {
         throw StartupError(text_at(problems.front(), "where"), text_at(problems.front(), "problem"),
                            text_at(problems.front(), "fix"));
     return wish;
-}
-
-Person read_person() {
-    Person p;
-    p.root = geteuid() == 0;
-    std::array<gid_t, 256> ids{};
-    const int n = getgroups(static_cast<int>(ids.size()), ids.data());
-    for (int i = 0; i < n; ++i) {
-        group g{}, *found = nullptr;
-        char buffer[4096];
-        if (getgrgid_r(ids[static_cast<std::size_t>(i)], &g, buffer, sizeof buffer, &found) == 0 &&
-            found != nullptr)
-            p.groups.emplace_back(found->gr_name);
-    }
-    return p;
 }
 
 std::string find_hd_library(const std::filesystem::path& root, const std::string& configured) {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "ipc/base/fifo.hpp"
+#include "ipc/base/rights.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -58,8 +59,7 @@ void lock_memory(Platform& platform) {
     platform.findings.push_back(
         "cannot lock memory (" + std::string(std::strerror(errno)) + "): RLIMIT_MEMLOCK is " +
         limit_text(limit.rlim_cur, 1024.0 * 1024.0, " MiB") +
-        ". Going on with touched pages that may be swapped out.\n  mend: add \"@realtime - "
-        "memlock unlimited\" to /etc/security/limits.d/tact.conf and log in again");
+        ". Going on with touched pages that may be swapped out.\n  mend: " + kLimitsFix);
 }
 
 void hold_dma_latency(Platform& platform) {
@@ -74,8 +74,7 @@ void hold_dma_latency(Platform& platform) {
     if (fd >= 0) ::close(fd);
     platform.findings.push_back(
         "cannot hold /dev/cpu_dma_latency at 0 (" + why +
-        "). Going on; a sleeping core may wake up to 100 us late.\n  mend: chgrp realtime "
-        "/dev/cpu_dma_latency && chmod g+w /dev/cpu_dma_latency (by a udev rule)");
+        "). Going on; a sleeping core may wake up to 100 us late.\n  mend: " + kLimitsFix);
 }
 
 void take_fifo(const ScheduleWish& wish, Platform& platform) {

@@ -10,6 +10,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/rights.hpp"
 #include "tests/support/says.hpp"
 
 namespace tact::launch {
@@ -306,6 +307,13 @@ TEST(Probe, groups_are_told_by_what_they_are_for) {
     EXPECT_EQ(f.level, FindingLevel::warn);
     EXPECT_TRUE(says(f.says, {"realtime"}));
     EXPECT_TRUE(says(f.mend, {"--rights"}));
+    const Finding later = ask(tree, {}, {false, {"users"}, {"users", "tact", "realtime"}, ""}).one("groups");
+    EXPECT_EQ(later.level, FindingLevel::warn);
+    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session is older"}));
+    EXPECT_EQ(later.mend, kLoginFix);
+    // Of one missing membership and one missing login, the former: logging in alone would not do.
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").mend, kRightsFix);
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "realtime"}, ""}).one("groups").mend, kRightsFix);
 }
 
 TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
