@@ -27,6 +27,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/shm/link.hpp"
+#include "ipc/shm/servo_threads.hpp"
 #include "ipc/topics/text.hpp"
 #include "rt/check_config.hpp"
 #include "rt/force/drilling/drill_model.hpp"
@@ -232,6 +233,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     prepare_process(thread.wish, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
+    if (const std::string shared = shared_core_text(pinned_servos(), getpid()); !shared.empty())
+        spdlog::warn("{}.\n  fix: {}", shared, kSharedCoreFix);
     if (emulated && config.safety.timing_latches == "real") {
         spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
     }

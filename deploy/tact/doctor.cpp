@@ -86,6 +86,18 @@ Finding isolation(const Machine& m) {
     return ok("isolation", "isolated without a tick: " + trimmed(m.isolated) + "; run with --core " + first);
 }
 
+Finding servo_cores(const Machine& m) {
+    const std::string shared = shared_cores_text(m.servos);
+    if (!shared.empty())
+        return warn("servo_cores", shared + ": the force loops delay each other", kSharedCoreFix);
+    if (m.servos.empty()) return ok("servo_cores", "no controller runs pinned to a core");
+    std::string all;
+    for (const PinnedServo& s : m.servos)
+        all += (all.empty() ? "" : ", ") + std::string("session ") + s.session + " on core " +
+               std::to_string(s.core);
+    return ok("servo_cores", "controllers that run: " + all);
+}
+
 Finding rtprio(const Machine& m) {
     const std::string asked = "SCHED_FIFO " + std::to_string(kSupervisorPriority);
     if (m.fifo_error == 0) return ok("rtprio", asked + " is granted");
@@ -208,6 +220,7 @@ Machine read_machine(const std::filesystem::path& root) {
     m.cpuinfo = read_small(root / "proc/cpuinfo");
     m.capabilities = read_small(root / "proc/self/status");
     m.person = read_person(root);
+    m.servos = pinned_servos(root / "proc");
     rlimit limit{};
     if (getrlimit(RLIMIT_RTPRIO, &limit) == 0) m.rtprio_max = limit.rlim_cur;
     if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
@@ -218,8 +231,9 @@ Machine read_machine(const std::filesystem::path& root) {
 }
 
 std::vector<Finding> judge(const Machine& m) {
-    return {kernel(m),      cores(m),      isolation(m), rtprio(m),     memlock(m), frequency(m),
-            dma_latency(m), throttling(m), memory(m),    huge_pages(m), clock(m),   hypervisor(m)};
+    return {kernel(m),     cores(m),     isolation(m),   servo_cores(m), rtprio(m),
+            memlock(m),    frequency(m), dma_latency(m), throttling(m),  memory(m),
+            huge_pages(m), clock(m),     hypervisor(m)};
 }
 
 std::vector<int> parse_core_list(const std::string& text) {

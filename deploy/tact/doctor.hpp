@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "deploy/tact/rights.hpp"
+#include "ipc/shm/servo_threads.hpp"
 
 namespace tact::launch {
 
@@ -39,6 +40,7 @@ struct Machine {
     std::uint64_t rtprio_max = 0;         // RLIMIT_RTPRIO
     std::uint64_t memlock_bytes_max = 0;  // RLIMIT_MEMLOCK; all ones: no limit
     Person person;
+    std::vector<PinnedServo> servos;  // controllers that run now
     int cores = 0;
     int fifo_error = 0;         // errno of asking for SCHED_FIFO; 0: granted
     int dma_latency_error = 0;  // errno of opening /dev/cpu_dma_latency for writing

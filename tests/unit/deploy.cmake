@@ -34,6 +34,9 @@ find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_rights_test.py ${CMAKE_SOURCE_DIR})
 add_test(NAME config_check_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/config_check_test.py $<TARGET_FILE_DIR:tact>
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+add_test(NAME shared_core_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/shared_core_test.py $<TARGET_FILE_DIR:tact>
+    $<TARGET_FILE:write_small_scene>)
+set_tests_properties(shared_core_test PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 add_test(NAME monitoring_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/monitoring_test.py $<TARGET_FILE_DIR:tact>
     $<TARGET_FILE:write_small_scene> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(monitoring_test PROPERTIES LABELS e2e TIMEOUT 120 SKIP_RETURN_CODE 77)

@@ -61,13 +61,14 @@ TEST(Doctor, every_warning_says_how_to_mend_it) {
     m.cores = 2;
     m.fifo_error = EPERM;
     m.dma_latency_error = EACCES;
+    m.servos = {{100, 1, "default"}, {200, 1, "lab2"}};
     int warnings = 0;
     for (const Finding& f : judge(m)) {
         if (f.level == FindingLevel::ok) continue;
         ++warnings;
         EXPECT_NE(f.mend, "") << f.name;
     }
-    EXPECT_EQ(warnings, 11);  // all but the throttling, which is only told
+    EXPECT_EQ(warnings, 12);  // all but the throttling, which is only told
 }
 
 TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
@@ -79,6 +80,21 @@ TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
     EXPECT_EQ(one(m, "rtprio").mend, kRightsFix);
     m.rtprio_max = 99;
     EXPECT_NE(one(m, "rtprio").says.find("container"), std::string::npos);
+}
+
+TEST(Doctor, controllers_on_one_core_are_warned_about) {
+    Machine m = tuned();
+    EXPECT_EQ(one(m, "servo_cores").says, "no controller runs pinned to a core");
+    m.servos = {{100, 3, "default"}, {200, 2, "lab2"}};
+    EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::ok);
+    EXPECT_EQ(one(m, "servo_cores").says,
+              "controllers that run: session default on core 3, session lab2 on core 2");
+    m.servos.push_back({300, 3, "lab3"});
+    EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::warn);
+    EXPECT_NE(
+        one(m, "servo_cores").says.find("core 3 is shared by session default (process 100), session lab3"),
+        std::string::npos);
+    EXPECT_EQ(one(m, "servo_cores").mend, kSharedCoreFix);
 }
 
 TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
