@@ -1,7 +1,7 @@
 // tact-rt: closes the force loop on a baked scene.
 //
 // Exit  0  the run ended in order: by a signal, or its time was over
-//       1  it could not start; one message says what, why and the mend
+//       1  it could not start; one message says what, why and the mend. With --check-config: the file has problems
 #include <pthread.h>
 #include <unistd.h>
 
@@ -27,7 +27,9 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/shm/link.hpp"
+#include "ipc/shm/servo_threads.hpp"
 #include "ipc/topics/text.hpp"
+#include "rt/check_config.hpp"
 #include "rt/force/drilling/drill_model.hpp"
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
@@ -231,6 +233,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     prepare_process(thread.wish, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
+    if (const std::string shared = shared_core_text(pinned_servos(), getpid()); !shared.empty())
+        spdlog::warn("{}.\n  fix: {}", shared, kSharedCoreFix);
     if (emulated && config.safety.timing_latches == "real") {
         spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
     }
@@ -284,6 +288,8 @@ int main(int argc, char** argv) {
         return app.exit(e) == 0 ? 0 : 1;
     }
     try {
+        if (!options.check_config.empty())
+            return print_config_check(std::cout, options.check_config, options.json);
         return run(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), options, overrides);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-rt: %s\n", e.what());

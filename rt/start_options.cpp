@@ -9,7 +9,16 @@ namespace tact {
 
 void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     app.set_version_flag("--version", program_version("tact-rt"));
-    app.add_option("scene", o.scene, "baked scene, from tact-prep")->required();
+    auto* const scene = app.add_option("scene", o.scene, "baked scene, from tact-prep");
+    auto* const check =
+        app.add_option("--check-config", o.check_config,
+                       "check this configuration without a scene and without a device, then exit")
+            ->type_name("FILE")
+            ->excludes(scene);
+    app.add_flag("--json", o.json, "with --check-config: as JSON, with the value of every key")->needs(check);
+    app.callback([&o] {
+        if (o.scene.empty() && o.check_config.empty()) throw CLI::RequiredError("scene");
+    });
     app.add_option("--session", o.session, "name under which the other programs find this one");
     app.add_option("--config", o.config, "TOML file; deploy/tact.toml shows every key");
     app.add_option("--seconds", o.seconds, "end after so long; 0: run until a signal")

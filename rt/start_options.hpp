@@ -18,9 +18,9 @@ class App;
 namespace tact {
 
 struct StartOptions {
-    std::string scene, session = "default", config;
+    std::string scene, session = "default", config, check_config;
     double seconds = 0.0;
-    bool arm = false, arm_with_gui = false, check = false;
+    bool arm = false, arm_with_gui = false, check = false, json = false;
     double start_offset_a = 0.0, start_rotation_deg = 0.0;
     std::uint64_t seed = 1;
     std::uint32_t copies = 1;

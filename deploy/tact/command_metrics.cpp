@@ -31,9 +31,11 @@ int metrics(const MetricsOptions& o) {
     const Instant began = Monotonic::now();
     Instant due{};
     do {
-        const bool arrived = observer.poll() == Observer::News::arrived;
+        const Observer::News news = observer.poll();
         const bool there = observer.attached() && observer.seen();
-        if (there) figures.follow(observer.region(), arrived);
+        if (there) figures.follow(observer.region(), observer.generation());
+        if (news == Observer::News::left && observer.seen())
+            figures.left(observer.region(), observer.generation());
         const std::string text = figures.text(there ? &observer.region() : nullptr);
         if (o.once) {
             const bool told = there && newest(observer.region().health);

@@ -13,6 +13,7 @@ void add_drill(CLI::App& app, int& exit_code);
 void add_touch(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_config(CLI::App& app);
 void add_record(CLI::App& app);
 void add_replay(CLI::App& app, int& exit_code);
 void add_metrics(CLI::App& app, int& exit_code);

@@ -14,6 +14,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "ipc/base/fifo.hpp"
+#include "ipc/base/rights.hpp"
 
 namespace tact::launch {
 namespace {
@@ -21,9 +22,6 @@ namespace {
 constexpr int kCapIpcLock = 14, kCapSysNice = 23;
 constexpr std::uint64_t kMemlockWanted = 1ULL << 30;  // a scene of a large map, its spline and the program
 constexpr std::uint64_t kNoLimit = ~0ULL;
-constexpr const char* kLimitsMend =
-    "sudo install -m 644 deploy/limits.conf /etc/security/limits.d/tact.conf; sudo groupadd -f realtime; "
-    "sudo usermod -aG realtime $USER; log in again";
 
 std::string trimmed(const std::string& text) {
     const auto end = text.find_last_not_of(" \t\n");
@@ -88,15 +86,29 @@ Finding isolation(const Machine& m) {
     return ok("isolation", "isolated without a tick: " + trimmed(m.isolated) + "; run with --core " + first);
 }
 
+Finding servo_cores(const Machine& m) {
+    const std::string shared = shared_cores_text(m.servos);
+    if (!shared.empty())
+        return warn("servo_cores", shared + ": the force loops delay each other", kSharedCoreFix);
+    if (m.servos.empty()) return ok("servo_cores", "no controller runs pinned to a core");
+    std::string all;
+    for (const PinnedServo& s : m.servos)
+        all += (all.empty() ? "" : ", ") + std::string("session ") + s.session + " on core " +
+               std::to_string(s.core);
+    return ok("servo_cores", "controllers that run: " + all);
+}
+
 Finding rtprio(const Machine& m) {
     const std::string asked = "SCHED_FIFO " + std::to_string(kSupervisorPriority);
     if (m.fifo_error == 0) return ok("rtprio", asked + " is granted");
     const bool limit = m.rtprio_max < kSupervisorPriority && !has_capability(m.capabilities, kCapSysNice);
+    const Lacking lacking = lacking_limit(m.person, "rtprio");
     return warn("rtprio",
-                limit ? asked + " is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max)
+                limit ? asked + " is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max) + "; " +
+                            lacking_text(lacking, "realtime")
                       : asked + " is refused (" + std::strerror(m.fifo_error) +
                             ") although the limits allow it: a container or a group without real-time share",
-                limit ? kLimitsMend
+                limit ? lacking_fix(lacking)
                       : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=" +
                             std::to_string(kSupervisorPriority));
 }
@@ -106,8 +118,11 @@ Finding memlock(const Machine& m) {
         return ok("memlock", "memory may be locked without limit");
     const std::string mib = std::to_string(m.memlock_bytes_max >> 20U) + " MiB";
     if (m.memlock_bytes_max >= kMemlockWanted) return ok("memlock", mib + " of memory may be locked");
-    return warn("memlock", "only " + mib + " of memory may be locked: page faults can delay a cycle",
-                kLimitsMend);
+    const Lacking lacking = lacking_limit(m.person, "memlock");
+    return warn("memlock",
+                "only " + mib + " of memory may be locked, so page faults can delay a cycle; " +
+                    lacking_text(lacking, "realtime"),
+                lacking_fix(lacking));
 }
 
 Finding frequency(const Machine& m) {
@@ -129,10 +144,9 @@ Finding dma_latency(const Machine& m) {
     if (m.dma_latency_error == ENOENT)
         return warn("dma_latency", "/dev/cpu_dma_latency is missing: a core may wake up late",
                     "start with the kernel option idle=poll, or leave it on a virtual machine");
-    return warn(
-        "dma_latency",
-        std::string("/dev/cpu_dma_latency cannot be opened: ") + std::strerror(m.dma_latency_error),
-        "sudo deploy/install.sh --rights (its udev rules give it to the group realtime); log in again");
+    return warn("dma_latency",
+                std::string("/dev/cpu_dma_latency cannot be opened: ") + std::strerror(m.dma_latency_error),
+                lacking_group(m.person, "realtime") == Lacking::login ? kLoginFix : kRightsFix);
 }
 
 Finding throttling(const Machine& m) {
@@ -205,6 +219,8 @@ Machine read_machine(const std::filesystem::path& root) {
     m.clocksource = read_small(root / "sys/devices/system/clocksource/clocksource0/current_clocksource");
     m.cpuinfo = read_small(root / "proc/cpuinfo");
     m.capabilities = read_small(root / "proc/self/status");
+    m.person = read_person(root);
+    m.servos = pinned_servos(root / "proc");
     rlimit limit{};
     if (getrlimit(RLIMIT_RTPRIO, &limit) == 0) m.rtprio_max = limit.rlim_cur;
     if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
@@ -215,8 +231,9 @@ Machine read_machine(const std::filesystem::path& root) {
 }
 
 std::vector<Finding> judge(const Machine& m) {
-    return {kernel(m),      cores(m),      isolation(m), rtprio(m),     memlock(m), frequency(m),
-            dma_latency(m), throttling(m), memory(m),    huge_pages(m), clock(m),   hypervisor(m)};
+    return {kernel(m),     cores(m),     isolation(m),   servo_cores(m), rtprio(m),
+            memlock(m),    frequency(m), dma_latency(m), throttling(m),  memory(m),
+            huge_pages(m), clock(m),     hypervisor(m)};
 }
 
 std::vector<int> parse_core_list(const std::string& text) {

@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "deploy/tact/rights.hpp"
+#include "ipc/shm/servo_threads.hpp"
+
 namespace tact::launch {
 
 enum class FindingLevel : std::uint8_t { ok, warn, fail };
@@ -36,6 +39,8 @@ struct Machine {
     std::string capabilities;             // /proc/self/status
     std::uint64_t rtprio_max = 0;         // RLIMIT_RTPRIO
     std::uint64_t memlock_bytes_max = 0;  // RLIMIT_MEMLOCK; all ones: no limit
+    Person person;
+    std::vector<PinnedServo> servos;  // controllers that run now
     int cores = 0;
     int fifo_error = 0;         // errno of asking for SCHED_FIFO; 0: granted
     int dma_latency_error = 0;  // errno of opening /dev/cpu_dma_latency for writing

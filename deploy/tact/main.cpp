@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
     add_metrics(app, exit_code);
     add_doctor(app, exit_code);
     add_probe(app, exit_code);
+    add_config(app);
     add_info(app, exit_code);
     add_eval(app, exit_code);
     add_bench(app, exit_code);

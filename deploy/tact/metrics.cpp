@@ -4,13 +4,16 @@
 #include <cstring>
 
 #include "ipc/base/histogram.hpp"
+#include "ipc/base/run_state.hpp"
 #include "ipc/topics/frames.hpp"
 #include "ipc/topics/text.hpp"
+#include "ipc/version/version.hpp"
 
 namespace tact::launch {
 namespace {
 
 constexpr double kNs = 1e-9;
+constexpr auto kNotAReason = static_cast<RunReason>(255);
 // Of the lateness: from what a quiet machine has to what a hand feels.
 constexpr double kEdgesS[] = {1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2};
 
@@ -150,6 +153,10 @@ void devices(Page& page, const DevicesTopic& d) {
         "tact_motor_winding_celsius", "gauge", "hottest winding of a hand's device, as its driver counts it",
         [](const DeviceHand& h) { return static_cast<double>(h.winding_c); },
         [](const DeviceHand& h) { return h.winding_c_max > 0.0F; });
+    each(
+        "tact_motor_winding_max_celsius", "gauge", "winding temperature that the driver allows",
+        [](const DeviceHand& h) { return static_cast<double>(h.winding_c_max); },
+        [](const DeviceHand& h) { return h.winding_c_max > 0.0F; });
 }
 
 void tracker(Page& page, const TrackerTopic& t) {
@@ -223,27 +230,55 @@ void picture(Page& page, const FrameFigures& f) {
 
 }  // namespace
 
-void Metrics::follow(const RtRegion& region, bool arrived) {
-    if (arrived) {
+Metrics::Metrics(std::string session) : session_(std::move(session)) {
+    faults_[run_reason_name(kNotAReason)] = 0;
+    for (int r = 0; r <= static_cast<int>(kLastRunReason); ++r)
+        if (const auto reason = static_cast<RunReason>(r); latches_fault(reason))
+            faults_[run_reason_name(reason)] = 0;
+}
+
+void Metrics::follow(const RtRegion& region, std::uint64_t generation) {
+    if (generation_ != generation) {
+        generation_ = generation;
+        missed_before_ += cursor_.missed;
         cursor_ = {};
         ++controllers_;
     }
+    ended_in_order_.reset();
     EventTopic event{};
     while (region.events.next(cursor_, event)) {
         if (event.code != static_cast<std::uint16_t>(EventCode::fault_latched)) continue;
-        const bool known = event.a >= 0.0 && event.a < 256.0;
-        ++faults_[run_reason_text(static_cast<RunReason>(known ? static_cast<int>(event.a) : 255))];
+        const bool known = event.a >= 0.0 && event.a <= static_cast<double>(kLastRunReason);
+        const auto reason = known ? static_cast<RunReason>(static_cast<int>(event.a)) : kNotAReason;
+        ++faults_[run_reason_name(latches_fault(reason) ? reason : kNotAReason)];
     }
+}
+
+void Metrics::left(const RtRegion& region, std::uint64_t generation) {
+    follow(region, generation);
+    const auto h = newest(region.health);
+    ended_in_order_ = h && h->state == static_cast<std::uint8_t>(RunState::off);
 }
 
 std::string Metrics::text(const RtRegion* region) const {
     Page page(session_);
+    page.about("tact_build_info", "gauge", "1; the label is the version of the exporter");
+    page.value(1.0, label("version", version()));
     page.one("tact_up", "gauge", "1 where a controller runs", region != nullptr ? 1.0 : 0.0);
     page.one("tact_controllers_seen_total", "counter",
              "controllers that were attached to, one after the other", static_cast<double>(controllers_));
     page.about("tact_faults_total", "counter", "faults that stopped the force, by cause");
     for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
-    if (region == nullptr) return page.take();
+    page.one("tact_events_missed_total", "counter",
+             "events of the controller that the exporter did not read in time; faults may be among them",
+             static_cast<double>(missed_before_ + cursor_.missed));
+    if (region == nullptr) {
+        if (ended_in_order_)
+            page.one("tact_controller_ended_in_order", "gauge",
+                     "0 where the last controller was killed or crashed, 1 where it ended by itself",
+                     *ended_in_order_ ? 1.0 : 0.0);
+        return page.take();
+    }
     if (const auto h = newest(region->health)) health(page, *h);
     if (const auto d = newest(region->devices)) devices(page, *d);
     if (const auto t = newest(region->tracker)) tracker(page, *t);

@@ -1,7 +1,10 @@
 // What a fleet's monitoring wants of a controller, in Prometheus' text format (version 0.0.4).
 //
-// Faults   are counted by cause from the events, since the counting began; all else is as the topics have it now.
-// Gone     where no controller runs, tact_up is 0 and nothing else is told: old figures would look like new ones.
+// Faults   are counted by cause from the events, since the exporter started, across controllers. Every cause is
+//          exported from the first page on, at 0: Prometheus sees no increase in a series that begins at 1.
+// Late     an exporter that starts after the controller also counts the faults still in the controller's event ring.
+// Gone     where no controller runs, only tact_up 0, the counters of the exporter and how the last controller
+//          ended are exported: old values would look like new ones.
 // Hostile  region values may be anything: numbers that are not finite are left out, texts are escaped.
 // Thread   one calls follow() and text(); the server answers from its own.
 #pragma once
@@ -10,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "deploy/tact/observer.hpp"
@@ -18,23 +22,28 @@ namespace tact::launch {
 
 class Metrics {
 public:
-    explicit Metrics(std::string session) : session_(std::move(session)) {}
-    // Reads the events since the last call; a few times a second. `arrived`: a controller that was not there before.
-    void follow(const RtRegion& region, bool arrived);
+    explicit Metrics(std::string session);
+    // Reads the events since the last call; a few times a second. generation: of the region; another one is
+    // another controller, the same one again is only a new connection.
+    void follow(const RtRegion& region, std::uint64_t generation);
+    // The controller is gone: reads its last events and whether it ended in order.
+    void left(const RtRegion& region, std::uint64_t generation);
     // region: null without a controller.
     [[nodiscard]] std::string text(const RtRegion* region) const;
 
 private:
     std::string session_;
     RingCursor cursor_;
-    std::map<std::string, std::uint64_t> faults_;  // by cause
-    std::uint64_t controllers_ = 0;
+    std::optional<std::uint64_t> generation_;      // of the controller that cursor_ belongs to
+    std::map<std::string, std::uint64_t> faults_;  // by cause; the causes never change
+    std::uint64_t controllers_ = 0, missed_before_ = 0;
+    std::optional<bool> ended_in_order_;  // the last controller; nothing: it runs, or none was seen
 };
 
 // GET /metrics on an address, from a thread of its own. Throws StartupError: the address is taken, or none of this machine.
 class MetricsServer {
 public:
-    // port 0: one that is free.
+    // port 0: one that is free. Answers 503 until something is offered.
     MetricsServer(const std::string& address, int port);
     ~MetricsServer();
     MetricsServer(const MetricsServer&) = delete;

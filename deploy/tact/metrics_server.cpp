@@ -41,6 +41,10 @@ MetricsServer::MetricsServer(const std::string& address, int port) : http_(std::
     s.set_keep_alive_timeout(static_cast<time_t>(kPatience.count()));
     s.Get("/metrics", [this](const httplib::Request&, httplib::Response& answer) {
         const std::lock_guard lock(http_->mutex);
+        if (http_->text.empty()) {
+            answer.status = 503;  // an empty page would be a scrape without its series
+            return;
+        }
         answer.set_content(http_->text, "text/plain; version=0.0.4; charset=utf-8");
     });
     s.Get("/", [](const httplib::Request&, httplib::Response& answer) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "ipc/base/rights.hpp"
+
 namespace tact::launch {
 namespace {
 
@@ -10,9 +12,6 @@ using probe::Buses;
 using probe::CanInterface;
 using probe::GpioChip;
 using probe::UsbDevice;
-
-constexpr const char* kRightsMend =
-    "sudo deploy/install.sh --rights; log in again, and plug the device in again";
 
 std::string joined(const std::vector<std::string>& parts) {
     std::string all;
@@ -75,7 +74,10 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
         if (d.known == nullptr) continue;
         const bool arm = d.known->use == probe::Use::arm;
         const std::string driver = d.known->driver;
-        const bool wanted = arm && wish.driver == driver && (wish.serial.empty() || wish.serial == d.serial);
+        const auto asked = [&](const std::string& by, const std::string& serial) {
+            return by == driver && (serial.empty() || serial == d.serial);
+        };
+        const bool wanted = arm && (asked(wish.driver, wish.serial) || asked(wish.driver2, wish.serial2));
         Finding f{arm ? "arm" : "adapter", FindingLevel::ok, name_of(d), ""};
         if (arm && driver.empty()) {
             f.says += ": seen, but there is no driver for it here";
@@ -83,7 +85,7 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
             const std::string no = refusal(node_of(d));
             if (!no.empty()) {
                 f.level = wanted ? FindingLevel::fail : FindingLevel::warn;
-                f.mend = kRightsMend;
+                f.mend = kDeviceRightsFix;
             } else if (driver == "phantom-usb" && d.speed_mbit != "480" && !d.speed_mbit.empty()) {
                 f.level = FindingLevel::warn;
                 f.mend = "plug it into a port of USB 2 high speed, without a slow hub between";
@@ -97,40 +99,42 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
     }
 }
 
-Finding driver_arm(const Buses& b, const DeviceWish& wish, const std::string& hd_library) {
-    const std::string what = "device.driver = \"" + wish.driver + "\": ";
-    if (wish.driver == "sim" || wish.driver == "sim-process")
-        return {"device", FindingLevel::ok, what + "emulated, needs no device", ""};
-    if (wish.driver == "openhaptics") {
+// section: "device" or "device2".
+Finding driver_arm(const Buses& b, const std::string& section, const std::string& driver,
+                   const std::string& serial, const std::string& hd_library) {
+    const std::string what = section + ".driver = \"" + driver + "\": ";
+    if (driver == "sim" || driver == "sim-process")
+        return {section, FindingLevel::ok, what + "emulated, needs no device", ""};
+    if (driver == "openhaptics") {
         if (hd_library.empty())
             return {
-                "device", FindingLevel::fail,
+                section, FindingLevel::fail,
                 what + "the maker's library libHD.so is not where it is looked for",
                 "install the maker's OpenHaptics and device driver, or name the file (device.hd_library)"};
-        return {"device", FindingLevel::ok,
+        return {section, FindingLevel::ok,
                 what + hd_library + "; which arms it knows is only seen when tact-rt opens it", ""};
     }
     std::vector<std::string> serials;
     bool known = false;
-    for (const auto& k : probe::kKnownDevices) known = known || wish.driver == k.driver;
+    for (const auto& k : probe::kKnownDevices) known = known || driver == k.driver;
     for (const UsbDevice& d : b.usb.there) {
-        if (d.known != nullptr && d.known->use == probe::Use::arm && wish.driver == d.known->driver &&
-            (wish.serial.empty() || wish.serial == d.serial))
+        if (d.known != nullptr && d.known->use == probe::Use::arm && driver == d.known->driver &&
+            (serial.empty() || serial == d.serial))
             serials.push_back(d.serial.empty() ? "without serial" : d.serial);
     }
     if (!known)
-        return {"device", FindingLevel::fail, what + "there is no such driver, or none that can be probed",
-                "tact-rt --check names the drivers there are"};
-    const std::string which = wish.serial.empty() ? "" : " with serial " + wish.serial;
+        return {section, FindingLevel::fail, what + "there is no such driver, or none that can be probed",
+                "tact config check FILE names the drivers there are"};
+    const std::string which = serial.empty() ? "" : " with serial " + serial;
     if (serials.empty())
-        return {"device", FindingLevel::fail,
+        return {section, FindingLevel::fail,
                 what + (b.usb.visible ? "no such device" + which + " on USB"
                                       : "no USB can be seen here, so it cannot be told whether it is there"),
-                "plug it in and switch it on, or set device.driver = \"sim\"; lsusb lists the bus"};
+                "plug it in and switch it on, or set " + section + ".driver = \"sim\"; lsusb lists the bus"};
     if (serials.size() > 1)
-        return {"device", FindingLevel::fail, what + "there are several: " + joined(serials),
-                "say which one by device.serial"};
-    return {"device", FindingLevel::ok, what + "there is one" + which, ""};
+        return {section, FindingLevel::fail, what + "there are several: " + joined(serials),
+                "say which one by " + section + ".serial"};
+    return {section, FindingLevel::ok, what + "there is one" + which, ""};
 }
 
 // A Falcon forgets its firmware with its power, and its owner has the file.
@@ -197,31 +201,37 @@ Finding gpio(const Buses& b, const DeviceWish& wish) {
     if (mine.size() > 1)
         return {"gpio", bad, what + "several chips have this label; " + list, "name one by its path"};
     const std::string no = refusal(mine.front()->node);
-    if (!no.empty()) return {"gpio", bad, what + no, kRightsMend};
+    if (!no.empty()) return {"gpio", bad, what + no, kDeviceRightsFix};
     return {"gpio", FindingLevel::ok, what + "there, and may be opened; " + list, ""};
 }
 
 Finding groups(const Person& p) {
     if (p.root) return {"groups", FindingLevel::ok, "root: needs no group", ""};
-    std::vector<std::string> missing;
-    for (const char* const wanted : {"tact", "realtime"}) {
-        if (std::find(p.groups.begin(), p.groups.end(), wanted) == p.groups.end())
-            missing.emplace_back(wanted);
+    std::vector<std::string> texts;
+    Lacking worst = Lacking::nothing;
+    for (const char* const group : {"tact", "realtime"}) {
+        const Lacking lacking = lacking_group(p, group);
+        if (lacking == Lacking::nothing) continue;
+        texts.push_back(lacking_text(lacking, group));
+        if (worst != Lacking::membership) worst = lacking;
     }
-    if (missing.empty()) return {"groups", FindingLevel::ok, "a member of tact and realtime", ""};
+    if (texts.empty()) return {"groups", FindingLevel::ok, "a member of tact and realtime", ""};
     return {"groups", FindingLevel::warn,
-            "not a member of " + joined(missing) + " (tact: devices; realtime: priority, locked memory)",
-            "sudo deploy/install.sh --rights; log in again"};
+            joined(texts) + " (tact: devices; realtime: priority, locked memory)", lacking_fix(worst)};
 }
 
 }  // namespace
 
 std::vector<Finding> judge_devices(const Buses& buses, const DeviceWish& wish, const Person& person,
                                    const std::string& hd_library) {
-    std::vector<Finding> out{driver_arm(buses, wish, hd_library), usb(buses)};
+    std::vector<Finding> out = wish.problems;
+    out.push_back(driver_arm(buses, "device", wish.driver, wish.serial, hd_library));
+    if (wish.driver2 != "none")
+        out.push_back(driver_arm(buses, "device2", wish.driver2, wish.serial2, hd_library));
+    out.push_back(usb(buses));
     known_devices(buses, wish, out);
-    if (wish.driver == "falcon") out.push_back(falcon_firmware(wish));
-    if (wish.driver != "openhaptics")
+    if (wish.driver == "falcon" || wish.driver2 == "falcon") out.push_back(falcon_firmware(wish));
+    if (wish.driver != "openhaptics" && wish.driver2 != "openhaptics")
         out.push_back({"openhaptics", FindingLevel::ok,
                        hd_library.empty() ? "the maker's library libHD.so is not where it is looked for"
                                           : "the maker's library is there: " + hd_library,

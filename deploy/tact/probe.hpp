@@ -6,10 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "deploy/tact/doctor.hpp"
+#include "deploy/tact/rights.hpp"
 #include "hal/probe/buses.hpp"
 
 namespace tact::launch {
@@ -17,21 +19,18 @@ namespace tact::launch {
 // Of the configuration of tact-rt, what it says about devices; the defaults are tact-rt's.
 struct DeviceWish {
     std::string driver = "sim", serial, hd_library, firmware;
-    std::int64_t firmware_bytes = -1;  // of that file, as the machine has it; -1: it cannot be read
+    std::string driver2 = "none", serial2;  // of the second hand
+    std::int64_t firmware_bytes = -1;       // of that file, as the machine has it; -1: it cannot be read
     std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
     std::string lines = "none", lines_chip = "cp2112_gpio";
+    std::vector<Finding> problems;  // of the file as a whole
 };
 
-// Reads the keys above and looks at no other; tact-rt --check judges the rest. Throws StartupError where the
-// file cannot be read or one of the keys is not a text. The size of the firmware is looked at too.
+// Asks tact-rt, whose reader is the only one. Throws StartupError where the file cannot be read at all.
 [[nodiscard]] DeviceWish read_device_wish(const std::string& path);
+// From the answer of tact-rt --check-config FILE --json. The size of the firmware file is read too.
+[[nodiscard]] DeviceWish device_wish_from(const nlohmann::json& answer);
 
-struct Person {
-    bool root = false;
-    std::vector<std::string> groups;
-};
-
-[[nodiscard]] Person read_person();
 // The library of driver openhaptics: its path where one of the files is there, else "".
 [[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
 

@@ -1,44 +1,44 @@
-#include <grp.h>
-#include <toml++/toml.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
 #include <filesystem>
+#include <fstream>
 
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
 #include "deploy/tact/probe.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::launch {
 
-DeviceWish read_device_wish(const std::string& path) {
-    toml::table file;
-    try {
-        file = toml::parse_file(path);
-    } catch (const toml::parse_error& e) {
-        const auto line = e.source().begin.line;
-        throw StartupError(
-            "reading the configuration " + path + (line == 0 ? "" : ":" + std::to_string(line)),
-            std::string(e.description()),
-            line == 0 ? "give the path of a readable file to --config, or leave it out"
-                      : "mend this line; deploy/tact.toml shows the form");
-    }
+namespace {
+
+std::string text_at(const nlohmann::json& object, const char* key) {
+    const auto at = object.find(key);
+    return at != object.end() && at->is_string() ? at->get<std::string>() : "";
+}
+
+}  // namespace
+
+DeviceWish device_wish_from(const nlohmann::json& answer) {
     DeviceWish wish;
-    struct Key {
-        const char *section, *name;
-        std::string* target;
-    };
-    for (const Key& key : std::array{
-             Key{"device", "driver", &wish.driver}, Key{"device", "serial", &wish.serial},
-             Key{"device", "firmware", &wish.firmware}, Key{"device", "hd_library", &wish.hd_library},
-             Key{"tracker", "driver", &wish.tracker}, Key{"tracker", "interface", &wish.tracker_interface},
-             Key{"tracker", "format", &wish.tracker_format}, Key{"lines", "driver", &wish.lines},
-             Key{"lines", "chip", &wish.lines_chip}}) {
-        const auto node = file[key.section][key.name];
-        if (!node) continue;
-        if (!node.is_string())
-            throw StartupError(path + ": " + key.section + "." + key.name, "this is not a text in quotes",
-                               "see deploy/tact.toml for the key and its default");
-        *key.target = node.value_or(std::string());
+    const nlohmann::json values = answer.value("values", nlohmann::json::object());
+    for (const auto& [key, target] :
+         {std::pair{"device.driver", &wish.driver}, std::pair{"device.serial", &wish.serial},
+          std::pair{"device.firmware", &wish.firmware}, std::pair{"device.hd_library", &wish.hd_library},
+          std::pair{"device2.driver", &wish.driver2}, std::pair{"device2.serial", &wish.serial2},
+          std::pair{"tracker.driver", &wish.tracker}, std::pair{"tracker.interface", &wish.tracker_interface},
+          std::pair{"tracker.format", &wish.tracker_format}, std::pair{"lines.driver", &wish.lines},
+          std::pair{"lines.chip", &wish.lines_chip}})
+        if (const auto at = values.find(key); at != values.end() && at->is_string())
+            *target = at->get<std::string>();
+    for (const nlohmann::json& p : answer.value("problems", nlohmann::json::array())) {
+        const std::string key = text_at(p, "key");
+        wish.problems.push_back(
+            {"configuration", FindingLevel::fail,
+             text_at(p, "where") + (key.empty() ? "" : ": " + key) + ": " + text_at(p, "problem"),
+             text_at(p, "fix")});
     }
     std::error_code error;
     if (const auto bytes = std::filesystem::file_size(wish.firmware, error);
@@ -47,19 +47,29 @@ DeviceWish read_device_wish(const std::string& path) {
     return wish;
 }
 
-Person read_person() {
-    Person p;
-    p.root = geteuid() == 0;
-    std::array<gid_t, 256> ids{};
-    const int n = getgroups(static_cast<int>(ids.size()), ids.data());
-    for (int i = 0; i < n; ++i) {
-        group g{}, *found = nullptr;
-        char buffer[4096];
-        if (getgrgid_r(ids[static_cast<std::size_t>(i)], &g, buffer, sizeof buffer, &found) == 0 &&
-            found != nullptr)
-            p.groups.emplace_back(found->gr_name);
-    }
-    return p;
+DeviceWish read_device_wish(const std::string& path) {
+    const ScratchFolder scratch;
+    const auto file = scratch.path() / "check.json";
+    ChildSettings settings;
+    settings.arguments = {"--check-config=" + path, "--json"};
+    settings.output_fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    Child child("tact-rt", find_program("tact-rt"), settings);
+    if (settings.output_fd >= 0) ::close(settings.output_fd);
+    const auto& ending = child.wait(std::chrono::seconds(30));
+    std::ifstream in(file);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto answer = nlohmann::json::parse(text, nullptr, false);
+    if (!ending || ending->by_signal || !answer.is_object())
+        throw StartupError("checking the configuration " + path,
+                           "tact-rt " + (ending ? ending->text() : "did not end in half a minute") + ": " +
+                               text.substr(0, 1000),
+                           "run by hand: tact config check " + path);
+    DeviceWish wish = device_wish_from(answer);
+    const nlohmann::json problems = answer.value("problems", nlohmann::json::array());
+    if (!problems.empty() && text_at(problems.front(), "key").empty())
+        throw StartupError(text_at(problems.front(), "where"), text_at(problems.front(), "problem"),
+                           text_at(problems.front(), "fix"));
+    return wish;
 }
 
 std::string find_hd_library(const std::filesystem::path& root, const std::string& configured) {

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <string>
 
+#include "ipc/base/rights.hpp"
+
 namespace tact {
 
 inline constexpr int kServoPriority = 80;
@@ -30,8 +32,7 @@ inline constexpr int kSupervisorPriority = 95;  // the highest, which deploy/lim
     return "cannot use SCHED_FIFO at priority " + std::to_string(priority) + " for " + whose + " (" +
            std::strerror(error) + "): RLIMIT_RTPRIO is " +
            (limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur)) +
-           ". Going on with ordinary scheduling.\n  mend: add \"@realtime - rtprio " +
-           std::to_string(kSupervisorPriority) + "\" to /etc/security/limits.d/tact.conf and log in again";
+           ". Going on with ordinary scheduling.\n  mend: " + kLimitsFix;
 }
 
 }  // namespace tact

@@ -18,14 +18,6 @@ namespace {
 
 constexpr std::size_t kSessionNameMax = 48;
 
-bool is_session_name(const std::string& name) {
-    return !name.empty() && name.size() <= kSessionNameMax && name.front() != '.' &&
-           std::all_of(name.begin(), name.end(), [](char c) {
-               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '-' || c == '_' || c == '.';
-           });
-}
-
 std::string runtime_folder() {
     for (const char* const variable : {"TACT_RUNTIME_DIR", "XDG_RUNTIME_DIR"}) {
         const char* const value = std::getenv(variable);  // start-up, before there are other threads
@@ -35,6 +27,14 @@ std::string runtime_folder() {
 }
 
 }  // namespace
+
+bool is_session_name(const std::string& name) {
+    return !name.empty() && name.size() <= kSessionNameMax && name.front() != '.' &&
+           std::all_of(name.begin(), name.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '-' || c == '_' || c == '.';
+           });
+}
 
 SessionPaths session_paths(const std::string& session) {
     const std::string attempt = "find session \"" + session + "\"";

@@ -23,4 +23,6 @@ void make_runtime_folder(const std::string& folder);
 // Empty if the folder can be trusted, else why not. Never throws for what it finds.
 [[nodiscard]] std::string distrust_runtime_folder(const std::string& folder);
 
+[[nodiscard]] bool is_session_name(const std::string& name);
+
 }  // namespace tact

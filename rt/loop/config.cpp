@@ -1,6 +1,7 @@
 #include "rt/loop/config.hpp"
 
 #include <toml++/toml.h>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,16 +17,6 @@
 namespace tact {
 
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-// One row a key: where it goes and what it may be. The only list of keys there is.
-struct Key {
-    std::string name;
-    std::variant<double*, std::int64_t*, bool*, std::string*, std::span<double>> target;
-    double low = -kInf, high = kInf;
-    std::vector<std::string> words;  // of a text that is one of a few
-};
 
 std::vector<std::string> tracker_names() {
     std::vector<std::string> names;
@@ -51,13 +42,16 @@ Pedal pedal_named(const std::string& name) {
     return name == "line" ? Pedal::line : name == "always" ? Pedal::always : Pedal::button;
 }
 
-std::vector<std::string> device2_names() {
-    std::vector<std::string> names{"none"};
+std::vector<std::string> device_names(const char* besides = nullptr) {
+    std::vector<std::string> names;
+    if (besides != nullptr) names.emplace_back(besides);
     for (const DeviceEntry& d : device_drivers()) names.emplace_back(d.name);
     return names;
 }
 
-std::vector<Key> keys_of(RtConfig& c) {
+}  // namespace
+
+std::vector<ConfigKey> keys_of(RtConfig& c) {
     return {
         {"servo.period_us", &c.servo.period_us, 50, 100000, {}},
         {"servo.free_running", &c.servo.free_running, 0, 0, {}},
@@ -66,7 +60,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"servo.priority", &c.servo.priority, 0, 94, {}},
         {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
-        {"device.driver", &c.device.driver, 0, 0, {}},
+        {"device.driver", &c.device.driver, 0, 0, device_names()},
         {"device.hand", &c.device.hand, 0, 0, sim_hand_names()},
         {"device.hand_at_mm", c.device.hand_at_mm, -100, 100, {}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
@@ -77,7 +71,7 @@ std::vector<Key> keys_of(RtConfig& c) {
         {"device.firmware", &c.device.firmware, 0, 0, {}},
         {"device.hd_library", &c.device.hd_library, 0, 0, {}},
         {"device.hd_device", &c.device.hd_device, 0, 0, {}},
-        {"device2.driver", &c.device2.driver, 0, 0, device2_names()},
+        {"device2.driver", &c.device2.driver, 0, 0, device_names("none")},
         {"device2.serial", &c.device2.serial, 0, 0, {}},
         {"device2.hand", &c.device2.hand, 0, 0, sim_hand_names(kAsDevice)},
         {"device2.hand_seed", &c.device2.hand_seed, 0, 9e15, {}},
@@ -157,8 +151,7 @@ std::vector<Key> keys_of(RtConfig& c) {
     };
 }
 
-// Empty: fine. Else what is wrong with the value that the key has now.
-std::string complaint(const Key& key) {
+std::string complaint(const ConfigKey& key) {
     const auto range = [&](double v, const std::string& text) {
         if (std::isfinite(v) && v >= key.low && v <= key.high) return std::string();
         return text + " is outside " + number_text(key.low) + " to " + number_text(key.high);
@@ -186,15 +179,10 @@ std::string complaint(const Key& key) {
     return {};
 }
 
-std::string at(const std::string& path, const toml::source_region& where) {
-    return path + ":" + std::to_string(where.begin.line);
-}
-
-// The known key that shares most of its beginning and end with a wrong one.
-std::string nearest(const std::vector<Key>& keys, const std::string& name) {
+std::string nearest(const std::vector<ConfigKey>& keys, const std::string& name) {
     std::string best;
     std::size_t best_score = 0;
-    for (const Key& k : keys) {
+    for (const ConfigKey& k : keys) {
         const std::size_t shorter = std::min(k.name.size(), name.size());
         std::size_t front = 0, back = 0;
         while (front < shorter && k.name[front] == name[front]) ++front;
@@ -207,10 +195,10 @@ std::string nearest(const std::vector<Key>& keys, const std::string& name) {
     return best;
 }
 
-void set(const Key& key, const toml::node& node, const std::string& where) {
+void set_key(const ConfigKey& key, const toml::node& node, const std::string& where) {
     const auto wrong = [&](const char* wanted) {
-        throw StartupError(where + ": " + key.name, std::string("this is not ") + wanted,
-                           "see deploy/tact.toml for the key and its default");
+        throw ConfigError(where, key.name, std::string("this is not ") + wanted,
+                          "see deploy/tact.toml for the key and its default");
     };
     if (const auto* d = std::get_if<double*>(&key.target)) {
         if (!node.is_number()) wrong("a number");
@@ -235,85 +223,7 @@ void set(const Key& key, const toml::node& node, const std::string& where) {
     }
     const std::string bad = complaint(key);
     if (!bad.empty()) {
-        throw StartupError(where + ": " + key.name, bad, "see deploy/tact.toml for the key and its default");
-    }
-}
-
-}  // namespace
-
-void read_config(const std::string& path, RtConfig& config) {
-    toml::table file;
-    try {
-        file = toml::parse_file(path);
-    } catch (const toml::parse_error& e) {
-        const bool missing = e.source().begin.line == 0;
-        throw StartupError("reading the configuration " + (missing ? path : at(path, e.source())),
-                           std::string(e.description()),
-                           missing ? "give the path of a readable file to --config, or leave it out"
-                                   : "mend this line; deploy/tact.toml shows the form");
-    }
-    const std::vector<Key> keys = keys_of(config);
-    for (const auto& [section, node] : file) {
-        const std::string section_name(section.str());
-        const toml::table* table = node.as_table();
-        if (table == nullptr) {
-            throw StartupError(at(path, node.source()) + ": " + section_name,
-                               "this key belongs to no section",
-                               "put it under [servo], [device], [device2], [arm], [tracker], [lines], "
-                               "[shape], [surface], [drilling], [safety] or [governor]");
-        }
-        if (section_name == "arm") {
-            read_arm_section(*table, path, config.arm);
-            continue;
-        }
-        for (const auto& [leaf, value] : *table) {
-            const std::string name = section_name + "." + std::string(leaf.str());
-            const Key* key = nullptr;
-            for (const Key& k : keys) {
-                if (k.name == name) key = &k;
-            }
-            if (key == nullptr) {
-                throw StartupError(at(path, value.source()) + ": " + name, "there is no such key",
-                                   "remove it, or did you mean " + nearest(keys, name) + "?");
-            }
-            set(*key, value, at(path, value.source()));
-        }
-    }
-}
-
-void check_config(const RtConfig& config, const std::string& where) {
-    RtConfig copy = config;
-    for (const Key& key : keys_of(copy)) {
-        const std::string bad = complaint(key);
-        if (!bad.empty()) throw StartupError(where + ": " + key.name, bad, "choose a value inside the range");
-    }
-    if (config.tracker.head_sensor >= config.tracker.sensors) {
-        throw StartupError(
-            where + ": tracker.head_sensor",
-            "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
-            "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
-    }
-    for (const auto& [key, pedal, line] :
-         {std::tuple("drilling.pedal", &config.drilling.pedal, &config.lines.burr_pedal),
-          std::tuple("drilling.suction", &config.drilling.suction, &config.lines.suction_pedal)}) {
-        const bool wired = config.lines.driver == "sim" || (config.lines.driver != "none" && !line->empty());
-        if (*pedal == "line" && !wired)
-            throw StartupError(where + ": " + key, "no line of a pedal is named",
-                               "set lines.driver, and lines.burr_pedal or lines.suction_pedal");
-    }
-    const bool arms_told_apart = !config.device.serial.empty() && !config.device2.serial.empty() &&
-                                 config.device.serial != config.device2.serial;
-    if (config.device2.driver == config.device.driver && !device_driver(config.device2.driver).emulated &&
-        !arms_told_apart) {
-        throw StartupError(where + ": device2.serial",
-                           "two devices of one driver are told apart by their serials",
-                           "give device.serial and device2.serial, two different ones");
-    }
-    const double norm = Quat(config.tracker.quat_screen_tracker_xyzw.data()).norm();
-    if (!(std::abs(norm - 1.0) < 0.01)) {
-        throw StartupError(where + ": tracker.quat_screen_tracker_xyzw",
-                           "its length is " + number_text(norm) + ", a rotation has 1",
-                           "give x, y, z, w of a unit quaternion; no rotation is 0, 0, 0, 1");
+        throw ConfigError(where, key.name, bad, "see deploy/tact.toml for the key and its default");
     }
 }
 

@@ -9,10 +9,14 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "hal/lines_registry.hpp"
 #include "hal/registry.hpp"
 #include "hal/tracker_registry.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/base/fifo.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/servo.hpp"
@@ -131,8 +135,28 @@ struct RtConfig {
     } governor;
 };
 
-// Overwrites what the file names.
+// One thing that is wrong with a configuration. The text is "where: key: what", and the fix.
+class ConfigError : public StartupError {
+public:
+    ConfigError(std::string where_, std::string key_, std::string what_, std::string fix_)
+        : StartupError(where_ + (key_.empty() ? "" : ": " + key_), what_, fix_),
+          where(std::move(where_)),
+          key(std::move(key_)),
+          problem(std::move(what_)),
+          fix(std::move(fix_)) {}
+    std::string where;  // file and line, or what was read
+    std::string key;    // "servo.core"; empty: of the file as a whole
+    std::string problem, fix;
+};
+using ConfigErrors = std::vector<ConfigError>;
+
+// Overwrites what the file names. Throws the first error of the file.
 void read_config(const std::string& path, RtConfig& config);
+// All errors of the file: what cannot be read, key by key, then what check_config() finds. config has the rest.
+[[nodiscard]] ConfigErrors config_errors(const std::string& path, RtConfig& config);
+// Every key but those of [arm], with its value.
+using ConfigValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>>;
+[[nodiscard]] std::vector<std::pair<std::string, ConfigValue>> config_values(const RtConfig& config);
 // Ranges of everything, whatever it came from; `where` heads the message.
 void check_config(const RtConfig& config, const std::string& where);
 

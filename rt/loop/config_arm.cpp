@@ -12,77 +12,87 @@ namespace tact {
 
 namespace {
 
+struct Place {
+    std::string where, key;  // file:line, arm.name
+};
+
 constexpr const char* kMend = "hal/arm/README.md says what each key means";
 
-std::string word_of(const toml::node& node, const std::string& where) {
-    if (!node.is_string()) throw StartupError(where, "this is not a text in quotes", kMend);
+std::string word_of(const toml::node& node, const Place& at) {
+    if (!node.is_string()) throw ConfigError(at.where, at.key, "this is not a text in quotes", kMend);
     return node.value<std::string>().value_or("");
 }
 
-void set_figure(const ArmKey& key, std::size_t i, const toml::node& node, const std::string& where) {
-    if (!node.is_number()) throw StartupError(where, "this is not a number", kMend);
+void set_figure(const ArmKey& key, std::size_t i, const toml::node& node, const Place& at) {
+    if (!node.is_number()) throw ConfigError(at.where, at.key, "this is not a number", kMend);
     const double v = node.value<double>().value_or(0.0);
     if (!std::isfinite(v) || v < key.low || v > key.high) {
-        throw StartupError(
-            where, number_text(v) + " is outside " + number_text(key.low) + " to " + number_text(key.high),
-            kMend);
+        throw ConfigError(
+            at.where, at.key,
+            number_text(v) + " is outside " + number_text(key.low) + " to " + number_text(key.high), kMend);
     }
     key.figures[i] = {v, FigureSource::configured};
 }
 
-void set_figures(const ArmKey& key, const toml::node& node, const std::string& where) {
+void set_figures(const ArmKey& key, const toml::node& node, const Place& at) {
     const std::size_t most = key.figures.size();
-    if (most == 1) return set_figure(key, 0, node, where);
+    if (most == 1) return set_figure(key, 0, node, at);
     const toml::array* list = node.as_array();
     const std::size_t given = list == nullptr ? 0 : list->size();
     if (given != most && !(most == 6 && given == 3)) {
-        throw StartupError(
-            where,
+        throw ConfigError(
+            at.where, at.key,
             "this is not a list of " + std::string(most == 6 ? "3 or 6" : std::to_string(most)) + " numbers",
             kMend);
     }
-    for (std::size_t i = 0; i < given; ++i) set_figure(key, i, (*list)[i], where);
+    for (std::size_t i = 0; i < given; ++i) set_figure(key, i, (*list)[i], at);
 }
 
 }  // namespace
 
-void read_arm_section(const toml::table& section, const std::string& path, ArmFigures& arm) {
-    const auto at = [&path](const std::string& name, const toml::node& node) {
-        return path + ":" + std::to_string(node.source().begin.line) + ": arm." + name;
+void read_arm_section(const toml::table& section, const std::string& path, ArmFigures& arm,
+                      ConfigErrors& errors) {
+    const auto place = [&path](const std::string& name, const toml::node& node) {
+        return Place{path + ":" + std::to_string(node.source().begin.line), "arm." + name};
     };
     // The model first, wherever it stands: the other keys overwrite its figures.
     if (const toml::node* model = section.get("model")) {
-        const std::string where = at("model", *model), name = word_of(*model, where);
-        try {
-            arm = arm_figures(name);
-        } catch (const StartupError& e) {
-            throw StartupError(where, e.what(), "see also hal/arm/README.md");
-        }
+        collect(errors, [&] {
+            const Place at = place("model", *model);
+            const std::string name = word_of(*model, at);
+            try {
+                arm = arm_figures(name);
+            } catch (const StartupError& e) {
+                throw ConfigError(at.where, at.key, e.what(), "see also hal/arm/README.md");
+            }
+        });
     }
     const std::vector<ArmKey> keys = arm_keys(arm);
-    for (const auto& [leaf, node] : section) {
-        const std::string name(leaf.str()), where = at(name, node);
-        if (name == "model") continue;
+    const auto read = [&](const std::string& name, const toml::node& node) {
+        const Place at = place(name, node);
         if (name == "wrist") {
-            const std::string word = word_of(node, where);
+            const std::string word = word_of(node, at);
             constexpr std::array words{"none", "sensed", "driven"};
             const auto* const found = std::find(words.begin(), words.end(), word);
             if (found == words.end()) {
-                throw StartupError(where, "\"" + word + R"(" is none of "none", "sensed", "driven")", kMend);
+                throw ConfigError(at.where, at.key,
+                                  "\"" + word + R"(" is none of "none", "sensed", "driven")", kMend);
             }
             arm.wrist = static_cast<Wrist>(found - words.begin());
-            continue;
+            return;
         }
-        const ArmKey* key = nullptr;
         std::string known;
         for (const ArmKey& k : keys) {
-            if (name == k.name) key = &k;
+            if (name == k.name) return set_figures(k, node, at);
             known += std::string(known.empty() ? "" : ", ") + k.name;
         }
-        if (key == nullptr) {
-            throw StartupError(where, "there is no such key", "remove it; there are model, wrist, " + known);
-        }
-        set_figures(*key, node, where);
+        throw ConfigError(at.where, at.key, "there is no such key",
+                          "remove it; there are model, wrist, " + known);
+    };
+    for (const auto& [leaf, node] : section) {
+        const std::string name(leaf.str());
+        if (name == "model") continue;
+        collect(errors, [&, &value = node] { read(name, value); });
     }
 }
 

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "ipc/base/fifo.hpp"
+#include "ipc/base/rights.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -45,19 +46,6 @@ std::string first_line(const char* path) {
     return line;
 }
 
-bool in_cpu_list(const std::string& list, int cpu) {
-    std::istringstream in(list);
-    for (std::string part; std::getline(in, part, ',');) {
-        int low = 0, high = 0;
-        char dash = 0;
-        std::istringstream range(part);
-        if (!(range >> low)) continue;
-        high = range >> dash >> high ? high : low;
-        if (cpu >= low && cpu <= high) return true;
-    }
-    return false;
-}
-
 void lock_memory(Platform& platform) {
     // Pages that come later are locked only where the limit leaves room for them: with a small limit every
     // later map of this process would fail instead.
@@ -71,8 +59,7 @@ void lock_memory(Platform& platform) {
     platform.findings.push_back(
         "cannot lock memory (" + std::string(std::strerror(errno)) + "): RLIMIT_MEMLOCK is " +
         limit_text(limit.rlim_cur, 1024.0 * 1024.0, " MiB") +
-        ". Going on with touched pages that may be swapped out.\n  mend: add \"@realtime - "
-        "memlock unlimited\" to /etc/security/limits.d/tact.conf and log in again");
+        ". Going on with touched pages that may be swapped out.\n  mend: " + kLimitsFix);
 }
 
 void hold_dma_latency(Platform& platform) {
@@ -87,8 +74,7 @@ void hold_dma_latency(Platform& platform) {
     if (fd >= 0) ::close(fd);
     platform.findings.push_back(
         "cannot hold /dev/cpu_dma_latency at 0 (" + why +
-        "). Going on; a sleeping core may wake up to 100 us late.\n  mend: chgrp realtime "
-        "/dev/cpu_dma_latency && chmod g+w /dev/cpu_dma_latency (by a udev rule)");
+        "). Going on; a sleeping core may wake up to 100 us late.\n  mend: " + kLimitsFix);
 }
 
 void take_fifo(const ScheduleWish& wish, Platform& platform) {
@@ -153,6 +139,19 @@ void warn_of_throttling(Platform& platform) {
 }
 
 }  // namespace
+
+bool in_cpu_list(const std::string& list, int cpu) {
+    std::istringstream in(list);
+    for (std::string part; std::getline(in, part, ',');) {
+        int low = 0, high = 0;
+        char dash = 0;
+        std::istringstream range(part);
+        if (!(range >> low)) continue;
+        high = range >> dash >> high ? high : low;
+        if (cpu >= low && cpu <= high) return true;
+    }
+    return false;
+}
 
 void prepare_process(const ScheduleWish& wish, Platform& platform) {
     mallopt(M_TRIM_THRESHOLD, -1);

@@ -37,6 +37,9 @@ void prepare_helper_thread(const char* name, int servo_thread_id);
 void prepare_builder_thread(int servo_thread_id);
 void release_process(Platform& platform);
 
+// Whether a list of the kernel ("0-2,5") has that core.
+[[nodiscard]] bool in_cpu_list(const std::string& list, int cpu);
+
 // Minor and major faults of the calling thread so far: a system call, so not within cycles.
 [[nodiscard]] std::uint64_t own_page_faults() noexcept;
 // The same of another thread of this process, from /proc; 0 where it cannot be read.

@@ -49,7 +49,7 @@ WRAPPED = [
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
     (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/start_model", "rt/start_options", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"httplib\.h", ["deploy/tact/metrics_server", "tests"]),
-    (r"nlohmann/", ["deploy", "prep", "gui", "rt/start_bodies", "rt/replay", "ipc/topics/frames_json", "tests"]),
+    (r"nlohmann/", ["deploy", "prep", "gui", "rt/check_config", "rt/start_bodies", "rt/replay", "ipc/topics/frames_json", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -2,12 +2,14 @@
 
 #include <errno.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 
 #include "ipc/base/fifo.hpp"
+#include "ipc/base/rights.hpp"
 
 namespace tact::launch {
 namespace {
@@ -59,13 +61,14 @@ TEST(Doctor, every_warning_says_how_to_mend_it) {
     m.cores = 2;
     m.fifo_error = EPERM;
     m.dma_latency_error = EACCES;
+    m.servos = {{100, 1, "default"}, {200, 1, "lab2"}};
     int warnings = 0;
     for (const Finding& f : judge(m)) {
         if (f.level == FindingLevel::ok) continue;
         ++warnings;
         EXPECT_NE(f.mend, "") << f.name;
     }
-    EXPECT_EQ(warnings, 11);  // all but the throttling, which is only told
+    EXPECT_EQ(warnings, 12);  // all but the throttling, which is only told
 }
 
 TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
@@ -73,9 +76,78 @@ TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
     m.fifo_error = EPERM;
     m.rtprio_max = 0;
     EXPECT_NE(one(m, "rtprio").says.find("RLIMIT_RTPRIO is 0"), std::string::npos);
-    EXPECT_NE(one(m, "rtprio").mend.find("limits.d"), std::string::npos);
+    EXPECT_NE(one(m, "rtprio").says.find("not a member of the group realtime"), std::string::npos);
+    EXPECT_EQ(one(m, "rtprio").mend, kRightsFix);
     m.rtprio_max = 99;
     EXPECT_NE(one(m, "rtprio").says.find("container"), std::string::npos);
+}
+
+TEST(Doctor, controllers_on_one_core_are_warned_about) {
+    Machine m = tuned();
+    EXPECT_EQ(one(m, "servo_cores").says, "no controller runs pinned to a core");
+    m.servos = {{100, 3, "default"}, {200, 2, "lab2"}};
+    EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::ok);
+    EXPECT_EQ(one(m, "servo_cores").says,
+              "controllers that run: session default on core 3, session lab2 on core 2");
+    m.servos.push_back({300, 3, "lab3"});
+    EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::warn);
+    EXPECT_NE(
+        one(m, "servo_cores").says.find("core 3 is shared by session default (process 100), session lab3"),
+        std::string::npos);
+    EXPECT_EQ(one(m, "servo_cores").mend, kSharedCoreFix);
+}
+
+TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
+    Machine m = tuned();
+    m.fifo_error = EPERM;
+    m.rtprio_max = 0;
+    m.memlock_bytes_max = 8ULL << 20U;
+    m.dma_latency_error = EACCES;
+    const auto expect = [&](const char* text, const char* fix) {
+        for (const char* const name : {"rtprio", "memlock"}) {
+            EXPECT_NE(one(m, name).says.find(text), std::string::npos) << one(m, name).says;
+            EXPECT_EQ(one(m, name).mend, fix) << name;
+        }
+    };
+    m.person.groups = {"users"};
+    m.person.listed = {"users"};
+    expect("not a member of the group realtime", kRightsFix);
+    EXPECT_EQ(one(m, "dma_latency").mend, kRightsFix);
+    m.person.listed = {"users", "realtime"};
+    expect("this session is older than that", kLoginFix);
+    EXPECT_EQ(one(m, "dma_latency").mend, kLoginFix);
+    m.person.groups = {"users", "realtime"};
+    expect("tact.conf is missing", kRightsFix);
+    m.person.limits = "# @realtime - rtprio 95\n@audio - rtprio 95\n@audio - memlock unlimited\n";
+    expect("tact.conf is missing or does not grant it", kRightsFix);
+    std::ifstream shipped("deploy/limits.conf");
+    m.person.limits = {std::istreambuf_iterator<char>(shipped), {}};
+    expect("the limits of this session are not those", kSessionLimitsFix);
+    m.person.limits = "@realtime - rtprio 95\n";  // one of the two
+    EXPECT_EQ(one(m, "rtprio").mend, kSessionLimitsFix);
+    EXPECT_EQ(one(m, "memlock").mend, kRightsFix);
+    m.person = {true, {}, {}, ""};  // root without the capability, in a container
+    expect("root has no capability", kCapabilityFix);
+}
+
+TEST(Doctor, a_person_is_read_with_the_groups_of_the_process_and_of_the_database) {
+    const Person p = read_person("/nowhere");
+    EXPECT_EQ(p.root, geteuid() == 0);
+    EXPECT_FALSE(p.listed.empty());  // at least the own group
+    EXPECT_EQ(p.limits, "");
+}
+
+TEST(Doctor, the_fixes_for_rights_are_written_down_once) {
+    std::string all;
+    for (const char* const path :
+         {"deploy/tact/doctor.cpp", "deploy/tact/probe.cpp", "deploy/tact/probe_wish.cpp",
+          "deploy/tact/rights.cpp", "rt/loop/thread_setup.cpp", "ipc/base/fifo.hpp"}) {
+        std::ifstream in(path);
+        ASSERT_TRUE(in) << path;
+        all += std::string(std::istreambuf_iterator<char>(in), {});
+    }
+    for (const char* const part : {"install.sh", "usermod", "log in again", "pam_limits"})
+        EXPECT_EQ(all.find(part), std::string::npos) << part << " belongs into ipc/base/rights.hpp";
 }
 
 TEST(Doctor, a_limit_below_the_supervisors_priority_is_named) {

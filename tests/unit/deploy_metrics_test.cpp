@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <thread>
 
@@ -15,61 +16,11 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/histogram.hpp"
 #include "ipc/topics/text.hpp"
+#include "ipc/version/version.hpp"
+#include "tests/unit/deploy_metrics_region.hpp"
 
 namespace tact::launch {
 namespace {
-
-std::unique_ptr<RtRegion> a_region() {
-    auto region = std::make_unique<RtRegion>();
-    HealthTopic h{};
-    h.force_rate_hz = 998.5;
-    h.goal_hz = 1000.0;
-    h.overruns = 3;
-    h.state = static_cast<std::uint8_t>(RunState::active);
-    h.gui_fps = 50.0;
-    h.gui_attached = 1;
-    h.device_bus[0].lost = 7;
-    region->health.publish(h);
-    LatenessTopic l{};
-    for (const std::uint64_t ns : {300U, 400U, 1500U, 30'000U, 40'000'000U}) {
-        ++l.counts[DurationHistogram::bucket_of(ns)];
-        ++l.total;
-    }
-    region->lateness.publish(l);
-    LevelsTopic levels{};
-    levels.count = 1;
-    std::strcpy(levels.path[0].path, "docking.force");
-    levels.path[0].level = 0.25F;
-    region->levels.publish(levels);
-    DevicesTopic devices{};
-    devices.hand[0].there = 1;
-    devices.hand[0].heat = 0.5F;
-    devices.hand[0].force_n_continuous = 1.4F;
-    region->devices.publish(devices);
-    TrackerTopic tracker{};
-    tracker.state = 2;
-    tracker.missed = 4;
-    region->tracker.publish(tracker);
-    PictureTopic picture{};
-    picture.taken_at_ns = 1;
-    picture.figures.frames = 400;
-    picture.figures.late = 2;
-    picture.figures.p50_s = 0.5F;
-    picture.figures.p99_s = picture.figures.most_s = 0.75F;
-    for (PassFigures& p : picture.figures.pass) p.drawn_p50_s = p.drawn_p99_s = -1.0F;
-    picture.figures.pass[static_cast<std::size_t>(Pass::bone)] = {0.125F, 0.25F, 0.375F, 0.5F};
-    picture.figures.path[1].work_p50_s = 0.0625F;
-    picture.figures.path[1].work_p99_s = 0.125F;
-    region->picture.publish(picture);
-    return region;
-}
-
-void fault(RtRegion& region, RunReason reason) {
-    EventTopic e{};
-    e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
-    e.a = static_cast<double>(reason);
-    region.events.push(e);
-}
 
 // The value of a line that begins with this and a space; NaN: there is none.
 double value_of(const std::string& text, const std::string& line) {
@@ -81,12 +32,14 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
-    metrics.follow(*region, true);
+    metrics.follow(*region, 1);
     fault(*region, RunReason::device_lost);
     fault(*region, RunReason::force_not_finite);
-    metrics.follow(*region, false);
+    metrics.follow(*region, 1);
     const std::string text = metrics.text(region.get());
     EXPECT_EQ(value_of(text, "tact_up{session=\"lab\"}"), 1.0);
+    EXPECT_EQ(value_of(text, "tact_build_info{session=\"lab\",version=\"" + std::string(version()) + "\"}"),
+              1.0);
     EXPECT_EQ(value_of(text, "tact_force_rate_hertz{session=\"lab\"}"), 998.5);
     EXPECT_EQ(value_of(text, "tact_servo_overruns_total{session=\"lab\"}"), 3.0);
     EXPECT_EQ(value_of(text, "tact_state{session=\"lab\",state=\"active\"}"), 1.0);
@@ -97,6 +50,7 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     EXPECT_EQ(value_of(text, "tact_motor_heat_ratio{session=\"lab\",hand=\"1\"}"), 0.5);
     EXPECT_TRUE(std::isnan(value_of(text, "tact_motor_heat_ratio{session=\"lab\",hand=\"2\"}")));
     EXPECT_TRUE(std::isnan(value_of(text, "tact_motor_winding_celsius{session=\"lab\",hand=\"1\"}")));
+    EXPECT_EQ(value_of(text, "tact_motor_winding_max_celsius{session=\"lab\",hand=\"2\"}"), 120.0);
     EXPECT_EQ(value_of(text, "tact_tracker_fresh{session=\"lab\"}"), 1.0);
     EXPECT_EQ(value_of(text, "tact_tracker_errors_total{session=\"lab\",kind=\"missed\"}"), 4.0);
     EXPECT_EQ(value_of(text, "tact_frames_total{session=\"lab\"}"), 400.0);
@@ -111,7 +65,7 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     EXPECT_EQ(text.find("tact_pass_drawn_seconds{session=\"lab\",pass=\"swap\""), std::string::npos);
     const auto cause = [&](RunReason reason) {
         return value_of(text, std::string("tact_faults_total{session=\"lab\",cause=\"") +
-                                  run_reason_text(reason) + "\"}");
+                                  run_reason_name(reason) + "\"}");
     };
     EXPECT_EQ(cause(RunReason::device_lost), 2.0);
     EXPECT_EQ(cause(RunReason::force_not_finite), 1.0);
@@ -132,11 +86,88 @@ TEST(Metrics, AControllerThatIsGoneIsDownAndItsFiguresAreNotTold) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
-    metrics.follow(*region, true);
+    metrics.follow(*region, 1);
     const std::string text = metrics.text(nullptr);
     EXPECT_EQ(value_of(text, "tact_up{session=\"lab\"}"), 0.0);
     EXPECT_EQ(text.find("tact_force_rate_hertz"), std::string::npos);
     EXPECT_NE(text.find("tact_faults_total{"), std::string::npos);  // a counter does not go back
+}
+
+// The counts by cause.
+std::map<std::string, double> causes_of(const std::string& text) {
+    std::map<std::string, double> causes;
+    std::istringstream lines(text);
+    const std::string begin = "tact_faults_total{session=\"lab\",cause=\"";
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind(begin, 0) != 0) continue;
+        const std::size_t end = line.find("\"} ");
+        causes[line.substr(begin.size(), end - begin.size())] = std::stod(line.substr(end + 3));
+    }
+    return causes;
+}
+
+TEST(Metrics, EveryCauseIsExportedAtZeroBeforeItsFirstFault) {
+    Metrics metrics("lab");
+    std::map<std::string, double> wanted{{"unknown", 0.0}};
+    for (int r = 0; r <= 255; ++r)
+        if (const auto reason = static_cast<RunReason>(r); latches_fault(reason))
+            wanted[run_reason_name(reason)] = 0.0;
+    EXPECT_EQ(wanted.size(), 14U);
+    EXPECT_EQ(causes_of(metrics.text(nullptr)), wanted);  // no controller yet
+    const auto region = a_region();
+    metrics.follow(*region, 1);
+    EXPECT_EQ(causes_of(metrics.text(region.get())), wanted);
+    for (int r = -1; r <= 256; ++r) {  // whatever a controller writes, the causes stay those
+        EventTopic e{};
+        e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
+        e.a = r;
+        region->events.push(e);
+        metrics.follow(*region, 1);
+    }
+    for (auto& [cause, count] : wanted) count = 1.0;
+    wanted["unknown"] = 258.0 - 13.0;
+    EXPECT_EQ(causes_of(metrics.text(region.get())), wanted);
+    EXPECT_EQ(causes_of(metrics.text(nullptr)), wanted);
+}
+
+TEST(Metrics, FaultsAddUpAcrossControllersAndANewConnectionCountsNoneTwice) {
+    Metrics metrics("lab");
+    const auto first = a_region(), second = a_region();
+    fault(*first, RunReason::device_lost);
+    metrics.follow(*first, 1);  // an exporter that started after the fault
+    metrics.follow(*first, 1);
+    EXPECT_EQ(causes_of(metrics.text(first.get()))["device_lost"], 1.0);
+    fault(*first, RunReason::device_lost);
+    metrics.left(*first, 1);  // counted although it was read after the controller's end
+    EXPECT_EQ(causes_of(metrics.text(nullptr))["device_lost"], 2.0);
+    metrics.follow(*first, 1);  // connected again
+    EXPECT_EQ(causes_of(metrics.text(first.get()))["device_lost"], 2.0);
+    EXPECT_EQ(value_of(metrics.text(first.get()), "tact_controllers_seen_total{session=\"lab\"}"), 1.0);
+    fault(*second, RunReason::device_lost);
+    metrics.follow(*second, 2);
+    const std::string text = metrics.text(second.get());
+    EXPECT_EQ(causes_of(text)["device_lost"], 3.0);
+    EXPECT_EQ(value_of(text, "tact_controllers_seen_total{session=\"lab\"}"), 2.0);
+    for (std::uint64_t i = 0; i < 3000; ++i) second->events.push({});
+    metrics.follow(*second, 2);
+    EXPECT_GT(value_of(metrics.text(nullptr), "tact_events_missed_total{session=\"lab\"}"), 1000.0);
+}
+
+TEST(Metrics, AControllerThatWasKilledIsToldFromOneThatEndedInOrder) {
+    Metrics metrics("lab");
+    const std::string name = "tact_controller_ended_in_order{session=\"lab\"}";
+    EXPECT_TRUE(std::isnan(value_of(metrics.text(nullptr), name)));  // none was seen
+    const auto region = a_region();
+    metrics.follow(*region, 1);
+    metrics.left(*region, 1);  // active to the last
+    EXPECT_EQ(value_of(metrics.text(nullptr), name), 0.0);
+    HealthTopic h{};
+    h.state = static_cast<std::uint8_t>(RunState::off);
+    region->health.publish(h);
+    metrics.follow(*region, 1);
+    EXPECT_TRUE(std::isnan(value_of(metrics.text(region.get()), name)));
+    metrics.left(*region, 1);
+    EXPECT_EQ(value_of(metrics.text(nullptr), name), 1.0);
 }
 
 TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
@@ -157,7 +188,7 @@ TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
     e.a = NAN;
     region->events.push(e);
     Metrics metrics("a\"b");
-    metrics.follow(*region, true);
+    metrics.follow(*region, 1);
     std::istringstream lines(metrics.text(region.get()));
     for (std::string line; std::getline(lines, line);) {
         ASSERT_FALSE(line.empty());
@@ -170,6 +201,7 @@ TEST(Metrics, AreAnsweredOverHttpOnTheLoopback) {
     MetricsServer server("127.0.0.1", 0);
     ASSERT_GT(server.port(), 0);
     httplib::Client client("127.0.0.1", server.port());
+    EXPECT_EQ(client.Get("/metrics")->status, 503);  // nothing was offered yet
     for (const char* const text : {"tact_up 1\n", "tact_up 0\n"}) {
         server.offer(text);
         const auto answer = client.Get("/metrics");
@@ -202,7 +234,7 @@ TEST(Metrics, PromtoolTakesThePageAndTheRules) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
-    metrics.follow(*region, true);
+    metrics.follow(*region, 1);
     write_textfile(folder.path() / "page", metrics.text(region.get()));
     const auto runs = [&](const std::string& words) {
         return std::system(("cd deploy/monitoring && '" + promtool.string() + "' " + words).c_str());

@@ -10,6 +10,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/rights.hpp"
 #include "tests/support/says.hpp"
 
 namespace tact::launch {
@@ -224,16 +225,20 @@ TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
     EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, may be opened"}));
     EXPECT_EQ(a.one("firmware").level, FindingLevel::warn);
     EXPECT_TRUE(says(a.one("firmware").mend, {"the file that came with the device"}));
-    tree.file("tact.toml",
-              "[device]\ndriver = \"falcon\"\nfirmware = \"" + (tree.root() / "fw.bin").string() + "\"\n");
-    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    const auto read_again = [&] {
+        return device_wish_from(
+            {{"ok", true},
+             {"values",
+              {{"device.driver", "falcon"}, {"device.firmware", (tree.root() / "fw.bin").string()}}}});
+    };
+    a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
     EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "no such file"}));
     tree.file("fw.bin", "");
-    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
     tree.file("fw.bin", "12345");
-    a = ask(tree, read_device_wish((tree.root() / "tact.toml").string()));
+    a = ask(tree, read_again());
     EXPECT_FALSE(a.fails());
     EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "5 bytes"}));
 }
@@ -302,6 +307,13 @@ TEST(Probe, groups_are_told_by_what_they_are_for) {
     EXPECT_EQ(f.level, FindingLevel::warn);
     EXPECT_TRUE(says(f.says, {"realtime"}));
     EXPECT_TRUE(says(f.mend, {"--rights"}));
+    const Finding later = ask(tree, {}, {false, {"users"}, {"users", "tact", "realtime"}, ""}).one("groups");
+    EXPECT_EQ(later.level, FindingLevel::warn);
+    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session is older"}));
+    EXPECT_EQ(later.mend, kLoginFix);
+    // Of one missing membership and one missing login, the former: logging in alone would not do.
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").mend, kRightsFix);
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "realtime"}, ""}).one("groups").mend, kRightsFix);
 }
 
 TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
@@ -334,28 +346,61 @@ TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
     EXPECT_TRUE(probe::can_interfaces(pipes.root()).there.empty());
 }
 
-TEST(Probe, the_configuration_is_read_for_devices_alone) {
+TEST(Probe, the_second_device_is_looked_for_too) {
     const Tree tree;
-    tree.file("a.toml",
-              "[device]\ndriver = \"phantom-usb\"\nserial = \"L\"\n[safety]\nforce_n_max = 1\n"
-              "[tracker]\ndriver = \"can\"\nformat = \"fd\"\n[lines]\ndriver = \"gpio\"\n");
-    const DeviceWish w = read_device_wish((tree.root() / "a.toml").string());
-    EXPECT_EQ(w.driver + w.serial + w.tracker + w.tracker_format + w.lines, "phantom-usbLcanfdgpio");
+    tree.phantom("1-1", "LEFT", 4);
+    DeviceWish wish;
+    EXPECT_EQ(ask(tree, wish).one("device2").says, "");  // none is asked for
+    wish.driver2 = "phantom-usb";
+    EXPECT_FALSE(ask(tree, wish).fails());
+    EXPECT_TRUE(
+        says(ask(tree, wish).one("device2").says, {"device2.driver = \"phantom-usb\": there is one"}));
+    wish.serial2 = "RIGHT";
+    EXPECT_TRUE(ask(tree, wish).fails());
+    EXPECT_TRUE(says(ask(tree, wish).one("device2").says, {"no such device with serial RIGHT"}));
+    EXPECT_TRUE(says(ask(tree, wish).one("device2").mend, {"device2.driver = \"sim\""}));
+    tree.phantom("1-2", "RIGHT", 5);
+    wish.driver = "phantom-usb";
+    wish.serial = "LEFT";
+    EXPECT_FALSE(ask(tree, wish).fails());
+    // The second arm's node counts as asked for.
+    probe::Buses buses = probe::read_buses(tree.root());
+    for (probe::UsbDevice& d : buses.usb.there) d.node.usable = d.serial != "RIGHT";
+    const Answer refused{judge_devices(buses, wish, kMember, "")};
+    EXPECT_TRUE(refused.fails());
+    wish.driver2 = "falcon";
+    EXPECT_EQ(ask(tree, wish).one("firmware").level, FindingLevel::warn);
+    wish.driver2 = "openhaptics";
+    EXPECT_EQ(ask(tree, wish).one("device2").level, FindingLevel::fail);
+}
+
+TEST(Probe, what_the_controller_says_of_the_configuration_is_what_is_probed_for) {
+    const Tree tree;
+    const nlohmann::json answer = {{"ok", false},
+                                   {"values",
+                                    {{"device.driver", "phantom-usb"},
+                                     {"device.serial", "L"},
+                                     {"device2.driver", "falcon"},
+                                     {"device2.serial", "R"},
+                                     {"tracker.driver", "can"},
+                                     {"tracker.format", "fd"},
+                                     {"lines.driver", "gpio"},
+                                     {"servo.core", 3}}},
+                                   {"problems",
+                                    {{{"where", "a.toml:2"},
+                                      {"key", "servo.x"},
+                                      {"problem", "there is no such key"},
+                                      {"fix", "remove it"}}}}};
+    const DeviceWish w = device_wish_from(answer);
+    EXPECT_EQ(w.driver + w.serial + w.driver2 + w.serial2 + w.tracker + w.tracker_format + w.lines,
+              "phantom-usbLfalconRcanfdgpio");
     EXPECT_EQ(w.tracker_interface, "can0");
-    const DeviceWish shipped = read_device_wish("deploy/tact.toml");
-    EXPECT_EQ(shipped.driver + shipped.tracker, "simnone");
-    const auto error_of = [&](const std::string& text) -> std::string {
-        tree.file("b.toml", text);
-        try {
-            static_cast<void>(read_device_wish((tree.root() / "b.toml").string()));
-        } catch (const StartupError& e) {
-            return e.what();
-        }
-        return "";
-    };
-    EXPECT_TRUE(says(error_of("[device\n"), {"b.toml:1", "mend:"}));
-    EXPECT_TRUE(says(error_of("[device]\ndriver = 3\n"), {"device.driver", "text in quotes"}));
-    EXPECT_THROW(static_cast<void>(read_device_wish("/nowhere/tact.toml")), StartupError);
+    const Answer a = ask(tree, w);
+    EXPECT_EQ(a.one("configuration").level, FindingLevel::fail);
+    EXPECT_EQ(a.one("configuration").says, "a.toml:2: servo.x: there is no such key");
+    EXPECT_EQ(a.one("configuration").mend, "remove it");
+    EXPECT_EQ(device_wish_from(nlohmann::json::object()).driver, "sim");
+    EXPECT_EQ(device_wish_from({{"values", {{"device.driver", 3}}}}).driver, "sim");
 }
 
 }  // namespace

@@ -200,6 +200,43 @@ TEST(Config, lists_have_their_length_numbers_and_range_and_a_rotation_its_unit_l
     EXPECT_EQ(refused(c), "");
 }
 
+TEST(Config, all_errors_are_collected_in_the_order_of_the_file_and_each_key_once) {
+    const TempFile file(
+        "[tracker]\nhead_sensor = 3\n[servo]\ncore = 5000\nperiod_uss = 3\n[device]\ndriver = \"magic\"\n"
+        "[arm]\nwrist = 3\nlength = 2\n[sevro]\n[device2]\nserial = 5\nhand = \"sim\"\n");
+    RtConfig config;
+    std::string keys;
+    for (const ConfigError& e : config_errors(file.path(), config)) {
+        keys += e.key + " ";
+        EXPECT_NE(e.fix, "") << e.key;
+        const std::string text = e.where + ": " + e.key + ": " + e.problem;
+        EXPECT_TRUE(says(e.what(), {text.c_str(), e.fix.c_str()})) << e.what();
+    }
+    EXPECT_EQ(keys,
+              "servo.core servo.period_uss device.driver arm.wrist arm.length [sevro] device2.serial "
+              "device2.hand tracker.head_sensor ");
+    EXPECT_TRUE(says(error_of("[device]\ndriver = \"magic\"\n"), {".toml:2", "magic", "sim", "phantom-usb"}));
+    EXPECT_TRUE(says(error_of("[servo]\nperiod_us = 500\n[sevro]\n"), {".toml:3", "no such section"}));
+    RtConfig fine;
+    EXPECT_TRUE(config_errors("deploy/tact.toml", fine).empty());
+}
+
+TEST(Config, every_key_of_the_documented_file_is_among_the_values) {
+    const RtConfig defaults;
+    const auto values = config_values(defaults);
+    EXPECT_GE(values.size(), 90U);
+    const auto value = [&](const std::string& name) {
+        for (const auto& [key, v] : values)
+            if (key == name) return v;
+        return ConfigValue("none");
+    };
+    EXPECT_EQ(value("servo.core"), ConfigValue(std::int64_t{-1}));
+    EXPECT_EQ(value("device.driver"), ConfigValue("sim"));
+    EXPECT_EQ(value("servo.lock_memory"), ConfigValue(true));
+    EXPECT_EQ(value("servo.period_us"), ConfigValue(1000.0));
+    EXPECT_EQ(value("device.hand_at_mm"), ConfigValue(std::vector<double>{0.0, 0.0}));
+}
+
 TEST(Config, two_arms_of_one_driver_need_two_serials) {
     RtConfig config;
     config.device.driver = config.device2.driver = "phantom-usb";

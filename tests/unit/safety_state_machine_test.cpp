@@ -159,5 +159,18 @@ TEST(StateMachine, lateness_while_nothing_is_powered_is_no_fault) {
               RunState::fault);
 }
 
+TEST(StateMachine, the_reasons_that_can_latch_a_fault_are_those_that_trip_in_some_state) {
+    for (int r = 0; r <= static_cast<int>(kLastRunReason) + 1; ++r) {
+        const auto reason = static_cast<RunReason>(r);
+        bool in_some_state = false;
+        for (const RunState state : kStates) in_some_state = in_some_state || trips(state, reason);
+        EXPECT_EQ(latches_fault(reason), in_some_state) << run_reason_name(reason);
+    }
+    EXPECT_STREQ(run_reason_name(RunReason::force_not_finite), "force_not_finite");
+    EXPECT_STREQ(run_reason_name(RunReason::gui_silent), "gui_silent");
+    EXPECT_STREQ(run_reason_name(RunReason::supervisor), "supervisor");
+    EXPECT_STREQ(run_reason_name(static_cast<RunReason>(255)), "unknown");
+}
+
 }  // namespace
 }  // namespace tact

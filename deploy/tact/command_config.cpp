@@ -1,0 +1,29 @@
+// tact config check FILE: the controller's own reader, in tact-rt, which this word becomes.
+#include <memory>
+
+#include "deploy/tact/become.hpp"
+#include "deploy/tact/commands.hpp"
+
+namespace tact::launch {
+
+void add_config(CLI::App& app) {
+    auto* const config = app.add_subcommand("config", "check a configuration file of the controller");
+    config->require_subcommand(1);
+    auto* const check = config->add_subcommand("check",
+                                               "check keys, types, ranges, drivers and the core of the servo "
+                                               "thread, without a scene and without opening a "
+                                               "device; exit code 1: the file has problems");
+    const auto file = std::make_shared<std::string>();
+    const auto as_json = std::make_shared<bool>(false);
+    check->add_option("file", *file, "TOML file; deploy/tact.toml shows every key")
+        ->type_name("FILE")
+        ->required();
+    check->add_flag("--json", *as_json, "for programs: problems, and the value of every key");
+    check->callback([=] {
+        std::vector<std::string> words{"--check-config=" + *file};
+        if (*as_json) words.emplace_back("--json");
+        become("tact-rt", std::move(words));
+    });
+}
+
+}  // namespace tact::launch
