@@ -4,6 +4,7 @@
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/findings.hpp"
+#include "deploy/tact/installed_config.hpp"
 #include "deploy/tact/probe.hpp"
 #include "ipc/version/version.hpp"
 
@@ -44,7 +45,8 @@ nlohmann::json buses_json(const probe::Buses& b) {
 }
 
 int run_probe(const std::string& config, const std::string& root, bool as_json) {
-    const DeviceWish wish = config.empty() ? DeviceWish{} : read_device_wish(config);
+    const std::string asked = config.empty() ? installed_config().string() : config;
+    const DeviceWish wish = asked.empty() ? DeviceWish{} : read_device_wish(asked);
     const probe::Buses buses = probe::read_buses(root);
     std::vector<Finding> findings =
         judge_devices(buses, wish, read_person(), find_hd_library(root, wish.hd_library));
@@ -75,7 +77,7 @@ void add_probe(CLI::App& app, int& exit_code) {
     const auto root = std::make_shared<std::string>("/");
     const auto as_json = std::make_shared<bool>(false);
     command
-        ->add_option("--config", *config, "tact-rt's configuration; without it the defaults, an emulated arm")
+        ->add_option("--config", *config, "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any")
         ->type_name("FILE");
     command->add_option("--root", *root, "folder that stands for /, with its sys and dev")
         ->type_name("DIR")

@@ -1,7 +1,10 @@
 #include "deploy/tact/run_options.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
+#include "deploy/tact/installed_config.hpp"
+#include "deploy/tact/probe.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::launch {
@@ -26,7 +29,7 @@ constexpr Passed kController[] = {
     {"--seed", "N", "of the random direction and axis of the two above"},
     {"--copies", "N", "so many bodies of the first structure; the others stand about the map"},
     {"--poses", "FILE.json", "start with the bodies where the report of an earlier run has them"},
-    {"--config", "FILE", "configuration of the controller, TOML"},
+    {"--config", "FILE", "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any"},
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},
     {"--force-scale", "X", "gain of the shown force"},
@@ -64,6 +67,14 @@ constexpr PassedFlag kVisualFlags[] = {
     {"--test-picture", "begin with the stereo test picture: are eyes, scale and tool where they should be?"},
 };
 
+// Is the hand an emulated one that nobody has said anything about? A configuration that was typed says something; the
+// installed one where it names a device.
+bool hand_is_free(const RunOptions& options) {
+    if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return false;
+    const auto config = installed_config();
+    return config.empty() || read_device_wish(config).driver.starts_with("sim");
+}
+
 }  // namespace
 
 bool RunOptions::has_controller_option(const std::string& name) const {
@@ -81,17 +92,21 @@ void RunOptions::forget_scene() {
 }
 
 void let_the_hand_stroke(RunOptions& options) {
-    if (!options.has_controller_option("--hand") && !options.has_controller_option("--config"))
-        options.add_for_scene({"--hand", "stroke"});
+    if (hand_is_free(options)) options.add_for_scene({"--hand", "stroke"});
 }
 
 void let_the_hands_drill(RunOptions& options) {
-    if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return;
+    if (!hand_is_free(options)) return;
     options.add_for_scene({"--hand", "surgeon"});
     if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "sucker"});
 }
 
 void RunOptions::settle() {
+    if (const auto config = installed_config(); !config.empty() && !has_controller_option("--config")) {
+        if (!quiet) std::fprintf(stderr, "tact: configuration %s\n", config.c_str());
+        for (auto* const words : {&controller, typed ? &*typed : nullptr})
+            if (words != nullptr) words->insert(words->end(), {"--config", config.string()});
+    }
     if (!out.empty()) {
         out = std::filesystem::absolute(out);
         if (json.empty()) json = out / "run.json";

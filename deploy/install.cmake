@@ -1,0 +1,22 @@
+# cmake --install: programs, documentation and what a system needs of them, in FHS places below the prefix. The programs
+# find each other in their own folder and the configuration in the prefix's etc (deploy/tact/installed_config.hpp), so any
+# prefix does, and so does the build folder. Test equipment (tact-emu, benches) is not installed.
+include(GNUInstallDirs)
+install(TARGETS tact tact-prep tact-rt tact-record tact-replay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TACT_GUI)
+    install(TARGETS tact-gui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(FILES desktop/tact.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+    install(FILES desktop/tact.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+    install(FILES desktop/tact.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+endif()
+install(FILES tact.toml DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/tact)
+install(FILES limits.conf DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/security/limits.d RENAME tact.conf)
+install(FILES 60-tact.rules DESTINATION lib/udev/rules.d)
+install(PROGRAMS can-up DESTINATION lib/tact)
+file(READ tact-can@.service can_unit)
+string(REPLACE /usr/local/lib/tact ${CMAKE_INSTALL_PREFIX}/lib/tact can_unit "${can_unit}")
+file(CONFIGURE OUTPUT tact-can@.service CONTENT "${can_unit}" @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/tact-can@.service DESTINATION lib/systemd/system)
+install(DIRECTORY monitoring/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tact/monitoring)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/ipc/record/RECORDING.md
+    DESTINATION ${CMAKE_INSTALL_DOCDIR})
