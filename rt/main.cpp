@@ -26,6 +26,7 @@
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/text.hpp"
 #include "rt/force/drilling/drill_model.hpp"
@@ -278,6 +279,7 @@ int main(int argc, char** argv) {
     StartOptions options;
     StartOverrides overrides;
     describe(app, options, overrides);
+    if (const auto answered = manual::answer(app, "tact-rt", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

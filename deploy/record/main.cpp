@@ -16,6 +16,7 @@
 #include "deploy/record/csv.hpp"
 #include "deploy/record/flight.hpp"
 #include "deploy/record/recorder.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/record/repair.hpp"
 
 namespace {
@@ -187,6 +188,7 @@ int main(int argc, char** argv) {
         "tact-record: writes what a controller's rings hold into an HDF5 file.\n"
         "Ctrl-C ends the recording; kill -9 loses at most a second."};
     describe(app, w);
+    if (const auto answered = manual::answer(app, "tact-record", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -8,6 +8,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_numbers.hpp"
+#include "ipc/manual/manual.hpp"
 
 namespace tact {
 
@@ -96,6 +97,10 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_flag("--swap-eyes", swap_eyes, "the other eye's picture for each eye");
     app.add_option("--stage-screenshot", options.stage_screenshot,
                    "write a PNG of the stereo picture at the end; of two windows two: NAME-left, NAME-right");
+    if (const auto answered = manual::answer(app, "tact-gui", argc, argv)) {
+        exit_code = *answered;
+        return false;
+    }
     try {
         app.parse(argc, argv);
         // A calibration may make the file.

@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/parent_death.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/manual/manual.hpp"
 #include "prep/bake/bake_contour.hpp"
 #include "prep/bake/bake_docking.hpp"
 #include "prep/cli/bench_command.hpp"
@@ -209,6 +210,7 @@ int run(int argc, char** argv) {
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");
     add_export(app);
+    if (const auto answered = manual::answer(app, "tact-prep", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -19,6 +19,7 @@
 #include <spdlog/spdlog.h>
 
 #include "ipc/base/error.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/shm/link.hpp"
 #include "rt/replay/replay.hpp"
 
@@ -174,6 +175,7 @@ int main(int argc, char** argv) {
         ->needs(show);
     app.add_flag("--json", w.json, "the outcome as JSON on standard output");
     app.set_version_flag("--version", TACT_VERSION);
+    if (const auto answered = manual::answer(app, "tact-replay", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
