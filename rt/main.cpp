@@ -276,6 +276,7 @@ int main(int argc, char** argv) {
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
+    app.footer("Exit codes: 0 as asked; 1 error or wrong usage.");
     StartOptions options;
     StartOverrides overrides;
     describe(app, options, overrides);

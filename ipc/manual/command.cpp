@@ -110,7 +110,7 @@ Argument read_argument(CLI::Option& option) {
     for (const CLI::Option* o : option.get_excludes()) a.excludes.push_back(first_name(*o));
     std::sort(a.needs.begin(), a.needs.end());  // they are sorted by address
     std::sort(a.excludes.begin(), a.excludes.end());
-    if (option.get_type_size() == 0) return a;
+    if (option.get_items_expected_max() == 0) return a;  // a flag
     // The library writes the type and every check as TYPE:CHECK:CHECK.
     const std::vector<std::string> checks = checks_of(option);
     a.type = option.get_type_name();
@@ -131,9 +131,13 @@ Argument read_argument(CLI::Option& option) {
 }
 
 void read_arguments(CLI::App& app, Command& command, Group& group) {
+    const bool one = app.get_require_option_min() == 1 && app.get_require_option_max() == 1;
     for (CLI::Option* const option :
          app.get_options([](CLI::Option* o) { return !o->get_group().empty(); })) {
+        if (app.get_name().empty() && app.get_parent() != nullptr && option == app.get_help_ptr())
+            continue;  // a group inherits --help
         Argument a = read_argument(*option);
+        if (one) group.one_of.push_back(a.names.back());
         (a.positional ? command.positionals : group.arguments).push_back(std::move(a));
     }
 }
@@ -151,7 +155,7 @@ Command read_command(CLI::App& app, std::vector<std::string> words) {
     read_arguments(app, command, command.groups.front());
     for (CLI::App* const sub : app.get_subcommands([](CLI::App* s) { return !s->get_group().empty(); })) {
         if (sub->get_name().empty()) {
-            Group group{sub->get_group(), sub->get_description(), {}, sub->get_require_option_min() > 0};
+            Group group{sub->get_group(), sub->get_description(), {}, {}};
             read_arguments(*sub, command, group);
             command.groups.push_back(std::move(group));
         } else {

@@ -20,7 +20,7 @@ struct Argument {
 struct Group {
     std::string title, about;
     std::vector<Argument> arguments;
-    bool one_required = false;
+    std::vector<std::string> one_of;  // exactly one of these is required
 };
 
 struct Command {

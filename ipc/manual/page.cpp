@@ -30,7 +30,8 @@ bool upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 std::string sentence(std::string text) {
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     if (text.empty()) return text;
-    if (text.size() > 1 && lower(text[0]) && (lower(text[1]) || text[1] == ' '))
+    const bool word = text[std::min(text.find_first_of(" :,"), text.size() - 1)] != ':';
+    if (word && text.size() > 1 && lower(text[0]) && (lower(text[1]) || text[1] == ' '))
         text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     if (text.back() != '.' && text.back() != '?') text += '.';
     return text;
@@ -91,23 +92,24 @@ std::string remarks(const Argument& a) {
 std::string entries(const std::vector<Argument>& arguments) {
     std::string out;
     for (const Argument& a : arguments) {
-        out += ".TP\n" + heading(a) + "\n" + roff(sentence(a.help)) + "\n";
-        if (const std::string more = remarks(a); !more.empty()) out += more + "\n";
+        out += ".TP\n" + heading(a) + "\n" + roff(sentence(a.help));
+        const std::string more = remarks(a);
+        out += (more.empty() ? "" : " ") + more + "\n";
     }
     return out;
 }
 
 std::string synopsis(const Command& c) {
-    std::string out = ".B " + roff(typed(c)) + "\n";
+    std::string out = bold(typed(c));
     for (const Group& g : c.groups)
         for (const Argument& a : g.arguments)
-            if (a.required) out += bold(a.names.back()) + ' ' + italic(a.value) + "\n";
-    out += "[\\fIOPTION\\fR]...\n";
-    if (!c.commands.empty()) out += "\\fICOMMAND\\fR ...\n";
+            if (a.required) out += ' ' + bold(a.names.back()) + ' ' + italic(a.value);
+    out += " [\\fIOPTION\\fR]...";
+    if (!c.commands.empty()) out += " \\fICOMMAND\\fR ...";
     for (const Argument& a : c.positionals)
-        out += (a.required ? "" : "[") + italic(a.names.front()) + (a.required ? "" : "]") +
-               (a.repeated ? "..." : "") + "\n";
-    return out;
+        out += ' ' + (a.required ? italic(a.names.front()) : '[' + italic(a.names.front()) + ']') +
+               (a.repeated ? "..." : "");
+    return out + '\n';
 }
 
 std::string options(const Command& c) {
@@ -115,7 +117,7 @@ std::string options(const Command& c) {
     for (const Group& g : c.groups) {
         if (g.arguments.empty()) continue;
         if (!g.title.empty()) out += ".SS \"" + roff(g.title) + "\"\n" + paragraphs(g.about);
-        if (g.one_required) out += "One of these, or an argument in their place, is required.\n";
+        if (!g.one_of.empty()) out += "Exactly one of " + listed(g.one_of) + " is required.\n";
         out += entries(g.arguments);
     }
     return out;
@@ -152,15 +154,17 @@ std::string references(const std::string& own, const Command& c) {
 
 std::string commands(const Command& c) {
     if (c.commands.empty()) return {};
+    // Its own page would be another program's.
+    const auto described_here = [](const Command& sub) {
+        return is_program(page_name(sub)) && !sub.passes_on;
+    };
     std::string out = ".SH COMMANDS\n";
     for (const Command& sub : c.commands)
-        out +=
-            ".TP\n" + bold(sub.words.back()) + "\n" + roff(sentence(sub.about)) +
-            (is_program(page_name(sub)) && !sub.passes_on ? "\n"
-                                                          : "\nSee\n.BR " + roff(page_name(sub)) + " (1).\n");
-    // Described here, for its own page would be another program's.
+        out += ".TP\n" + bold(sub.words.back()) + "\n" + roff(sentence(sub.about)) + " See " +
+               (described_here(sub) ? capitals(sub.words.back()) + " below.\n"
+                                    : bold(page_name(sub)) + "(1).\n");
     for (const Command& sub : c.commands)
-        if (is_program(page_name(sub)) && !sub.passes_on)
+        if (described_here(sub))
             out += ".SH \"" + roff(capitals(sub.words.back())) + "\"\n" + synopsis(sub) + ".PP\n" +
                    paragraphs(sub.about) + entries(sub.positionals) + options(sub);
     return out;
