@@ -26,6 +26,7 @@
 #include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/shm/servo_threads.hpp"
 #include "ipc/topics/text.hpp"
@@ -279,9 +280,11 @@ int main(int argc, char** argv) {
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
+    app.footer("Exit codes: 0 as asked; 1 error or wrong usage.");
     StartOptions options;
     StartOverrides overrides;
     describe(app, options, overrides);
+    if (const auto answered = manual::answer(app, "tact-rt", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -16,6 +16,7 @@
 #include "deploy/record/csv.hpp"
 #include "deploy/record/flight.hpp"
 #include "deploy/record/recorder.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/record/repair.hpp"
 #include "ipc/version/version.hpp"
 
@@ -145,17 +146,22 @@ int do_as_wished(Wishes& w) {
 }
 
 void describe(CLI::App& app, Wishes& w) {
-    auto* const what = app.add_option_group("What", "one of these");
-    what->add_option("file", w.file, "to write every cycle to, e.g. run.h5; must not be there");
+    auto* const what = app.add_option_group("What", "what to do");
+    what->add_option("file", w.file, "new file for every cycle, e.g. run.h5")->type_name("FILE.h5");
     what->add_option("--flight", w.folder,
-                     "DIR: keeps the last seconds in memory, and writes them there at an overrun, a fault, "
+                     "keep the last seconds in memory, and write them to this folder at an overrun, a fault, "
                      "the window's key M "
-                     "or SIGUSR1");
+                     "or SIGUSR1")
+        ->type_name("DIR");
     what->add_option("--repair", w.repair,
-                     "FILE: opens a recording whose recorder was killed, and says what was lost");
-    auto* const csv = what->add_option("--csv", w.table, "FILE: a recording as a table of text, to --output");
+                     "open a recording whose recorder was killed, and print what was lost")
+        ->type_name("FILE.h5");
+    auto* const csv =
+        what->add_option("--csv", w.table, "write this recording as a table of text to --output")
+            ->type_name("FILE.h5");
     what->require_option(1);
     app.add_option("--session", w.settings.session, "name under which the controller is found")
+        ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--seconds", w.settings.seconds, "end after so long; 0: when the controller ends")
         ->type_name("S")
@@ -163,19 +169,21 @@ void describe(CLI::App& app, Wishes& w) {
     app.add_option("--wait", w.settings.wait_s, "seconds to wait for a controller; 0: as long as it takes")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--length", w.length_s, "of a flight, in seconds")
+    app.add_option("--length", w.length_s, "length of a flight")
+        ->type_name("S")
         ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
-    app.add_option("--keep", w.flight.files_max, "so many flights; older ones are removed")
+    app.add_option("--keep", w.flight.files_max, "number of flights to keep; older ones are removed")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    auto* const output = app.add_option("-o,--output", w.output, "the table to write")->needs(csv);
+    auto* const output =
+        app.add_option("-o,--output", w.output, "the table to write")->type_name("FILE.csv")->needs(csv);
     csv->needs(output);
-    app.add_option("--every", w.csv.every, "a row for one cycle of so many")
+    app.add_option("--every", w.csv.every, "write one row for so many cycles")
         ->check(CLI::Range(1, 1000000))
         ->needs(csv);
-    app.add_flag("--json", w.json, "the outcome as JSON on standard output");
-    app.add_flag("--quiet", w.quiet, "only the outcome and errors");
+    app.add_flag("--json", w.json, "print the outcome as JSON");
+    app.add_flag("--quiet", w.quiet, "print only the outcome and errors");
     app.set_version_flag("--version", program_version("tact-record"));
 }
 
@@ -187,7 +195,11 @@ int main(int argc, char** argv) {
     CLI::App app{
         "tact-record: writes what a controller's rings hold into an HDF5 file.\n"
         "Ctrl-C ends the recording; kill -9 loses at most a second."};
+    app.footer(
+        "Exit codes: 0 as asked: the recording is whole, or the file was repaired or needed no repair; "
+        "1 error, or the disk was nearly full: the recording up to then is whole; 2 wrong usage.");
     describe(app, w);
+    if (const auto answered = manual::answer(app, "tact-record", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -130,7 +130,7 @@ void add_bench(CLI::App& app, int& exit_code) {
         help += std::string(" ") + m.name + ": " + m.help + ".";
     }
     command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
-    command->add_flag("--json", *as_json, "for programs");
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
     const auto work = std::make_shared<SurfaceWork>();
     auto* const group = command->add_option_group("Surface", "your own work, printed as CSV");
     auto* const mesh =
@@ -142,10 +142,10 @@ void add_bench(CLI::App& app, int& exit_code) {
                 "text: x y z a line, a millisecond apart, in the unit of the mesh, or mm in a volume")
             ->check(CLI::ExistingFile);
     mesh->needs(path);
-    group->add_option("--unit", work->unit, "of both: m, cm, mm, um, nm or a")
+    group->add_option("--unit", work->unit, "unit of lengths in mesh and trajectory")
         ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
         ->capture_default_str();
-    group->add_option("--tool-radius-mm", work->radius_mm, "of the ball; 0: a point")
+    group->add_option("--tool-radius-mm", work->radius_mm, "radius of the ball; 0: a point")
         ->check(CLI::Range(0.0, 50.0))
         ->capture_default_str();
     const auto drilling = std::make_shared<DrillingWork>();
@@ -154,14 +154,14 @@ void add_bench(CLI::App& app, int& exit_code) {
                                           "raw, a byte a voxel, x fastest: 0 none, 255 solid bone")
                              ->check(CLI::ExistingFile)
                              ->excludes(mesh);
-    bone->add_option("--size", drilling->size, "of the volume, in voxels")
+    bone->add_option("--size", drilling->size, "size of the volume, in voxels")
         ->expected(3)
         ->check(CLI::Range(1, 2048))
         ->capture_default_str();
     bone->add_option("--voxel-mm", drilling->voxel_mm, "edge of a voxel")
         ->check(CLI::Range(0.01, 10.0))
         ->capture_default_str();
-    bone->add_option("--burr-radius-mm", drilling->radius_mm, "of the burr")
+    bone->add_option("--burr-radius-mm", drilling->radius_mm, "radius of the burr")
         ->check(CLI::Range(0.1, 50.0))
         ->capture_default_str();
     command->callback([=, &exit_code] {

@@ -30,7 +30,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         demo->add_subcommand("drill", "two hands open a temporal bone with a burr and a sucker");
     const auto drill_options = std::make_shared<RunOptions>();
     const auto voxels = std::make_shared<std::string>("256");
-    drill->add_option("--voxels", *voxels, "of the bone along each axis")->capture_default_str();
+    drill->add_option("--voxels", *voxels, "voxels of the bone along each axis")->capture_default_str();
     add_run_options(*drill, *drill_options);
     drill->callback([drill_options, voxels, &exit_code] {
         let_the_hands_drill(*drill_options);

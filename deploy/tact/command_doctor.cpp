@@ -35,7 +35,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
     command->add_option("--session", *session, "name of the session")
         ->type_name("NAME")
         ->capture_default_str();
-    command->add_flag("--json", *as_json, "for programs");
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
     command->callback([=, &exit_code] { exit_code = doctor(*session, *as_json); });
 }
 

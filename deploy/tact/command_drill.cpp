@@ -13,12 +13,12 @@ constexpr PrepOption kDrillPrep[] = {
     {"--voxel-mm", "MM", "edge of a voxel; if absent the scan's finest"},
     {"--crop", "RANGES", "first:end of columns, rows and slices: 0:256,0:256,10:90"},
     {"--series", "N", "which DICOM series, where there are several"},
-    {"--critical", "WORD", "in the names of structures to keep away from, besides nerve, ..."},
-    {"--unit", "UNIT", "of lengths in files that do not say: m, cm, mm (default) or um"},
-    {"--spacing-mm", "MM", "of pictures: between columns, rows and slices, or one for all"},
-    {"--bone-colour", "R,G,B", "of bone in coloured pictures"},
-    {"--face", "SIDE",
-     "of the patient that looks at the user: front (default), back, left, right, top, bottom"},
+    {"--critical", "WORD", "word in the names of structures to keep away from, besides nerve, ..."},
+    {"--unit", "m|cm|mm|um", "unit of lengths in files that name none; default mm"},
+    {"--spacing-mm", "MM",
+     "distances in a stack of pictures: between columns, rows and slices, or one for all"},
+    {"--bone-colour", "R,G,B", "colour of bone in coloured pictures"},
+    {"--face", "front|back|left|right|top|bottom", "side of the patient that faces the user; default front"},
 };
 
 struct DrillOptions {
@@ -51,7 +51,9 @@ void add_drill(CLI::App& app, int& exit_code) {
         ->check(CLI::ExistingPath);
     command->add_option("--labels", o->labels, "which structure each voxel is of: NRRD, NIfTI or MetaImage")
         ->check(CLI::ExistingFile);
-    command->add_option("--label-names", o->label_names, "what they are called: a list as ITK-SNAP writes it")
+    command
+        ->add_option("--label-names", o->label_names,
+                     "names of the labelled structures: a list as ITK-SNAP writes it")
         ->check(CLI::ExistingFile);
     add_baked_run_options(*command, kDrillPrep, o->baked);
     command->callback([o, &exit_code] { exit_code = drill(*o); });

@@ -35,8 +35,12 @@ void add_eval(CLI::App& app, int& exit_code) {
         ->required()
         ->type_name("IN.csv")
         ->check(CLI::ExistingFile);
-    command->add_option("--out", o->out, "one line per pose")->required()->type_name("OUT.csv");
-    command->add_option("--fidelity", o->fidelity, "1: all atoms; 0: the smallest codebook")
+    command->add_option("--out", o->out, "file to write, one line per pose")
+        ->required()
+        ->type_name("OUT.csv");
+    command
+        ->add_option("--fidelity", o->fidelity,
+                     "fidelity of the force; 1: all atoms; 0: the smallest codebook")
         ->type_name("F")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();

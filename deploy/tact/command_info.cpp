@@ -171,7 +171,7 @@ void add_info(CLI::App& app, int& exit_code) {
     const auto scene = std::make_shared<std::filesystem::path>();
     const auto as_json = std::make_shared<bool>(false);
     command->add_option("SCENE", *scene, "file written by tact-prep")->required()->check(CLI::ExistingFile);
-    command->add_flag("--json", *as_json, "for programs");
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
     command->callback([=, &exit_code] {
         const json j = info(*scene);
         if (*as_json)

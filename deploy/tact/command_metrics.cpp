@@ -68,17 +68,17 @@ void add_metrics(CLI::App& app, int& exit_code) {
         ->add_option("--listen", o->address, "address that is answered at; anybody who reaches it may read")
         ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", o->port, "0: one that is free")
+    command->add_option("--port", o->port, "port to listen on; 0: any free one")
         ->type_name("N")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
     command->add_option("--textfile", o->textfile, "write this file in place of answering, for node_exporter")
         ->type_name("FILE.prom");
-    command->add_option("--every", o->every_s, "between two files")
+    command->add_option("--every", o->every_s, "time between two files")
         ->type_name("S")
         ->check(CLI::Range(0.2, 3600.0))
         ->capture_default_str();
-    command->add_flag("--once", o->once, "print them and end; exit code 1: no controller runs");
+    command->add_flag("--once", o->once, "print the metrics once and end; exit code 1: no controller runs");
     command->callback([o, &exit_code] { exit_code = metrics(*o); });
 }
 

@@ -82,7 +82,7 @@ void add_probe(CLI::App& app, int& exit_code) {
     command->add_option("--root", *root, "folder that stands for /, with its sys and dev")
         ->type_name("DIR")
         ->group("");
-    command->add_flag("--json", *as_json, "for programs");
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
     command->callback([=, &exit_code] { exit_code = run_probe(*config, *root, *as_json); });
 }
 

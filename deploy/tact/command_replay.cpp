@@ -76,23 +76,28 @@ void add_replay(CLI::App& app, int& exit_code) {
                            "a recorded run again, by the same code in simulated time; compares every force. "
                            "Exit code 0: the same to the bit; 3: not");
     const auto o = std::make_shared<ReplayOptions>();
-    command->add_option("FILE", o->file, "recording of tact record, or of a run with --record")->required();
+    command->add_option("FILE", o->file, "recording of tact record, or of a run with --record")
+        ->required()
+        ->type_name("FILE.h5");
     command->add_option("--scene", o->scene, "where the recorded scene is now")->type_name("SCENE");
-    command->add_flag("--json", o->json, "the outcome for programs");
-    auto* const shown = command->add_flag("--show", o->show, "in a window, at the recorded pace");
+    command->add_flag("--json", o->json, "print the outcome as JSON");
+    auto* const shown =
+        command->add_flag("--show", o->show, "show the run in a window, at the recorded pace");
     const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
         command->add_option(name, value, help)->type_name("X")->check(CLI::Range(low, high))->needs(shown);
     };
     number("--from", o->from_s, 0.0, 1e7, "second of the recording at which showing begins");
-    number("--speed", o->speed, 0.01, 100.0, "times the recorded pace");
+    number("--speed", o->speed, 0.01, 100.0, "factor of the recorded pace");
     number("--seconds", o->seconds, 0.0, 1e7, "close the window after so long");
     command->add_flag("--headless", o->headless, "draw without a screen, on an X server of its own (Xvfb)")
         ->needs(shown);
-    command->add_option("--size", o->size, "of the window in pixels")->type_name("WxH")->needs(shown);
+    command->add_option("--size", o->size, "size of the window in pixels")->type_name("WxH")->needs(shown);
     command->add_option("--screenshot", o->screenshot, "picture of the window at the end")
         ->type_name("FILE.png")
         ->needs(shown);
-    command->add_option("--session", o->session, "in which window and replay find each other")
+    command
+        ->add_option("--session", o->session,
+                     "name of the session in which window and replay find each other")
         ->type_name("NAME")
         ->needs(shown);
     command->callback([o, &exit_code] {

@@ -20,10 +20,12 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
     command->add_option("--fps-max", e->rates.core.fps_max, "pictures a second, at most")
         ->check(CLI::Range(1.0, 240.0))
         ->capture_default_str();
-    command->add_option("--law", e->rates.law, "of the adapted runs")
+    command->add_option("--law", e->rates.law, "law of the governor in the adapted runs")
         ->check(CLI::IsMember({"elastic", "sensitus"}))
         ->capture_default_str();
-    command->add_option("--goal", e->rates.goal_hz, "under load, in Hz; 0: from a measurement")
+    command
+        ->add_option("--goal", e->rates.goal_hz,
+                     "force rate to hold under load, in Hz; 0: from a measurement")
         ->check(CLI::Range(0.0, 1e6));
     command->add_flag("--quick", e->rates.quick, "seconds instead of a minute; shows that it works");
     command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
@@ -34,10 +36,11 @@ void add_surface(CLI::App& reproduce, int& exit_code) {
         reproduce.add_subcommand("surface", "the surface seed's table 1, and beyond; minutes and 4 GB");
     const auto e = std::make_shared<SurfaceExperiment>();
     command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
-    command->add_option("--mesh", e->meshes, "files to touch, instead of meshes of our own")
+    command->add_option("--mesh", e->meshes, "meshes to touch, instead of synthetic ones")
         ->check(CLI::ExistingFile);
-    command->add_option("--unit", e->unit, "of those files")->capture_default_str();
-    command->add_option("--triangles-max", e->triangles_max, "of our own")->capture_default_str();
+    command->add_option("--unit", e->unit, "unit of lengths in these files")->capture_default_str();
+    command->add_option("--triangles-max", e->triangles_max, "most triangles of the synthetic meshes")
+        ->capture_default_str();
     command->add_flag("--quick", e->quick, "seconds instead of minutes; shows that it works");
     command->callback([e, &exit_code] { exit_code = reproduce_surface(*e); });
 }

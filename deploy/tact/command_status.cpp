@@ -129,7 +129,7 @@ void add_status(CLI::App& app, int& exit_code) {
     command->add_option("--session", o->session, "name of the session")
         ->type_name("NAME")
         ->capture_default_str();
-    command->add_flag("--json", o->json, "for programs; with --watch one object a line");
+    command->add_flag("--json", o->json, "print as JSON, for programs; with --watch one object a line");
     command->add_flag("--watch", o->watch, "a line a second, also across restarts, until Ctrl-C");
     command->callback([o, &exit_code] { exit_code = status(*o); });
 }

@@ -9,10 +9,10 @@ namespace tact::launch {
 namespace {
 
 constexpr PrepOption kTouchPrep[] = {
-    {"--unit", "UNIT", "of the file: m, cm, mm (default), um, nm or a (angstrom)"},
-    {"--up", "AXIS", "of the file that points up: y (default) or z"},
-    {"--size-mm", "MM", "how wide its diagonal is in the hand's space; default 150"},
-    {"--vertices-max", "N", "of the drawn surface"},
+    {"--unit", "m|cm|mm|um|nm|a", "unit of lengths in the file; a: angstrom; default mm"},
+    {"--up", "y|z", "axis of the file that points up; default y"},
+    {"--size-mm", "MM", "length of the mesh's diagonal in the hand's space; default 150"},
+    {"--vertices-max", "N", "most vertices of the drawn surface; 0: all"},
 };
 
 struct TouchOptions {

@@ -6,6 +6,7 @@
 
 #include "deploy/tact/commands.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
 
 int main(int argc, char** argv) {
@@ -32,6 +33,11 @@ int main(int argc, char** argv) {
     add_eval(app, exit_code);
     add_bench(app, exit_code);
     add_reproduce(app, exit_code);
+    if (const auto answered = tact::manual::answer(
+            app, "tact", argc, argv,
+            {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact where the variable is not set"},
+             {"$XDG_STATE_HOME/tact", "recent scenes; ~/.local/state/tact where the variable is not set"}}))
+        return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

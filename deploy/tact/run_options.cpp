@@ -20,40 +20,44 @@ struct Passed {
 // is right.
 constexpr Passed kController[] = {
     {"--rate", "HZ", "servo rate"},
-    {"--law", "NAME", "law of the governor: elastic, sensitus or fixed"},
+    {"--law", "elastic|sensitus|fixed", "law of the governor"},
     {"--goal", "HZ", "force rate that the governor holds"},
     {"--picture-goal", "FPS", "frames a second below which the surface gets coarser; 0: none"},
-    {"--level", "PATH=VALUE", "level of a path under the law fixed; may be repeated"},
+    {"--level", "PATH=VALUE", "fixed level of a path, e.g. docking.force=1; the law becomes fixed"},
     {"--start-offset-a", "A", "move the first structure this far from the place its file gives it"},
-    {"--start-rotation-deg", "DEG", "and turn it by this angle"},
-    {"--seed", "N", "of the random direction and axis of the two above"},
+    {"--start-rotation-deg", "DEG", "turn the first structure by this angle at the start"},
+    {"--seed", "N", "random seed of the start direction and axis, and of the emulated hand"},
     {"--copies", "N", "so many bodies of the first structure; the others stand about the map"},
     {"--poses", "FILE.json", "start with the bodies where the report of an earlier run has them"},
-    {"--config", "FILE", "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any"},
+    {"--config", "FILE.toml",
+     "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any"},
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},
     {"--force-scale", "X", "gain of the shown force"},
-    {"--hand", "NAME", "what the emulated hand does: passive, wander, stroke, drill or surgeon"},
-    {"--hand2", "NAME", "an emulated second hand; sucker: beside a surgeon"},
-    {"--hand-at-mm", "X,Y", "where an emulated surgeon works"},
-    {"--pedal", "NAME", "of the burr: button, line or always"},
+    {"--hand", "passive|wander|stroke|drill|surgeon|sucker", "motion of the emulated hand"},
+    {"--hand2", "passive|wander|stroke|drill|surgeon|sucker",
+     "motion of an emulated second hand; sucker: beside a surgeon"},
+    {"--hand-at-mm", "X,Y", "position in mm at which an emulated surgeon works"},
+    {"--pedal", "button|line|always",
+     "switch of the burr: button of the stylus, line of a foot pedal, or always on"},
     {"--burr-mm", "MM", "diameter of the burr"},
-    {"--burr-shape", "NAME", "sphere, cylinder or cone"},
-    {"--burr-rpm", "RPM", "its speed"},
-    {"--tool-radius-mm", "R", "of the ball that touches a surface; 0: a point"},
-    {"--stiffness", "N/M", "of a surface"},
-    {"--friction", "MU", "of a surface"},
-    {"--mode", "NAME", "how a surface is looked up: off-brute, off-tree or chr"},
+    {"--burr-shape", "sphere|cylinder|cone", "shape of the burr"},
+    {"--burr-rpm", "RPM", "speed of the burr"},
+    {"--tool-radius-mm", "MM", "radius of the ball that touches a surface; 0: a point"},
+    {"--stiffness", "N/M", "stiffness of a surface"},
+    {"--friction", "MU", "friction coefficient of a surface"},
+    {"--mode", "off-brute|off-tree|chr",
+     "how the surface is searched for contacts; chr: fine around the tool"},
 };
 
 constexpr Passed kVisual[] = {
-    {"--fps-max", "FPS", "draw no more often"},
+    {"--fps-max", "FPS", "highest rate of drawing"},
     {"--ui-scale", "X", "letters and panels so many times as large as the display asks for"},
-    {"--particles", "N", "keep so many over bone, to measure what they cost"},
-    {"--stereo", "MODE", "anaglyph, side-by-side, top-bottom, two-windows or quad-buffer"},
-    {"--desk", "FILE",
+    {"--particles", "N", "keep this many particles over bone, to measure what they cost"},
+    {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "stereo mode of the window"},
+    {"--desk", "FILE.toml",
      "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
-    {"--stage", "FILE", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
+    {"--stage", "FILE.toml", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
     {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
 };
 
@@ -63,7 +67,7 @@ struct PassedFlag {
 };
 constexpr PassedFlag kVisualFlags[] = {
     {"--traces", "begin with the traces of every servo cycle in place of the plots"},
-    {"--swap-eyes", "the other eye's picture for each eye"},
+    {"--swap-eyes", "swap the pictures of the two eyes"},
     {"--test-picture", "begin with the stereo test picture: are eyes, scale and tool where they should be?"},
 };
 
@@ -140,10 +144,11 @@ void add_run_options(CLI::App& app, RunOptions& options) {
         ->check(CLI::Range(0.0, 1e7));
     app.add_flag("--headless", options.headless, "draw without a screen, on an X server of its own (Xvfb)");
     app.add_flag_callback(
-        "--no-gui", [&options] { options.gui = false; }, "the controller alone");
+        "--no-gui", [&options] { options.gui = false; }, "run the controller alone, without a window");
     app.add_option("--screenshot", options.screenshot, "picture of the window at the end")
         ->type_name("FILE.png");
-    app.add_option("--json", options.json, "what was measured in the run")->type_name("FILE");
+    app.add_option("--json", options.json, "write the measurements of the run as JSON")
+        ->type_name("FILE.json");
     app.add_option("--out", options.out, "folder for run.json, run.csv (ten rows a second) and run.png")
         ->type_name("DIR");
     app.add_option("--save", options.save,
@@ -158,7 +163,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     app.add_option("--session", options.session, "name under which the processes find each other")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_flag("--quiet", options.quiet, "no table of rates");
+    app.add_flag("--quiet", options.quiet, "print no table of rates");
 
     auto* const controller = app.add_option_group("Controller", "options that go on to tact-rt");
     for (const Passed& p : kController) {
@@ -182,7 +187,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
         "as many force updates as the processor gives, in place of --rate");
 
     auto* const visual = app.add_option_group("Window", "options that go on to tact-gui");
-    visual->add_option("--size", options.size, "of the window in pixels")
+    visual->add_option("--size", options.size, "size of the window in pixels")
         ->type_name("WxH")
         ->each([&options](const std::string&) { options.size_given = true; })
         ->capture_default_str();

@@ -14,21 +14,24 @@ void ToolOptions::add_to(BakeRequest& request) const {
 
 std::shared_ptr<ToolOptions> add_tool_options(CLI::App& app) {
     const auto o = std::make_shared<ToolOptions>();
-    auto* const group = app.add_option_group("Tool", "what touches, instead of a ball");
+    auto* const group = app.add_option_group("Tool", "tool that touches the surface, instead of a ball");
     auto* const tool =
         group
             ->add_option("--tool", o->tool,
-                         "a mesh, in six degrees of freedom and with torque; or scaler or block, "
+                         "mesh that is the tool, in six degrees of freedom with torque; or scaler or block, "
                          "which are made here")
             ->type_name("FILE|NAME");
     for (const auto& [name, type, help] :
-         {std::tuple("--tool-unit", "UNIT", "of the tool's file, as --unit; default mm"),
-          std::tuple("--tool-up", "AXIS", "of the tool's file that points up: y (default) or z"),
+         {std::tuple("--tool-unit", "m|cm|mm|um|nm|a", "unit of lengths in the tool's file; default mm"),
+          std::tuple("--tool-up", "y|z", "axis of the tool's file that points up; default y"),
+          std::tuple("--tool-size-mm", "MM",
+                     "length of the tool's diagonal in the hand's space; default: as large against the mesh "
+                     "as it is"),
+          std::tuple("--tool-points", "N",
+                     "number of contact points, evenly over the tool's surface; default 1000"),
           std::tuple(
-              "--tool-size-mm", "MM",
-              "how wide its diagonal is in the hand's space; default: as large against the mesh as it is"),
-          std::tuple("--tool-points", "N", "at which it is felt, evenly over its surface; default 1000"),
-          std::tuple("--tool-grip", "PLACE", "where it is held: middle (default) or origin of its file")}) {
+              "--tool-grip", "middle|origin",
+              "point at which the tool is held: middle of its surface (default) or origin of its file")}) {
         group
             ->add_option_function<std::string>(
                 name,

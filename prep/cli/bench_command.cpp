@@ -55,7 +55,7 @@ std::function<void()> add_bench(CLI::App& app, CLI::App*& command) {
                                  "speed of simplification, in millions of triangles per second, and its "
                                  "error on two rings, RMS in % of their diagonal");
     const auto as_json = std::make_shared<bool>(false);
-    command->add_flag("--json", *as_json, "for programs");
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
     return [as_json] {
         const nlohmann::ordered_json numbers = bench();
         if (*as_json) {

@@ -152,11 +152,11 @@ void drill(const DrillSettings& o, bool made) {
 void add_drill(CLI::App& app, CLI::App& demo) {
     const auto o = std::make_shared<DrillSettings>();
     const auto both = [&](CLI::App* sub) {
-        sub->add_option("-o,--output", o->scene, "the scene to write")->required();
-        sub->add_option("--voxels", o->made.voxels, "of the synthetic bone along each axis")
+        sub->add_option("-o,--output", o->scene, "the scene to write")->required()->type_name("SCENE");
+        sub->add_option("--voxels", o->made.voxels, "voxels of the synthetic bone along each axis")
             ->check(CLI::Range(16U, 1024U))
             ->capture_default_str();
-        sub->add_option("--seed", o->made.seed, "of the synthetic bone's air cells and roughness")
+        sub->add_option("--seed", o->made.seed, "random seed of the synthetic bone's air cells and roughness")
             ->capture_default_str();
         sub->add_option("--voxel-mm", o->made_voxel_mm,
                         "edge of a voxel; if absent the scan's finest, and the synthetic bone is 50 mm wide")
@@ -170,7 +170,7 @@ void add_drill(CLI::App& app, CLI::App& demo) {
     from_scan->add_option("--labels", o->labels,
                           "which structure each voxel is of: NRRD, NIfTI or MetaImage");
     from_scan->add_option("--label-names", o->label_names,
-                          "what they are called: a list as ITK-SNAP writes it");
+                          "names of the labelled structures: a list as ITK-SNAP writes it");
     from_scan->add_option(
         "--critical", o->import.critical,
         "words in the names of structures to keep away from, besides nerve, sinus, dura, artery, ...");
@@ -183,22 +183,21 @@ void add_drill(CLI::App& app, CLI::App& demo) {
         "first:end of columns, rows and slices, counted from 0, slices by position: 0:256,0:256,10:90");
     from_scan->add_option("--series", o->import.series,
                           "which DICOM series, where there are several: 1, 2, ...");
-    from_scan->add_option("--unit", o->unit, "of lengths in files that do not say: m, cm, mm or um")
+    from_scan->add_option("--unit", o->unit, "unit of lengths in files that name none")
         ->check(CLI::IsMember(drill_names(kDrillUnits)))
         ->capture_default_str();
     from_scan
         ->add_option("--spacing-mm", o->spacing_mm,
-                     "of PNG pictures: between columns, rows and slices, or one for all")
+                     "distances in a stack of PNG pictures: between columns, rows and slices, or one for all")
         ->delimiter(',')
         ->check(CLI::Range(0.001, 100.0));
     from_scan
-        ->add_option("--bone-colour", o->bone_colour, "of PNG pictures in colour: red,green,blue of bone")
+        ->add_option("--bone-colour", o->bone_colour,
+                     "colour of bone in coloured PNG pictures: red,green,blue")
         ->delimiter(',')
         ->expected(3)
         ->check(CLI::Range(0U, 255U));
-    from_scan
-        ->add_option("--face", o->face,
-                     "the patient's side that looks at the user: front, back, left, right, top or bottom")
+    from_scan->add_option("--face", o->face, "side of the patient that faces the user")
         ->check(CLI::IsMember(drill_names(kDrillFaces)))
         ->capture_default_str();
     both(from_scan);

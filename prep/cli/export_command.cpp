@@ -34,9 +34,11 @@ void add_export(CLI::App& app) {
     const auto request = std::make_shared<ExportRequest>();
     command->add_option("scene", request->scene, "a baked scene")->required();
     command->add_option("--poses", request->poses, "JSON with the places of bodies, as run.json has them")
+        ->type_name("FILE.json")
         ->required();
     command
         ->add_option("-o,--output", request->options.folder, "folder to write to; made where it is not there")
+        ->type_name("DIR")
         ->required();
     command->add_flag("--combined", request->options.combined,
                       "also all bodies in one file, each chain with an id of its own");

@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/parent_death.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/bake/bake_contour.hpp"
 #include "prep/bake/bake_docking.hpp"
@@ -164,13 +165,13 @@ int run(int argc, char** argv) {
     BakeOptions o;
     CLI::App app(
         "Bakes maps and structures into a scene that tact-rt and tact-gui map at once, and simplifies "
-        "meshes.\n"
-        "Exit code 0: done; 1: an error, said on stderr; 130: cancelled by Ctrl-C, nothing written.",
+        "meshes.",
         "tact-prep");
     app.set_version_flag("--version", program_version("tact-prep"));
+    app.footer("Exit codes: 0 done; 1 error or wrong usage; 130 cancelled by Ctrl-C, nothing written.");
     app.require_subcommand(1);
     const auto output = [&](CLI::App* sub) {
-        sub->add_option("-o,--output", o.scene, "the scene to write")->required();
+        sub->add_option("-o,--output", o.scene, "the scene to write")->required()->type_name("SCENE");
         sub->add_option("--contour", o.contour,
                         "level of the surface, in the map's unit; chosen from the histogram if absent");
         sub->add_option("--resolution-a", o.resolution_a,
@@ -200,8 +201,8 @@ int run(int argc, char** argv) {
     const auto bench = add_bench(app, bench_parsed);
     CLI::App* const level = app.add_subcommand("contour", "the surface of a scene's map at another level");
     level->add_option("scene", o.source, "a baked scene")->required();
-    level->add_option("--level", o.level, "in the map's unit")->required();
-    level->add_option("-o,--output", o.scene, "the file to write")->required();
+    level->add_option("--level", o.level, "level of the surface, in the map's unit")->required();
+    level->add_option("-o,--output", o.scene, "the scene to write")->required()->type_name("SCENE");
     level->add_option("--vertices-max", o.vertices_max, "most vertices of the surface; 0: all")
         ->capture_default_str();
     level
@@ -211,6 +212,7 @@ int run(int argc, char** argv) {
     show->add_option("scene", o.scene, "a baked scene")->required();
     show->add_flag("--json", o.json, "as JSON");
     add_export(app);
+    if (const auto answered = manual::answer(app, "tact-prep", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -79,8 +79,8 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     const auto o = std::make_shared<SimplifyOptions>();
     command = app.add_subcommand("simplify", "a triangle mesh with fewer vertices, by pair contraction");
     command->add_option("mesh", o->in, "PLY, OBJ, STL or OFF, also .gz")->required();
-    command->add_option("-o,--output", o->out, "the PLY file to write")->required();
-    command->add_option("--vertices", o->settings.vertices_min, "how many to leave, at the most")
+    command->add_option("-o,--output", o->out, "the PLY file to write")->required()->type_name("FILE.ply");
+    command->add_option("--vertices", o->settings.vertices_min, "most vertices to leave")
         ->required()
         ->check(CLI::Range(1U, 1U << 28U));
     command

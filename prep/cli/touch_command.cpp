@@ -161,8 +161,8 @@ void touch(const TouchSettings& o, bool made) {
 void add_touch(CLI::App& app, CLI::App& demo) {
     const auto o = std::make_shared<TouchSettings>();
     const auto both = [&](CLI::App* sub) {
-        sub->add_option("-o,--output", o->scene, "the scene to write")->required();
-        sub->add_option("--size-mm", o->size_mm, "how wide its diagonal is in the hand's space")
+        sub->add_option("-o,--output", o->scene, "the scene to write")->required()->type_name("SCENE");
+        sub->add_option("--size-mm", o->size_mm, "length of the mesh's diagonal in the hand's space")
             ->check(CLI::Range(1.0, 10000.0))
             ->capture_default_str();
         sub->add_option("--vertices-max", o->vertices_max, "most vertices of the picture; 0: all")
@@ -173,18 +173,19 @@ void add_touch(CLI::App& app, CLI::App& demo) {
                       "also tells how wide the parts below nodes are without localization")
             ->excludes(no_forest);
         sub->add_option("--tool", o->tool,
-                        "what touches, instead of a ball: a mesh as above, or scaler or block, made here");
-        sub->add_option("--tool-unit", o->tool_unit, "of the tool's file, as --unit")
+                        "tool that touches, instead of a ball: a mesh, or scaler or block, made here");
+        sub->add_option("--tool-unit", o->tool_unit, "unit of lengths in the tool's file")
             ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
             ->capture_default_str();
         sub->add_option("--tool-up", o->tool_up, "axis of the tool's file that points up: y or z")
             ->check(CLI::IsMember({"y", "z"}))
             ->capture_default_str();
-        sub->add_option("--tool-size-mm", o->tool_size_mm,
-                        "how wide its diagonal is in the hand's space; 0: as large against the mesh as it is")
+        sub->add_option(
+               "--tool-size-mm", o->tool_size_mm,
+               "length of the tool's diagonal in the hand's space; 0: as large against the mesh as it is")
             ->check(CLI::Range(0.0, 1000.0))
             ->capture_default_str();
-        sub->add_option("--tool-points", o->tool_points, "at which it is felt")
+        sub->add_option("--tool-points", o->tool_points, "number of contact points of the tool")
             ->check(CLI::Range(1U, TouchTool::kPointsMax))
             ->capture_default_str();
         sub->add_option("--tool-grip", o->tool_grip,
@@ -196,7 +197,7 @@ void add_touch(CLI::App& app, CLI::App& demo) {
     };
     CLI::App* const from_file = app.add_subcommand("touch", "a surface to touch, from a triangle mesh");
     from_file->add_option("mesh", o->mesh, "PLY, OBJ, STL or OFF, also .gz")->required();
-    from_file->add_option("--unit", o->unit, "of the file: m, cm, mm, um, nm or a (angstrom)")
+    from_file->add_option("--unit", o->unit, "unit of lengths in the file; a: angstrom")
         ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
         ->capture_default_str();
     from_file->add_option("--up", o->up, "axis of the file that points up: y or z")

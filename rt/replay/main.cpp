@@ -19,6 +19,7 @@
 #include <spdlog/spdlog.h>
 
 #include "ipc/base/error.hpp"
+#include "ipc/manual/manual.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/version/version.hpp"
 #include "rt/replay/replay.hpp"
@@ -163,18 +164,26 @@ int main(int argc, char** argv) {
     std::string file, scene;
     CLI::App app{
         "tact-replay: does a recorded run again with the controller's own code, and compares every force"};
-    app.add_option("file", file, "recording of tact record")->required();
-    app.add_option("--scene", scene, "where the recorded scene is now");
-    auto* show = app.add_flag("--show", w.show, "at the recorded pace, for a window in the session");
-    app.add_option("--session", w.session, "of the window")->capture_default_str()->needs(show);
+    app.add_option("file", file, "recording of tact record")->required()->type_name("FILE.h5");
+    app.add_option("--scene", scene, "where the recorded scene is now")->type_name("SCENE");
+    auto* show =
+        app.add_flag("--show", w.show, "show the run at the recorded pace, in the window of the session");
+    app.add_option("--session", w.session, "name of the session of the window")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->needs(show);
     app.add_option("--from", w.from_s, "seconds into the recording at which showing begins")
         ->check(CLI::Range(0.0, 1e7))
         ->needs(show);
-    app.add_option("--speed", w.speed, "of showing, times the recorded one")
+    app.add_option("--speed", w.speed, "factor of the recorded pace")
         ->check(CLI::Range(0.01, 100.0))
         ->needs(show);
-    app.add_flag("--json", w.json, "the outcome as JSON on standard output");
+    app.add_flag("--json", w.json, "print the outcome as JSON");
+    app.footer(
+        "Exit codes: 0 the same to the bit; 1 error; 2 wrong usage; 3 not the same, or the recording lacks "
+        "something that an exact replay needs.");
     app.set_version_flag("--version", program_version("tact-replay"));
+    if (const auto answered = manual::answer(app, "tact-replay", argc, argv)) return *answered;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -18,6 +18,7 @@ import tempfile
 BELOW = {
     "ipc/base": [],
     "ipc/version": [],
+    "ipc/manual": ["ipc/base"],
     "ipc/shm": ["ipc/base"],
     "ipc/topics": ["ipc/base", "ipc/shm"],
     "ipc/assets": ["ipc/base"],
@@ -32,7 +33,7 @@ BELOW = {
     "rt/safety": ["ipc/base"],
     "rt": ["ipc", "hal"],
     "gui": ["ipc"],
-    "prep": ["ipc/base", "ipc/version", "ipc/assets"],
+    "prep": ["ipc/base", "ipc/version", "ipc/assets", "ipc/manual"],
     "deploy": ["ipc", "rt/force", "hal/probe"],
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
@@ -47,7 +48,8 @@ WRAPPED = [
     (r"ft2build\.h|freetype/", ["deploy/tact/plot_canvas"]),
     (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
-    (r"toml\+\+|spdlog/|CLI/", ["rt/main", "rt/start_model", "rt/start_options", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
+    (r"CLI/", ["ipc/manual", "rt/main", "rt/start_options", "rt/replay", "gui", "prep", "deploy", "hal/emu/main", "tests"]),
+    (r"toml\+\+|spdlog/", ["rt/main", "rt/start_model", "rt/start_options", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"httplib\.h", ["deploy/tact/metrics_server", "tests"]),
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/check_config", "rt/start_bodies", "rt/replay", "ipc/topics/frames_json", "tests"]),
 ]

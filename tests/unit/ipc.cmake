@@ -2,6 +2,7 @@
 tact_test(unit/base_histogram_test.cpp USES base)
 tact_test(unit/base_error_test.cpp USES base)
 tact_test(unit/base_whole_numbers_test.cpp USES base)
+tact_test(unit/ipc_manual_test.cpp USES manual)
 tact_test(unit/ipc_latest_ring_test.cpp USES base shm SYSTEM rapidcheck LABELS tsan)
 tact_test(unit/ipc_region_test.cpp USES base shm topics)
 tact_test(unit/ipc_servo_threads_test.cpp USES shm)

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# generate.sh BIN DIR: man pages of the programs in BIN into DIR/man1, and their completion for bash into
+# DIR/completions/tact. bash-completion looks for a file named like the program: the other names are links.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+bin=$1 out=$2
+programs=(tact tact-gui tact-prep tact-record tact-replay tact-rt)
+rm -rf "$out/man1" "$out/completions"
+mkdir -p "$out/man1" "$out/completions"
+cp "$here/completion.bash" "$out/completions/tact"
+for program in "${programs[@]}"; do
+    "$bin/$program" --manual "$out/man1"
+    "$bin/$program" --completion >>"$out/completions/tact"
+    [ "$program" = tact ] || ln -s tact "$out/completions/$program"
+done

@@ -1,0 +1,49 @@
+// What --help prints about a program or one of its commands, as plain data.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+namespace tact::manual {
+
+struct Argument {
+    std::vector<std::string> names;  // of an option, with dashes; of a positional one word in capitals
+    std::string value;               // placeholder of the value; empty: a flag
+    std::string type;                // as the parser knows it, without its checks
+    std::string help, low, high, default_value;
+    std::vector<std::string> choices, needs, excludes;
+    bool required = false, repeated = false, positional = false;
+    bool number = false, folder = false;
+};
+
+struct Group {
+    std::string title, about;
+    std::vector<Argument> arguments;
+    std::vector<std::string> one_of;  // exactly one of these is required
+};
+
+struct Command {
+    std::vector<std::string> words;  // "tact", "demo", "dock"
+    std::string about, footer, version;
+    std::vector<Argument> positionals;  // those of groups too
+    std::vector<Group> groups;          // of options; the first has no title
+    std::vector<Command> commands;
+    bool passes_on = false;  // another program takes the rest of the command line
+};
+
+// Options and commands of the empty group are left out, as --help does.
+Command read_command(CLI::App& app, std::vector<std::string> words);
+
+std::string capitals(std::string text);
+// "tact demo dock"
+std::string typed(const Command& command);
+// "tact-demo-dock"
+std::string page_name(const Command& command);
+// Does the page of a command bear the name of another program's page?
+bool is_program(const std::string& page);
+
+// Every program of Tact.
+const std::vector<std::string>& programs();
+
+}  // namespace tact::manual
