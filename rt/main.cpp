@@ -32,6 +32,7 @@
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
+#include "rt/loop/journal_format.hpp"
 #include "rt/loop/log_sink.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
@@ -272,7 +273,9 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
 
 int main(int argc, char** argv) {
     spdlog::set_default_logger(std::make_shared<spdlog::logger>("tact-rt", make_log_sink(STDERR_FILENO)));
+    const bool journal = is_journal_stream(STDERR_FILENO);
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
+    if (journal) spdlog::set_formatter(make_journal_formatter());
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
     StartOptions options;
@@ -286,7 +289,8 @@ int main(int argc, char** argv) {
     try {
         return run(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), options, overrides);
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "tact-rt: %s\n", e.what());
+        journal ? spdlog::error("{}", e.what())
+                : static_cast<void>(std::fprintf(stderr, "tact-rt: %s\n", e.what()));
         return 1;
     }
 }

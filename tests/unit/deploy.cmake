@@ -45,3 +45,6 @@ if(TACT_SYSTEM_PYTHON3)
 endif()
 add_test(NAME replay_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/replay_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(replay_test PROPERTIES TIMEOUT 900)
+add_test(NAME deploy_units_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_units_test.py ${CMAKE_SOURCE_DIR}
+    $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)
+set_tests_properties(deploy_units_test PROPERTIES TIMEOUT 600)
