@@ -2,6 +2,7 @@
 tact_test(unit/deploy_child_test.cpp USES launch base)
 tact_test(unit/deploy_servo_core_test.cpp USES launch base)
 tact_test(unit/deploy_doctor_test.cpp USES launch)
+tact_test(unit/deploy_station_test.cpp USES base launch_station)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 tact_test(unit/deploy_metrics_test.cpp USES base shm topics launch SYSTEM PkgConfig::HTTPLIB)
 tact_test(unit/deploy_probe_test.cpp USES base launch probe)

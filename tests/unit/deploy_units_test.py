@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 import unittest
+import urllib.request
 
 ROOT, BIN, WRITER = sys.argv[1:4]
 UNITS = os.path.join(ROOT, "deploy/units")
@@ -32,6 +33,18 @@ def unit(name):
 
 def value(name, key):
     return [v for k, v in unit(name) if k == key][-1]
+
+
+def system_calls(*groups):
+    """All of these groups of systemd's."""
+    calls, left = set(), list(groups)
+    while left:
+        done = subprocess.run([ANALYZE, "syscall-filter", left.pop()], capture_output=True, text=True, check=True)
+        for line in done.stdout.splitlines()[1:]:
+            name = line.strip()
+            left += [name] if name.startswith("@") else []
+            calls |= set() if name.startswith(("@", "#")) else {name}
+    return calls
 
 
 class Files(unittest.TestCase):
@@ -188,14 +201,7 @@ class Service(unittest.TestCase):
 
     @unittest.skipUnless(ANALYZE and shutil.which("strace"), "no systemd-analyze or strace here")
     def test_it_makes_no_system_call_and_no_mapping_that_the_unit_forbids(self):
-        allowed, left = set(), ["@system-service"]
-        while left:
-            done = subprocess.run([ANALYZE, "syscall-filter", left.pop()], capture_output=True, text=True, check=True)
-            for line in done.stdout.splitlines()[1:]:
-                name = line.strip()
-                left += [name] if name.startswith("@") else []
-                allowed |= set() if name.startswith(("@", "#")) else {name}
-        trace = f"{self.dir}/trace"
+        allowed, trace = system_calls("@system-service"), f"{self.dir}/trace"
         self.start(before=("strace", "-f", "-qq", "-o", trace))
         self.until("READY=1")
         self.messages(1.0)
@@ -210,6 +216,29 @@ class Service(unittest.TestCase):
         self.assertFalse([c for c in calls if "PROT_WRITE|PROT_EXEC" in c[1]])
         families = {m[1] for name, rest in calls if name == "socket" and (m := re.match(r"(AF_\w+)", rest))}
         self.assertLessEqual(families, set(value("tact-rt@.service", "RestrictAddressFamilies").split()))
+
+    @unittest.skipUnless(ANALYZE and shutil.which("strace"), "no systemd-analyze or strace here")
+    def test_the_metrics_make_no_system_call_that_their_unit_forbids(self):
+        allowed, trace = system_calls("@system-service") - system_calls("@privileged", "@resources"), f"{self.dir}/trace"
+        filters = [v for k, v in unit("tact-metrics.service") if k == "SystemCallFilter"]
+        self.assertEqual(filters, ["@system-service", "~@privileged @resources"])
+        self.start()
+        self.until("READY=1")
+        metrics = subprocess.Popen(["strace", "-f", "-qq", "-o", trace, f"{BIN}/tact", "metrics", "--port", "0"], text=True,
+                                   env=dict(os.environ, TACT_RUNTIME_DIR=self.dir), stderr=subprocess.PIPE)
+        address = re.match(r"http://\S+/metrics", metrics.stderr.readline())[0]
+        end, page = time.monotonic() + PATIENCE_S, b""
+        while b"tact_up{session=\"default\"} 1" not in page:
+            self.assertLess(time.monotonic(), end, page)
+            with urllib.request.urlopen(address, timeout=PATIENCE_S) as answer:
+                page = answer.read()
+        with open(f"/proc/{metrics.pid}/task/{metrics.pid}/children", encoding="utf-8") as f:
+            os.kill(int(f.read().split()[0]), signal.SIGTERM)
+        metrics.communicate(timeout=PATIENCE_S)
+        with open(trace, encoding="utf-8", errors="replace") as f:
+            calls = set(re.findall(r"^\d+ +(\w+)\(", f.read(), re.M))
+        self.assertIn("recvmsg", calls)
+        self.assertFalse(calls - allowed)
 
     def test_in_the_journal_a_line_has_its_level_and_no_time(self):
         read, write = os.pipe()
