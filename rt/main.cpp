@@ -43,6 +43,7 @@
 #include "rt/scene_bone.hpp"
 #include "rt/start_model.hpp"
 #include "rt/start_options.hpp"
+#include "rt/start_station.hpp"
 
 namespace {
 
@@ -237,6 +238,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     }
     spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, hands_on, head_on, lines_on,
                  schedule_text(platform.flags), o.session);
+    log_station_report();
     if (head) head->start();
     std::optional<Supervisor> supervisor;
     // Emulated lines guard nothing: there lateness drops what it drops on an emulated device.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "deploy/tact/metrics_station.hpp"
 #include "ipc/base/histogram.hpp"
 #include "ipc/topics/frames.hpp"
 #include "ipc/topics/text.hpp"
@@ -243,7 +244,8 @@ std::string Metrics::text(const RtRegion* region) const {
              "controllers that were attached to, one after the other", static_cast<double>(controllers_));
     page.about("tact_faults_total", "counter", "faults that stopped the force, by cause");
     for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
-    if (region == nullptr) return page.take();
+    const std::string station = station_metrics(label("session", session_));
+    if (region == nullptr) return page.take() + station;
     if (const auto h = newest(region->health)) health(page, *h);
     if (const auto d = newest(region->devices)) devices(page, *d);
     if (const auto t = newest(region->tracker)) tracker(page, *t);
@@ -251,7 +253,7 @@ std::string Metrics::text(const RtRegion* region) const {
     if (const auto l = newest(region->levels)) levels(page, *l);
     if (const auto p = newest(region->picture); p && p->taken_at_ns > 0 && plausible(p->figures))
         picture(page, p->figures);
-    return page.take();
+    return page.take() + station;
 }
 
 }  // namespace tact::launch
