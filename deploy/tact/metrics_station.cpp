@@ -1,6 +1,7 @@
 #include "deploy/tact/metrics_station.hpp"
 
 #include <cstdio>
+#include <utility>
 
 namespace tact::launch {
 namespace {

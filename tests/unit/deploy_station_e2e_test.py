@@ -170,6 +170,12 @@ class Verify(Case):
         subprocess.run([WRITER, scene], check=True)
         _, err = self.tact("station", "verify", "--scene", scene, "--config", config, "--out", f"{self.dir}/r.json", code=1)
         self.assertIn("nonsense", err)
+        # It arms by itself: never an arm that somebody may hold.
+        for text in ('[device]\ndriver = "phantom"\n', '[device]\ndriver = 3\n', 'device = {driver = "falcon"}\n',
+                     '[device2]\ndriver = "openhaptics"\n'):
+            put(config, text)
+            _, err = self.tact("station", "verify", "--scene", scene, "--config", config, "--out", f"{self.dir}/r.json", code=1)
+            self.assertIn("arms without a person", err)
         self.assertFalse(os.path.exists(f"{self.dir}/r.json"))
 
 

@@ -19,7 +19,7 @@ import urllib.request
 
 ROOT, BIN, WRITER = sys.argv[1:4]
 UNITS = os.path.join(ROOT, "deploy/units")
-NAMES = ("tact-rt@.service", "tact-metrics.service")
+NAMES = ("tact-rt@.service", "tact-metrics.service", "tact-station.service")
 PATIENCE_S = 120  # a busy machine is slow, not wrong
 ANALYZE = shutil.which("systemd-analyze")
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH = 0x4206, 0x4207, 17
@@ -79,7 +79,7 @@ class Files(unittest.TestCase):
         paths = []
         for name in NAMES:
             with open(os.path.join(UNITS, name), encoding="utf-8") as f:
-                text = f.read().replace("/usr/bin/tact", f"{BIN}/tact")
+                text = f.read().replace("/usr/bin/tact", f"{BIN}/tact").replace("/usr/local/lib/tact", f"{ROOT}/deploy")
             paths.append(os.path.join(self.dir, name.replace("@", "@skull")))
             with open(paths[-1], "w", encoding="utf-8") as f:
                 f.write(text)
@@ -89,7 +89,7 @@ class Files(unittest.TestCase):
 
     @unittest.skipUnless(ANALYZE, "no systemd-analyze here: apt-get install systemd")
     def test_systemd_rates_the_exposure_as_ok(self):
-        for name, most in (("tact-rt@.service", 20), ("tact-metrics.service", 15)):
+        for name, most in (("tact-rt@.service", 20), ("tact-metrics.service", 15), ("tact-station.service", 20)):
             done = subprocess.run([ANALYZE, "security", "--offline=true", f"--threshold={most}", "--no-pager",
                                    os.path.join(UNITS, name)], capture_output=True, text=True, check=False)
             if "nrecognized option" in done.stderr:

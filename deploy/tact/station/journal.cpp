@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "ipc/base/error.hpp"
 

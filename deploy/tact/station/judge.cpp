@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
+#include <utility>
 
 #include "ipc/station/station_report.hpp"
 #include "ipc/topics/health.hpp"

@@ -1,6 +1,7 @@
 #include "deploy/tact/station/plan.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "deploy/tact/station/shipped_files.hpp"
 #include "ipc/base/error.hpp"

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,6 +29,28 @@ namespace {
 constexpr auto kStartLimit = std::chrono::seconds(120);
 constexpr double kSettleS = 1.0;  // the first second of a controller is its start, not its work
 constexpr auto kReportEvery = std::chrono::seconds(10);
+
+// This measurement arms by itself, which is for emulated devices alone: nobody holds the arm.
+void need_emulated_device(const std::filesystem::path& config) {
+    if (config.empty()) return;
+    const std::string attempt = "verify with " + config.string();
+    toml::table table;
+    try {
+        table = toml::parse_file(config.string());
+    } catch (const toml::parse_error& e) {
+        throw StartupError(attempt, std::string(e.description()), "see deploy/tact.toml for every key");
+    }
+    for (const char* const hand : {"device", "device2"}) {
+        const std::string unset = std::string(hand) == "device" ? "sim" : "none";
+        const auto node = table[hand]["driver"];
+        const std::string driver = node ? node.value_or(std::string("?")) : unset;
+        if (driver != "sim" && driver != "sim-process" && driver != "none")
+            throw StartupError(
+                attempt,
+                std::string(hand) + ".driver is \"" + driver + "\", and verify arms without a person",
+                "name a configuration whose drivers are \"sim\", or leave out --config");
+    }
+}
 
 std::string trimmed(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -212,6 +235,7 @@ private:
 
 std::optional<VerifyFigures> measure_station(const VerifyOptions& options,
                                              const std::function<void(const std::string&)>& report) {
+    need_emulated_device(options.config);
     const std::filesystem::path scene =
         options.scene.empty() ? baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}})
                               : options.scene;
