@@ -177,11 +177,13 @@ class Service(unittest.TestCase):
             self.skipTest(f"ptrace: {os.strerror(ctypes.get_errno())}")
         self.assertEqual(libc.ptrace(PTRACE_INTERRUPT, tid, 0, 0), 0)  # this thread alone
         os.waitpid(tid, 0x40000000)  # __WALL
-        self.messages(0.5)  # what was under way
-        quiet = self.messages(2.0)  # five times the limit of systemd
+        try:
+            self.messages(0.5)  # what was under way
+            quiet = self.messages(2.0)  # five times the limit of systemd
+            self.assertIsNone(self.child.poll())  # it is the servo that stands, not the process
+        finally:
+            self.assertEqual(libc.ptrace(PTRACE_DETACH, tid, 0, 0), 0)  # a traced thread would outlive SIGKILL
         self.assertNotIn("WATCHDOG", quiet)
-        self.assertIsNone(self.child.poll())  # it is the servo that stands, not the process
-        self.assertEqual(libc.ptrace(PTRACE_DETACH, tid, 0, 0), 0)
         self.until("WATCHDOG=1")
         self.child.send_signal(signal.SIGTERM)
         self.until("STOPPING=1")

@@ -133,11 +133,13 @@ def watchdog():
         assert libc.ptrace(PTRACE_SEIZE, tid, 0, 0) == 0, os.strerror(ctypes.get_errno())
         assert libc.ptrace(PTRACE_INTERRUPT, tid, 0, 0) == 0
         os.waitpid(tid, WALL)
-        came(LIMIT_S / 2)  # for the cycles before
-        quiet = came(3 * LIMIT_S)
+        try:
+            came(LIMIT_S / 2)  # for the cycles before
+            quiet = came(3 * LIMIT_S)
+            assert rt.poll() is None
+        finally:
+            assert libc.ptrace(PTRACE_DETACH, tid, 0, 0) == 0  # a traced thread would outlive SIGKILL
         assert "WATCHDOG" not in quiet, quiet
-        assert rt.poll() is None
-        assert libc.ptrace(PTRACE_DETACH, tid, 0, 0) == 0
         until("WATCHDOG=1")
         rt.terminate()
         until("STOPPING=1")
