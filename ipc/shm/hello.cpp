@@ -107,7 +107,7 @@ bool peer_in_group(int socket, std::uint32_t group) noexcept {
     socklen_t size = sizeof who;
     if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return false;
     if (who.gid == group) return true;
-    std::array<gid_t, 256> groups{};  // one with more is refused: the kernel says ERANGE
+    std::array<gid_t, 256> groups{};  // a process with more is refused (ERANGE)
     size = sizeof groups;
     if (getsockopt(socket, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return false;
     const gid_t* const begin = groups.data();

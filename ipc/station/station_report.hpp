@@ -25,7 +25,7 @@ struct StationReport {
 };
 
 [[nodiscard]] std::string station_report_path();
-// Nothing: it is no report; `refusal` says why.
+// Nothing: it is no report; `refusal` has the reason.
 [[nodiscard]] std::optional<StationReport> parse_station_report(const std::string& text,
                                                                 std::string& refusal);
 // Nothing with an empty refusal: there is no such file.

@@ -35,7 +35,7 @@ private:
 
 struct ServiceState {
     std::int64_t heartbeat = 0;
-    const char* state = "";  // of the run, in a word
+    const char* state = "";  // of the run: "active"
     double rate_hz = 0.0;
 };
 

@@ -46,9 +46,9 @@ class Case(unittest.TestCase):
         self.dir = tempfile.mkdtemp(prefix="tact_station_")
         self.addCleanup(shutil.rmtree, self.dir)
 
-    def tact(self, *words, code=0, **environment):
+    def tact(self, *arguments, code=0, **environment):
         env = dict(os.environ, TACT_RUNTIME_DIR=self.dir, **environment)
-        done = subprocess.run([f"{BIN}/tact", *words], capture_output=True, text=True, env=env, timeout=PATIENCE_S, check=False)
+        done = subprocess.run([f"{BIN}/tact", *arguments], capture_output=True, text=True, env=env, timeout=PATIENCE_S, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout, done.stderr
 
@@ -64,9 +64,9 @@ class Setup(Case):
 
     def test_a_dry_run_prints_all_and_changes_nothing(self):
         out, _ = self.tact("station", "setup", "--root", self.tree, "--dry-run", "--user", "ann")
-        for words in ("core 3 for the servo, cores 0-2 for all else", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
+        for text in ("core 3 for the servo, cores 0-2 for all else", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
                       "apt-get install", "usermod -aG tact ann"):
-            self.assertIn(words, out)
+            self.assertIn(text, out)
         self.assertEqual(snapshot(self.tree), self.before)
 
     def test_setup_and_undo_with_no_command_run(self):
@@ -92,8 +92,8 @@ class Setup(Case):
 
 
 class Tune(Case):
-    def run_script(self, word, cores="1", code=0):
-        done = subprocess.run([os.path.join(ROOT, "deploy/station-tune"), word], capture_output=True, text=True, check=False,
+    def run_script(self, action, cores="1", code=0):
+        done = subprocess.run([os.path.join(ROOT, "deploy/station-tune"), action], capture_output=True, text=True, check=False,
                               env=dict(os.environ, TACT_ROOT=self.dir, TACT_CORES=cores))
         self.assertEqual(done.returncode, code, done.stderr)
 
@@ -163,7 +163,7 @@ class Verify(Case):
         os.unlink(out)
         self.assertIn("station report: none", log())
 
-    def test_a_controller_that_does_not_start_is_reported_with_its_own_words(self):
+    def test_a_controller_that_does_not_start_is_reported_with_its_own_message(self):
         config = f"{self.dir}/bad.toml"
         put(config, "[servo]\nnonsense = 1\n")
         scene = f"{self.dir}/small.tact"

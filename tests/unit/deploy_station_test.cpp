@@ -241,7 +241,7 @@ TEST_F(Station, a_step_that_fails_takes_back_what_was_done) {
     EXPECT_EQ(snapshot(), before_);
 }
 
-TEST_F(Station, a_journal_that_others_may_write_is_not_believed) {
+TEST_F(Station, a_journal_that_others_may_write_is_refused) {
     set_up_station(plan(), tools());
     chmod((root_ / "var/lib/tact/station.json").c_str(), 0666);
     EXPECT_NE(message_of([&] { undo_station(tools(), true); }).find("others"), std::string::npos);

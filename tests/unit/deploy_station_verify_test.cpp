@@ -183,7 +183,7 @@ TEST(StationCyclictest, its_output_is_read_and_nonsense_is_none) {
     EXPECT_FALSE(parse_cyclictest("max 17"));
 }
 
-TEST(StationSmi, is_read_from_its_register_and_otherwise_says_why_not) {
+TEST(StationSmi, is_read_from_its_register_and_otherwise_gives_the_reason) {
     std::string name = (std::filesystem::temp_directory_path() / "smi-XXXXXX").string();
     const std::filesystem::path root = mkdtemp(name.data());
     std::filesystem::create_directories(root / "proc");

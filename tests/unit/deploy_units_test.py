@@ -53,8 +53,8 @@ class Files(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir)
 
     def test_the_command_line_of_the_controller_arms_nothing_and_takes_no_free_options(self):
-        words = value("tact-rt@.service", "ExecStart").split()
-        self.assertEqual(words, ["/usr/bin/tact-rt", "/var/lib/tact/scenes/%i.tact", "--config", "/etc/tact/tact.toml",
+        text_wanted = value("tact-rt@.service", "ExecStart").split()
+        self.assertEqual(text_wanted, ["/usr/bin/tact-rt", "/var/lib/tact/scenes/%i.tact", "--config", "/etc/tact/tact.toml",
                                  "$TACT_RT_CORE"])
         self.assertIn(("Environment", "TACT_RT_CORE="), unit("tact-rt@.service"))
         self.assertFalse([v for k, v in unit("tact-rt@.service") if k in ("EnvironmentFile", "PassEnvironment", "ExecStartPost")])
@@ -84,8 +84,8 @@ class Files(unittest.TestCase):
             with open(paths[-1], "w", encoding="utf-8") as f:
                 f.write(text)
         done = subprocess.run([ANALYZE, "verify", "--man=no", *paths], capture_output=True, text=True, check=False)
-        said = [line for line in (done.stdout + done.stderr).splitlines() if "tact" in line]
-        self.assertEqual((done.returncode, said), (0, []), done.stderr)
+        printed = [line for line in (done.stdout + done.stderr).splitlines() if "tact" in line]
+        self.assertEqual((done.returncode, printed), (0, []), done.stderr)
 
     @unittest.skipUnless(ANALYZE, "no systemd-analyze here: apt-get install systemd")
     def test_systemd_rates_the_exposure_as_ok(self):
@@ -130,10 +130,10 @@ class Service(unittest.TestCase):
             self.child.wait()
 
     def command(self):
-        words = value("tact-rt@.service", "ExecStart").replace("$TACT_RT_CORE", "").split()
+        text_wanted = value("tact-rt@.service", "ExecStart").replace("$TACT_RT_CORE", "").split()
         place = {"/usr/bin/tact-rt": f"{BIN}/tact-rt", "/var/lib/tact/scenes/%i.tact": f"{self.dir}/small.tact",
                  "/etc/tact/tact.toml": os.path.join(ROOT, "deploy/tact.toml")}
-        return [place.get(w, w) for w in words]
+        return [place.get(w, w) for w in text_wanted]
 
     def start(self, before=(), **environment):
         env = dict(os.environ, TACT_RUNTIME_DIR=self.dir, NOTIFY_SOCKET=f"{self.dir}/notify", WATCHDOG_USEC="400000")
@@ -151,10 +151,10 @@ class Service(unittest.TestCase):
                 break
         return text
 
-    def until(self, words):
+    def until(self, text_wanted):
         end, text = time.monotonic() + PATIENCE_S, ""
-        while words not in text:
-            self.assertLess(time.monotonic(), end, f"{words!r} never came: {text}")
+        while text_wanted not in text:
+            self.assertLess(time.monotonic(), end, f"{text_wanted!r} never came: {text}")
             text += self.messages(0.1)
         return text
 
@@ -192,9 +192,9 @@ class Service(unittest.TestCase):
     def test_killed_and_started_again_it_is_ready_and_not_armed(self):
         for _ in range(2):
             self.start()
-            said = self.until("READY=1") + self.messages(1.5)
-            self.assertIn("STATUS=ready", said)
-            self.assertNotRegex(said, "STATUS=(armed|active)")
+            printed = self.until("READY=1") + self.messages(1.5)
+            self.assertIn("STATUS=ready", printed)
+            self.assertNotRegex(printed, "STATUS=(armed|active)")
             done = subprocess.run([f"{BIN}/tact", "status", "--json"], env=dict(os.environ, TACT_RUNTIME_DIR=self.dir),
                                   capture_output=True, text=True, check=True)
             self.assertIn('"state": "ready"', done.stdout)
@@ -310,7 +310,7 @@ class OtherUsers(unittest.TestCase):
         code, text = self.status(61002, "--groups=61000", TACT_RUNTIME_GROUP="61000")
         self.assertEqual(code, 1, text)
 
-    def test_the_kernels_word_counts_even_where_the_socket_is_open_to_all(self):
+    def test_the_kernels_answer_counts_even_where_the_socket_is_open_to_all(self):
         self.start(TACT_RUNTIME_GROUP="61000")
         os.chmod(f"{self.run_dir}/tact-default.sock", 0o666)
         os.chmod(self.run_dir, 0o755)

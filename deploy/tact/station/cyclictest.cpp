@@ -39,11 +39,12 @@ std::optional<double> parse_cyclictest(const std::string& text) {
 
 std::vector<std::string> cyclictest_arguments(int core, double seconds, const std::string& json) {
     const auto whole = static_cast<long>(std::ceil(std::max(seconds, 1.0)));
-    std::vector<std::string> words{"--mlockall",      "--quiet",     "--priority=79",
-                                   "--interval=1000", "--threads=1", "--duration=" + std::to_string(whole),
-                                   "--json=" + json};
-    if (core >= 0) words.push_back("--affinity=" + std::to_string(core));
-    return words;
+    std::vector<std::string> arguments{"--mlockall",    "--quiet",
+                                       "--priority=79", "--interval=1000",
+                                       "--threads=1",   "--duration=" + std::to_string(whole),
+                                       "--json=" + json};
+    if (core >= 0) arguments.push_back("--affinity=" + std::to_string(core));
+    return arguments;
 }
 
 }  // namespace tact::launch

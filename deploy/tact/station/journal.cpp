@@ -150,7 +150,7 @@ std::optional<Journal> read_journal(const std::filesystem::path& root) {
     if ((content.uid != geteuid() && content.uid != 0) || (content.mode & (S_IWGRP | S_IWOTH)) != 0)
         throw StartupError(
             "read " + path.string(), "others than you and root may have written it",
-            "check what it says, then: chown root " + path.string() + "; chmod 600 " + path.string());
+            "check its content, then: chown root " + path.string() + "; chmod 600 " + path.string());
     return parse_journal(content.bytes);
 }
 

@@ -30,14 +30,14 @@ Check required(const char* name, bool good, Grade otherwise, const std::string& 
     return {name, good ? Grade::pass : otherwise, good ? yes : no};
 }
 
-std::string missing_words(const std::string& wanted, const std::string& in) {
-    std::istringstream words(in), list(wanted);
+std::string missing_arguments(const std::string& wanted, const std::string& in) {
+    std::istringstream present(in), list(wanted);
     std::vector<std::string> have;
-    for (std::string word; words >> word;) have.push_back(word);
+    for (std::string name; present >> name;) have.push_back(name);
     std::string missing;
-    for (std::string word; list >> word;)
-        if (std::find(have.begin(), have.end(), word) == have.end())
-            missing += (missing.empty() ? "" : " ") + word;
+    for (std::string name; list >> name;)
+        if (std::find(have.begin(), have.end(), name) == have.end())
+            missing += (missing.empty() ? "" : " ") + name;
     return missing;
 }
 
@@ -79,7 +79,7 @@ std::vector<Check> judge_station(const VerifyFigures& f, const VerifyLimits& l) 
                               "FIFO priority, isolated core, locked memory", "the servo lacks " + lacks));
     checks.push_back(required("kernel", f.realtime_kernel, Grade::warn, "real-time: " + f.kernel,
                               "not a real-time kernel: " + f.kernel));
-    const std::string missing = missing_words(f.arguments_wanted, f.arguments);
+    const std::string missing = missing_arguments(f.arguments_wanted, f.arguments);
     if (f.arguments_wanted.empty())
         checks.push_back({"kernel_arguments", Grade::warn, "tact station setup has not been run here"});
     else

@@ -17,7 +17,7 @@ struct VerifyFigures {
     std::uint32_t schedule_flags = 0;  // ScheduleFlag of ipc/topics/health.hpp
     double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
     int core = -1;                            // of the servo; -1: not pinned
-    std::optional<double> cyclictest_max_us;  // nothing: not run, as cyclictest_text says
+    std::optional<double> cyclictest_max_us;  // nothing: not run, for the reason in cyclictest_text
     std::string cyclictest_text;              // where and when it ran, or why not
     std::optional<std::uint64_t> smi_count;
     std::string smi_text;

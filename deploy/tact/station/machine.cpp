@@ -25,15 +25,15 @@ std::string whole(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The words of GRUB_CMDLINE_LINUX and GRUB_CMDLINE_LINUX_DEFAULT.
-std::string grub_words(const std::filesystem::path& file) {
+// Lines with GRUB_CMDLINE_LINUX and GRUB_CMDLINE_LINUX_DEFAULT.
+std::string grub_lines(const std::filesystem::path& file) {
     std::istringstream in(whole(file));
-    std::string words;
+    std::string lines;
     for (std::string line; std::getline(in, line);)
         if (const auto at = line.find_first_not_of(" \t");
             at != std::string::npos && line.compare(at, 18, "GRUB_CMDLINE_LINUX") == 0)
-            words += line.substr(at) + "\n";
-    return words;
+            lines += line.substr(at) + "\n";
+    return lines;
 }
 
 std::map<std::string, std::vector<std::string>> read_groups(const std::filesystem::path& path) {
@@ -70,10 +70,10 @@ StationMachine read_station_machine(const std::filesystem::path& root, bool offl
     }
     std::error_code none;
     m.grub = std::filesystem::exists(root / "etc/default/grub", none);
-    m.grub_arguments = grub_words(root / "etc/default/grub");
+    m.grub_arguments = grub_lines(root / "etc/default/grub");
     for (const auto& file : std::filesystem::directory_iterator(root / "etc/default/grub.d", none))
         if (file.path().extension() == ".cfg" && file.path().filename() != "tact.cfg")
-            m.grub_arguments += grub_words(file.path());
+            m.grub_arguments += grub_lines(file.path());
     m.update_grub = offline || !find_in_path("update-grub").empty();
     m.systemd = offline || std::filesystem::exists("/run/systemd/system", none);
     m.udev = offline || std::filesystem::exists("/run/udev/control", none);

@@ -11,9 +11,9 @@ namespace {
 
 constexpr const char* kOwnArguments[] = {"isolcpus=", "nohz_full=", "rcu_nocbs=", "irqaffinity="};
 
-Command apt_get(std::vector<std::string> words) {
+Command apt_get(std::vector<std::string> arguments) {
     Command command{"env", "DEBIAN_FRONTEND=noninteractive", "apt-get"};
-    command.insert(command.end(), words.begin(), words.end());
+    command.insert(command.end(), arguments.begin(), arguments.end());
     return command;
 }
 

@@ -17,15 +17,15 @@ namespace {
 
 // output: a pipe's end that gets what it prints; -1: standard error.
 int spawn_and_wait(const Command& command, int output, const std::function<void()>& meanwhile) {
-    std::vector<char*> words;
-    for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
+    std::vector<char*> arguments;
+    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, output >= 0 ? output : STDERR_FILENO, STDOUT_FILENO);
     pid_t child = -1;
-    const int error = posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
+    const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) return 127;
     meanwhile();
@@ -60,9 +60,9 @@ std::vector<std::string> parse_simulated_install(const std::string& text) {
     std::vector<std::string> names;
     std::istringstream in(text);
     for (std::string line; std::getline(in, line);) {
-        std::istringstream words(line);
+        std::istringstream fields(line);
         std::string first, name;
-        if (words >> first >> name && first == "Inst") names.push_back(name);
+        if (fields >> first >> name && first == "Inst") names.push_back(name);
     }
     return names;
 }

@@ -105,7 +105,7 @@ void do_step(const PlannedStep& step, const StationTools& tools, Journal& journa
 
 std::string command_text(const Command& command) {
     std::string text;
-    for (const std::string& word : command) text += (text.empty() ? "" : " ") + word;
+    for (const std::string& argument : command) text += (text.empty() ? "" : " ") + argument;
     return text;
 }
 

@@ -54,7 +54,7 @@ void need_emulated_device(const std::filesystem::path& config) {
 
 std::string trimmed(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// The cycles between two looks at a histogram that only grows.
+// The cycles between two samples of a histogram that only grows.
 void lateness_between(const LatenessTopic& before, const LatenessTopic& after, VerifyFigures& f) {
     std::array<std::uint64_t, DurationHistogram::kBuckets> counts{};
     std::uint64_t total = 0, most_ns = 0;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """tact station on the real-time kernel: setup and undo on a tree, verify, and the service's watchdog while the servo stands.
 
-usage: 27_station.py BIN_DIR. Lateness is printed, never judged: it says something on a real processor only.
+usage: 27_station.py BIN_DIR. Lateness is printed, never judged: it means something on a real processor only.
 """
 import ctypes
 import json
@@ -21,8 +21,8 @@ PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH, WALL = 0x4206, 0x4207, 17, 0x4000
 LIMIT_S = 0.8  # of the watchdog
 
 
-def tact(*words):
-    done = subprocess.run([f"{BIN}/tact", "station", *words], capture_output=True, text=True, timeout=parts.PATIENCE_S)
+def tact(*arguments):
+    done = subprocess.run([f"{BIN}/tact", "station", *arguments], capture_output=True, text=True, timeout=parts.PATIENCE_S)
     print(done.stdout + done.stderr)
     return done.returncode, done.stdout
 
@@ -50,8 +50,8 @@ def setup_and_undo():
     assert tact("setup", "--root", TREE)[0] == 0
     wanted = parts.text_of(f"{TREE}/etc/default/grub.d/tact.cfg")
     in_force = parts.text_of("/proc/cmdline").split()
-    for word in ("isolcpus=managed_irq,domain,1", "nohz_full=1", "rcu_nocbs=1", "irqaffinity=0"):
-        assert word in wanted and word in in_force, (word, wanted)  # this machine was started as setup would have it
+    for item in ("isolcpus=managed_irq,domain,1", "nohz_full=1", "rcu_nocbs=1", "irqaffinity=0"):
+        assert item in wanted and item in in_force, (item, wanted)  # this machine was started as setup would have it
     assert tact("undo", "--root", TREE)[0] == 0
     assert files_of(TREE) == before
 
@@ -65,13 +65,13 @@ def setup_for_real():
         return [files_of(p) for p in places], [parts.text_of(g) for g in groups]
 
     before = now()
-    code, said = tact("setup", "--skip", "kernel", "--skip", "kernel-arguments", "--user", "nobody")
-    assert code == 0 and "groupadd --system tact" in said
+    code, received = tact("setup", "--skip", "kernel", "--skip", "kernel-arguments", "--user", "nobody")
+    assert code == 0 and "groupadd --system tact" in received
     assert [line for line in parts.text_of("/etc/group").splitlines() if line.startswith("realtime:") and "nobody" in line]
     assert os.stat("/var/lib/tact/station.json").st_mode & 0o777 == 0o600
     env = dict(os.environ, TACT_CORES="1")
-    for word in ("start", "stop"):
-        subprocess.run(["/usr/local/lib/tact/station-tune", word], check=True, env=env, timeout=parts.PATIENCE_S)
+    for item in ("start", "stop"):
+        subprocess.run(["/usr/local/lib/tact/station-tune", item], check=True, env=env, timeout=parts.PATIENCE_S)
     assert tact("setup", "--skip", "kernel", "--skip", "kernel-arguments", "--user", "nobody")[1].endswith("changed\n")
     assert tact("undo")[0] == 0
     assert now() == before
@@ -112,10 +112,10 @@ def watchdog():
         except TimeoutError:
             return text
 
-    def until(word):
+    def until(message):
         manager.settimeout(parts.PATIENCE_S)
         text = ""
-        while word not in text:
+        while message not in text:
             text += manager.recv(4096).decode()
         return text
 
@@ -123,11 +123,11 @@ def watchdog():
     env.pop("WATCHDOG_PID", None)
     rt = subprocess.Popen([f"{BIN}/tact-rt", "/out/small.tact", "--config", CONFIG], env=env)
     try:
-        said = until("READY=1")
-        assert "WATCHDOG" not in said.split("READY=1")[0], said
+        received = until("READY=1")
+        assert "WATCHDOG" not in received.split("READY=1")[0], received
         for _ in range(3):
-            said += until("WATCHDOG=1")
-        assert "STATUS=ready" in said and "STATUS=a" not in said, said
+            received += until("WATCHDOG=1")
+        assert "STATUS=ready" in received and "STATUS=a" not in received, received
         libc, tid = ctypes.CDLL(None, use_errno=True), servo_of(rt.pid)
         libc.ptrace.argtypes, libc.ptrace.restype = [ctypes.c_long] * 4, ctypes.c_long
         assert libc.ptrace(PTRACE_SEIZE, tid, 0, 0) == 0, os.strerror(ctypes.get_errno())
