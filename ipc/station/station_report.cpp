@@ -31,9 +31,10 @@ std::string age_text(std::int64_t seconds) {
         return std::to_string(n) + " " + name + (n == 1 ? "" : "s") + " old";
     };
     if (seconds < 0) return "dated in the future";
-    if (seconds < 3600) return in(60, "minute");
-    if (seconds < 48 * 3600) return in(3600, "hour");
-    return in(24 * 3600, "day");
+    constexpr std::int64_t kHour = 3600, kDay = 24 * kHour;
+    if (seconds < kHour) return in(60, "minute");
+    if (seconds < 2 * kDay) return in(kHour, "hour");
+    return in(kDay, "day");
 }
 
 }  // namespace

@@ -174,7 +174,9 @@ private:
     bool pass(double seconds, const char* what) {
         const Instant begin = Monotonic::now();
         Instant reported = begin;
-        for (double done = 0.0; done < seconds; done = to_s(Monotonic::now() - begin)) {
+        for (;;) {
+            const double done = to_s(Monotonic::now() - begin);
+            if (done >= seconds) return true;
             if (signals_.wait(50) != 0) return false;
             if (rt_ && !cyclictest_after_) need_controller();
             observer_.poll();
@@ -185,7 +187,6 @@ private:
             static_cast<void>(std::snprintf(text, sizeof text, "%s: %.0f of %.0f s", what, done, seconds));
             report_(text);
         }
-        return true;
     }
 
     CyclictestPlace place_for(int servo) const {
