@@ -35,6 +35,7 @@
 #include "rt/loop/config.hpp"
 #include "rt/loop/head_feed.hpp"
 #include "rt/loop/house.hpp"
+#include "rt/loop/journal_format.hpp"
 #include "rt/loop/log_sink.hpp"
 #include "rt/loop/rt_guard.hpp"
 #include "rt/loop/servo.hpp"
@@ -45,6 +46,7 @@
 #include "rt/scene_bone.hpp"
 #include "rt/start_model.hpp"
 #include "rt/start_options.hpp"
+#include "rt/start_station.hpp"
 
 namespace {
 
@@ -241,6 +243,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     }
     spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, hands_on, head_on, lines_on,
                  schedule_text(platform.flags), o.session);
+    log_station_report();
     if (head) head->start();
     std::optional<Supervisor> supervisor;
     // Emulated lines guard nothing: there lateness drops what it drops on an emulated device.
@@ -277,7 +280,9 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
 
 int main(int argc, char** argv) {
     spdlog::set_default_logger(std::make_shared<spdlog::logger>("tact-rt", make_log_sink(STDERR_FILENO)));
+    const bool journal = is_journal_stream(STDERR_FILENO);
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
+    if (journal) spdlog::set_formatter(make_journal_formatter());
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
     app.footer("Exit codes: 0 as asked; 1 error or wrong usage.");
@@ -295,7 +300,8 @@ int main(int argc, char** argv) {
             return print_config_check(std::cout, options.check_config, options.json);
         return run(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), options, overrides);
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "tact-rt: %s\n", e.what());
+        journal ? spdlog::error("{}", e.what())
+                : static_cast<void>(std::fprintf(stderr, "tact-rt: %s\n", e.what()));
         return 1;
     }
 }

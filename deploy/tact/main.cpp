@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "deploy/tact/commands.hpp"
+#include "deploy/tact/station/command_station.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
     add_status(app, exit_code);
     add_metrics(app, exit_code);
     add_doctor(app, exit_code);
+    add_station(app, exit_code);
     add_probe(app, exit_code);
     add_config(app);
     add_info(app, exit_code);

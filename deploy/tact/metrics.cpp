@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "deploy/tact/metrics_station.hpp"
 #include "ipc/base/histogram.hpp"
 #include "ipc/base/run_state.hpp"
 #include "ipc/topics/frames.hpp"
@@ -269,6 +270,7 @@ std::string Metrics::text(const RtRegion* region) const {
              "controllers that were attached to, one after the other", static_cast<double>(controllers_));
     page.about("tact_faults_total", "counter", "faults that stopped the force, by cause");
     for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
+    const std::string station = station_metrics(label("session", session_));
     page.one("tact_events_missed_total", "counter",
              "events of the controller that the exporter did not read in time; faults may be among them",
              static_cast<double>(missed_before_ + cursor_.missed));
@@ -277,7 +279,7 @@ std::string Metrics::text(const RtRegion* region) const {
             page.one("tact_controller_ended_in_order", "gauge",
                      "0 where the last controller was killed or crashed, 1 where it ended by itself",
                      *ended_in_order_ ? 1.0 : 0.0);
-        return page.take();
+        return page.take() + station;
     }
     if (const auto h = newest(region->health)) health(page, *h);
     if (const auto d = newest(region->devices)) devices(page, *d);
@@ -286,7 +288,7 @@ std::string Metrics::text(const RtRegion* region) const {
     if (const auto l = newest(region->levels)) levels(page, *l);
     if (const auto p = newest(region->picture); p && p->taken_at_ns > 0 && plausible(p->figures))
         picture(page, p->figures);
-    return page.take();
+    return page.take() + station;
 }
 
 }  // namespace tact::launch

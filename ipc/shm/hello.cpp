@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -98,7 +99,20 @@ Peer peer_of(int socket) noexcept {
     ucred who{};
     socklen_t size = sizeof who;
     if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {};
-    return {static_cast<std::uint32_t>(who.pid), who.uid == geteuid() || who.uid == 0};
+    return {static_cast<std::uint32_t>(who.pid), who.uid, who.uid == geteuid() || who.uid == 0};
+}
+
+bool peer_in_group(int socket, std::uint32_t group) noexcept {
+    ucred who{};
+    socklen_t size = sizeof who;
+    if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return false;
+    if (who.gid == group) return true;
+    std::array<gid_t, 256> groups{};  // a process with more is refused (ERANGE)
+    size = sizeof groups;
+    if (getsockopt(socket, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return false;
+    const gid_t* const begin = groups.data();
+    const gid_t* const end = begin + size / sizeof(gid_t);
+    return std::find(begin, end, group) != end;
 }
 
 }  // namespace tact

@@ -64,8 +64,11 @@ struct Packet {
 
 struct Peer {
     std::uint32_t pid = 0;
+    std::uint32_t uid = 0;
     bool trusted = false;  // this user, or root
 };
 [[nodiscard]] Peer peer_of(int socket) noexcept;
+// By its own group or a supplementary one, as the kernel had them when it connected.
+[[nodiscard]] bool peer_in_group(int socket, std::uint32_t group) noexcept;
 
 }  // namespace tact

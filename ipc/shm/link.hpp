@@ -11,7 +11,8 @@
 // Client     in tact-gui and tact. poll() never blocks: it connects, re-connects after the controller went,
 //            and says in words what it is waiting for.
 // Hostile    messages are of fixed size and checked; a client that sends anything else, sends nothing for two
-//            seconds, or belongs to another user (root excepted) is dropped and counted.
+//            seconds, or belongs to another user (excepted are root and, where TACT_RUNTIME_GROUP is set,
+//            the members of that group: session_path.hpp) is dropped and counted.
 #pragma once
 
 #include <cstdint>

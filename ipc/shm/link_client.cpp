@@ -1,12 +1,14 @@
 // The visual process's and the observers' end of a link: connect, say hello, keep the socket open as the sign
 // of life, and start again when the controller is gone.
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -22,11 +24,17 @@ namespace {
 constexpr Duration kRetry = std::chrono::milliseconds(100);
 constexpr Duration kAnswerPatience = std::chrono::seconds(2);
 
+bool owns(std::uint32_t uid, const std::string& folder) {
+    struct stat status {};
+    return lstat(folder.c_str(), &status) == 0 && status.st_uid == uid;
+}
+
 }  // namespace
 
 struct LinkClient::State {
     std::string session;
     SessionPaths paths;
+    std::optional<std::uint32_t> group;
     int own_region_fd = -1;
     LinkRole watches_as = LinkRole::observer;
     enum class Step { apart, asked, attached } step = Step::apart;
@@ -44,7 +52,7 @@ struct LinkClient::State {
     }
 
     void connect_and_ask() {
-        const std::string distrust = distrust_runtime_folder(paths.folder);
+        const std::string distrust = distrust_runtime_folder(paths.folder, group);
         if (!distrust.empty()) return wait("folder " + paths.folder + ": " + distrust);
         socket = FileDescriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
         sockaddr_un address{};
@@ -56,7 +64,7 @@ struct LinkClient::State {
             return wait(last_error());
         }
         const Peer peer = peer_of(socket.get());
-        if (!peer.trusted)
+        if (!peer.trusted && !(group && owns(peer.uid, paths.folder)))
             return wait("process " + std::to_string(peer.pid) + " there belongs to another user");
         HelloMessage hello{};
         hello.magic = kHelloMagic;
@@ -123,6 +131,7 @@ struct LinkClient::State {
 LinkClient::LinkClient(std::string session, int own_region_fd, LinkRole watches_as)
     : state_(std::make_unique<State>()) {
     state_->paths = session_paths(session);
+    state_->group = session_group();
     state_->session = std::move(session);
     state_->own_region_fd = own_region_fd;
     state_->watches_as = watches_as;

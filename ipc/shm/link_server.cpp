@@ -18,6 +18,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -70,7 +71,8 @@ FileDescriptor take_lock(const std::string& session, const std::string& path) {
     return lock;
 }
 
-FileDescriptor listen_at(const std::string& session, const std::string& path) {
+FileDescriptor listen_at(const std::string& session, const std::string& path,
+                         std::optional<std::uint32_t> group) {
     const std::string attempt = "open the socket of session " + session;
     const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own on a local file system";
     if (unlink(path.c_str()) != 0 && errno != ENOENT)  // of a controller that died: the lock says so
@@ -80,7 +82,8 @@ FileDescriptor listen_at(const std::string& session, const std::string& path) {
     address.sun_family = AF_UNIX;
     std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
     if (!fd.valid() || bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-        chmod(path.c_str(), 0600) != 0 || listen(fd.get(), kClientsMax) != 0)
+        (group && chown(path.c_str(), static_cast<uid_t>(-1), *group) != 0) ||
+        chmod(path.c_str(), group ? 0660 : 0600) != 0 || listen(fd.get(), kClientsMax) != 0)
         throw StartupError(attempt, path + ": " + last_error(), mend);
     return fd;
 }
@@ -91,6 +94,7 @@ struct LinkServer::State {
     SessionPaths paths;
     FileDescriptor lock;
     FileDescriptor listener;
+    std::optional<std::uint32_t> group;  // whose members are served besides this user and root
     int region_fd = -1, bone_fd = -1;
     std::vector<Client> clients;
     std::uint64_t refused = 0;
@@ -124,7 +128,7 @@ struct LinkServer::State {
             const Peer peer = peer_of(c.socket.get());
             c.pid = peer.pid;
             c.connected_at = now;
-            if (!peer.trusted) {
+            if (!peer.trusted && !(group && peer_in_group(c.socket.get(), *group))) {
                 answer(c, LinkAnswer::other_user);
                 continue;
             }
@@ -214,9 +218,10 @@ struct LinkServer::State {
 LinkServer::LinkServer(const std::string& session, int region_fd, int bone_fd)
     : state_(std::make_unique<State>()) {
     state_->paths = session_paths(session);
-    make_runtime_folder(state_->paths.folder);
+    state_->group = session_group();
+    make_runtime_folder(state_->paths.folder, state_->group);
     state_->lock = take_lock(session, state_->paths.lock);
-    state_->listener = listen_at(session, state_->paths.socket);
+    state_->listener = listen_at(session, state_->paths.socket, state_->group);
     state_->region_fd = region_fd;
     state_->bone_fd = bone_fd;
     state_->clients.reserve(kClientsMax + kSilentMax);

@@ -1,12 +1,14 @@
 #include "ipc/shm/session_path.hpp"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <system_error>
 
@@ -24,6 +26,13 @@ std::string runtime_folder() {
         if (value != nullptr && *value != '\0') return value;
     }
     return "/tmp/tact-" + std::to_string(geteuid());
+}
+
+// Nobody but root decides what lies beside it, so nobody else decided who owns it.
+bool placed_by_root(const std::string& folder) {
+    struct stat status {};
+    return lstat((folder + "/..").c_str(), &status) == 0 && status.st_uid == 0 &&
+           (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
 }  // namespace
@@ -52,21 +61,40 @@ SessionPaths session_paths(const std::string& session) {
     return p;
 }
 
+std::optional<std::uint32_t> session_group() {
+    const char* const value = std::getenv("TACT_RUNTIME_GROUP");
+    if (value == nullptr || *value == '\0') return std::nullopt;
+    const std::string name = value;
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc{} && end == name.data() + name.size()) return number;
+    const group* const found = getgrnam(value);  // start-up
+    if (found == nullptr)
+        throw StartupError("find group " + name + " of TACT_RUNTIME_GROUP", "there is no such group",
+                           "create it with tact station setup, or unset TACT_RUNTIME_GROUP");
+    return found->gr_gid;
+}
+
 std::string session_socket_path(const std::string& session) { return session_paths(session).socket; }
 
-void make_runtime_folder(const std::string& folder) {
+void make_runtime_folder(const std::string& folder, std::optional<std::uint32_t> group) {
     const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
-    if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
-        throw StartupError("make folder " + folder, last_error(), mend);
+    const bool made = mkdir(folder.c_str(), 0700) == 0;
+    if (!made && errno != EEXIST) throw StartupError("make folder " + folder, last_error(), mend);
+    if (made && group &&
+        (chown(folder.c_str(), static_cast<uid_t>(-1), *group) != 0 || chmod(folder.c_str(), 0750) != 0))
+        throw StartupError("give folder " + folder + " to group " + std::to_string(*group), last_error(),
+                           "run as a member of that group, or unset TACT_RUNTIME_GROUP");
     const std::string why = distrust_runtime_folder(folder);
     if (!why.empty()) throw StartupError("use folder " + folder, why, mend);
 }
 
-std::string distrust_runtime_folder(const std::string& folder) {
+std::string distrust_runtime_folder(const std::string& folder, std::optional<std::uint32_t> group) {
     struct stat status {};
     if (lstat(folder.c_str(), &status) != 0) return last_error();
     if (!S_ISDIR(status.st_mode)) return "it is not a folder (links are not followed)";
-    if (status.st_uid != geteuid() && status.st_uid != 0)
+    const bool for_group = group && status.st_gid == *group && placed_by_root(folder);
+    if (status.st_uid != geteuid() && status.st_uid != 0 && !for_group)
         return "it belongs to user " + std::to_string(status.st_uid) + ", not to user " +
                std::to_string(geteuid());
     if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return "others may write to it";

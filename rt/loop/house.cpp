@@ -144,12 +144,14 @@ void House::run() {
             report_.page_faults =
                 faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
             reported_at = now;
+            notify_service(now);
             spdlog::default_logger_raw()->flush();  // what nobody read, said now that somebody does
         }
         report();
         const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;
         int none = 0;
         if (over) mail_.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
+        if (mail_.stop_signal.load(std::memory_order_relaxed) != 0) service_.stopping();
     }
     attend_events();
 }
@@ -278,6 +280,15 @@ void House::attend_events() {
 void House::report() {
     report_.bad_input = bad_input_ + link_.refused();
     mail_.house.publish(report_);
+}
+
+void House::notify_service(Instant now) {
+    HealthTopic h{};
+    if (!region_->health.read(h)) return;
+    service_.update({.heartbeat = mail_.pulse.beat_ns.load(std::memory_order_relaxed),
+                     .state = run_state_text(static_cast<RunState>(h.state)),
+                     .rate_hz = h.force_rate_hz},
+                    now);
 }
 
 }  // namespace tact

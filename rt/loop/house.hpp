@@ -19,6 +19,7 @@
 #include "ipc/topics/regions.hpp"
 #include "rt/loop/mail.hpp"
 #include "rt/loop/model_builder.hpp"
+#include "rt/loop/service_notify.hpp"
 
 namespace tact {
 
@@ -58,6 +59,7 @@ private:
     void count_recorders();
     void attend_events();
     void report();
+    void notify_service(Instant now);
 
     HouseSettings settings_;
     OwnedRegion<RtRegion>& region_;
@@ -72,6 +74,7 @@ private:
     std::uint64_t bad_input_ = 0;
     std::uint64_t faults_seen_ = 0;
     HouseReport report_{};
+    ServiceNotify service_;
 };
 
 }  // namespace tact

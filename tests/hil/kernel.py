@@ -14,7 +14,8 @@ import tempfile
 MODULES = ("virtio_pci 9pnet_virtio 9p overlay virtio_rng "  # the host's files
            "dummy_hcd libcomposite usb_f_fs configfs "       # a USB device out of a program
            "can can-dev can-raw vcan "                       # a CAN interface
-           "uhid hid-cp2112").split()                        # a USB adapter with eight GPIO lines
+           "uhid hid-cp2112 "                                # a USB adapter with eight GPIO lines
+           "msr").split()                                    # counter of system management interrupts
 META = "linux-image-rt-amd64"  # stands for the newest real-time kernel of the installed Debian
 SLOW_S = 150                   # longest of any single command here
 PATIENCE = ("-o", "Acquire::http::Timeout=20", "-o", "Acquire::Retries=1")

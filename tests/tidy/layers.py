@@ -23,6 +23,7 @@ BELOW = {
     "ipc/topics": ["ipc/base", "ipc/shm"],
     "ipc/assets": ["ipc/base"],
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
+    "ipc/station": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/assets"],
     # Force models do not know each other.
@@ -49,9 +50,9 @@ WRAPPED = [
     (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/assets", "prep", "tests"]),
     (r"CLI/", ["ipc/manual", "rt/main", "rt/start_options", "rt/replay", "gui", "prep", "deploy", "hal/emu/main", "tests"]),
-    (r"toml\+\+|spdlog/", ["rt/main", "rt/start_model", "rt/start_options", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
+    (r"toml\+\+|spdlog/", ["rt/main", "rt/start_model", "rt/start_options", "rt/start_station", "rt/replay", "rt/loop", "rt/config", "gui", "prep", "deploy", "hal/sim", "hal/emu/main", "tests"]),
     (r"httplib\.h", ["deploy/tact/metrics_server", "tests"]),
-    (r"nlohmann/", ["deploy", "prep", "gui", "rt/check_config", "rt/start_bodies", "rt/replay", "ipc/topics/frames_json", "tests"]),
+    (r"nlohmann/", ["deploy", "prep", "gui", "rt/check_config", "rt/start_bodies", "rt/replay", "ipc/topics/frames_json", "ipc/station/station_report", "tests"]),
 ]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -2,6 +2,8 @@
 tact_test(unit/deploy_child_test.cpp USES launch base)
 tact_test(unit/deploy_servo_core_test.cpp USES launch base)
 tact_test(unit/deploy_doctor_test.cpp USES launch)
+tact_test(unit/deploy_station_test.cpp USES base launch_station)
+tact_test(unit/deploy_station_verify_test.cpp USES topics station station_metrics launch_station SYSTEM nlohmann_json::nlohmann_json)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 tact_test(unit/deploy_metrics_test.cpp USES base version shm topics launch SYSTEM PkgConfig::HTTPLIB)
 tact_test(unit/deploy_monitoring_test.cpp USES shm topics launch SYSTEM nlohmann_json::nlohmann_json)
@@ -66,3 +68,11 @@ if(TACT_SYSTEM_PYTHON3)
 endif()
 add_test(NAME replay_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/replay_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(replay_test PROPERTIES TIMEOUT 900)
+if(NOT TACT_SANITIZE)  # whose runtimes make system calls of their own, and refuse strace
+    add_test(NAME deploy_units_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_units_test.py ${CMAKE_SOURCE_DIR}
+        $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)
+    set_tests_properties(deploy_units_test PROPERTIES TIMEOUT 600)
+endif()
+add_test(NAME deploy_station_e2e_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_station_e2e_test.py
+    ${CMAKE_SOURCE_DIR} $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)
+set_tests_properties(deploy_station_e2e_test PROPERTIES TIMEOUT 600 RUN_SERIAL TRUE)

@@ -1,0 +1,10 @@
+// tact station, for the program's parser.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tact::launch {
+
+void add_station(CLI::App& app, int& exit_code);
+
+}  // namespace tact::launch

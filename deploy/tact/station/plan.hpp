@@ -1,0 +1,50 @@
+// The steps of tact station setup, as a pure function of the machine and the request.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deploy/tact/station/journal.hpp"
+#include "deploy/tact/station/machine.hpp"
+
+namespace tact::launch {
+
+struct WantedFile {
+    std::filesystem::path path{};
+    FileKind kind = FileKind::file;
+    std::string bytes{};
+    mode_t mode = 0644;
+};
+
+struct PlannedStep {
+    std::string name{};  // as for --skip
+    std::string purpose{};
+    std::vector<WantedFile> files{};
+    std::vector<Command> commands{};            // after the files
+    std::vector<Command> undo_first{}, undo{};  // before and after the files are restored
+};
+
+struct StationRequest {
+    int core = -1;
+    std::string user{};               // gets the rights; empty: nobody
+    std::vector<std::string> skip{};  // names of steps
+    std::vector<std::string>
+        kernel_packages;  // that an installation would bring; empty: the meta package alone
+};
+
+struct StationPlan {
+    ServoCores cores;
+    std::string kernel_arguments{};
+    std::vector<PlannedStep> steps{};
+    std::vector<std::string> remarks{};
+};
+
+inline constexpr const char* kStepNames[] = {"kernel", "groups",  "rights",
+                                             "tuning", "service", "kernel-arguments"};
+inline constexpr const char* kKernelPackage = "linux-image-rt-amd64";
+
+[[nodiscard]] std::string kernel_arguments_for(const ServoCores& cores);
+// Throws StartupError for a machine that cannot be set up so.
+[[nodiscard]] StationPlan make_station_plan(const StationMachine& machine, const StationRequest& request);
+
+}  // namespace tact::launch

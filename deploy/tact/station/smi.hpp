@@ -1,0 +1,21 @@
+// How many system management interrupts a processor core took: the firmware's own, which no kernel can delay or see.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tact::launch {
+
+struct SmiReading {
+    std::optional<std::uint64_t> count;  // since power-on, 32 bits
+    std::string why_not;
+};
+
+// MSR_SMI_COUNT (0x34) of Intel processors, through /dev/cpu/N/msr below the root.
+[[nodiscard]] SmiReading read_smi_count(int core, const std::filesystem::path& root = "/");
+// Between two readings, across an overflow.
+[[nodiscard]] std::uint64_t smi_between(std::uint64_t before, std::uint64_t after);
+
+}  // namespace tact::launch
