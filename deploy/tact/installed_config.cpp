@@ -6,9 +6,13 @@ std::filesystem::path installed_config(const std::filesystem::path& program) {
     const auto folder = program.parent_path();
     if (folder.filename() != "bin") return {};
     const auto prefix = folder.parent_path();
-    const auto file = (prefix == "/usr" ? std::filesystem::path("/") : prefix) / "etc/tact/tact.toml";
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(file, ignored) ? file : std::filesystem::path();
+    for (const std::filesystem::path& root :
+         {prefix, std::filesystem::path(prefix == "/usr" ? "/" : prefix)}) {
+        std::error_code ignored;
+        if (auto file = root / "etc/tact/tact.toml"; std::filesystem::is_regular_file(file, ignored))
+            return file;
+    }
+    return {};
 }
 
 std::filesystem::path installed_config() {
