@@ -77,7 +77,9 @@ void add_probe(CLI::App& app, int& exit_code) {
     const auto root = std::make_shared<std::string>("/");
     const auto as_json = std::make_shared<bool>(false);
     command
-        ->add_option("--config", *config, "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any")
+        ->add_option(
+            "--config", *config,
+            "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any")
         ->type_name("FILE");
     command->add_option("--root", *root, "folder that stands for /, with its sys and dev")
         ->type_name("DIR")
