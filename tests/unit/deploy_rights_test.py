@@ -120,7 +120,7 @@ class Install(unittest.TestCase):
         script = os.path.join(ROOT, "deploy/install.sh")
         self.assertEqual(subprocess.run([script, "--wrong"], capture_output=True, check=False).returncode, 1)
         self.assertEqual(subprocess.run([script, "--help"], capture_output=True, check=False).returncode, 0)
-        done = subprocess.run(["bash", "-c", f". '{script}' && type tact_build >/dev/null"], capture_output=True,
+        done = subprocess.run(["bash", "-c", f". '{script}' && type tact_install_rights >/dev/null"], capture_output=True,
                               text=True, check=False)
         self.assertEqual((done.returncode, done.stdout), (0, ""))
 
