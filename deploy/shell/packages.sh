@@ -109,7 +109,6 @@ tact_apt_output() {
         case $line in
             dlstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((line / 3))" "Downloading packages" ;;
             pmstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((33 + line * 2 / 3))" "Installing packages" ;;
-            pmerror:*) ;;  # the log has it in words
             *) printf '%s\n' "$line" >>"$1" ;;
         esac
     done
@@ -172,10 +171,8 @@ tact_install_packages() {
     fi
     tact_plan packages "$((bytes / 8000000 + count / 5 + 1))" build "$build_s"
     tact_step packages "Downloading packages"
-    # shellcheck disable=SC2086  # several packages
-    # A package whose set-up needs another that is not set up yet (ccache beside compilers, on Debian 13) passes the second time.
-    if ! tact_apt "$log" install --no-install-recommends $missing &&
-        { ! grep -q 'Sub-process /usr/bin/dpkg returned an error code' "$log" || ! tact_apt "$log" install --no-install-recommends $missing; }; then
+    # shellcheck disable=SC2086
+    if ! tact_apt "$log" install --no-install-recommends $missing; then
         tact_plan_end
         tact_explain_apt "$log" "$missing"
         return

@@ -94,14 +94,6 @@ expect_text "$out" "Another package manager is at work (held by process 42 (apt)
 expect_text "$out" "exit 0"
 rm -f "$work/install-once"
 
-# A set-up that fails once.
-printf 'E: Sub-process /usr/bin/dpkg returned an error code (1)\n' >"$work/install"
-touch "$work/install-once"
-out=$(install)
-expect_text "$out" "exit 0"
-rm -f "$work/install-once"
-cause install "E: Sub-process /usr/bin/dpkg returned an error code (1)" "apt-get failed" "as root, run"
-
 # Without root.
 out=$(STUB_UID=1000 PATH=$work/bin:/nowhere /bin/bash -uc 'hash -p /usr/bin/awk awk; . "$1/deploy/shell/packages.sh"
     tact_become_root "Installing packages" "apt-get install lack" 2>&1; echo "exit $?"' _ "$root")
