@@ -109,6 +109,7 @@ tact_apt_output() {
         case $line in
             dlstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((line / 3))" "Downloading packages" ;;
             pmstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((33 + line * 2 / 3))" "Installing packages" ;;
+            pmerror:*) ;;  # the log has it in words
             *) printf '%s\n' "$line" >>"$1" ;;
         esac
     done
@@ -119,8 +120,10 @@ tact_apt() {
     local log=$1 until=$((SECONDS + ${TACT_LOCK_SECONDS:-180})) told=0 status
     shift
     while :; do
-        "${tact_as_root[@]}" env LC_ALL=C.UTF-8 LANGUAGE= DEBIAN_FRONTEND=noninteractive apt-get -q -y \
-            -o Dpkg::Use-Pty=0 -o Acquire::Retries=1 -o APT::Status-Fd=1 "$@" 2>&1 | tact_apt_output "$log"
+        # Shares come on a descriptor of their own: apt closes it for the packages' scripts, which need their output.
+        # shellcheck disable=SC2016
+        "${tact_as_root[@]}" env LC_ALL=C.UTF-8 LANGUAGE= DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' \
+            apt -q -y -o Dpkg::Use-Pty=0 -o Acquire::Retries=1 -o APT::Status-Fd=3 "$@" 2>&1 | tact_apt_output "$log"
         status=${PIPESTATUS[0]}
         [ "$status" -ne 0 ] || return 0
         grep -q 'Could not get lock\|Unable to lock directory' "$log" && [ "$SECONDS" -lt "$until" ] || return "$status"
