@@ -91,7 +91,6 @@ tact_build() {
     NINJA_STATUS="@%f/%t@ " cmake --build --preset "$preset" ${1:+--target "$@"} 2>&1 | tact_ninja_output "$preset"
     status=${PIPESTATUS[0]}
     tact_plan_end
-    tact_plan_steps=()
     if [ "$status" -ne 0 ]; then
         tact_fail "build $preset" "a step failed (its output is above)" "rm -rf build/$preset and build again; else report it with that output"
         return

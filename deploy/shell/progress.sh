@@ -56,7 +56,7 @@ tact_share() {
 
 tact_plan_end() {
     if [ -t 1 ] && [ "${tact_plan_shown:--1}" -ge 0 ]; then printf '\r\033[K'; fi
-    tact_plan_shown=-1
+    tact_plan_shown=-1 tact_plan_steps=()
 }
 
 tact_plan
