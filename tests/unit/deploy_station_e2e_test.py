@@ -5,6 +5,7 @@ usage: deploy_station_e2e_test.py ROOT_OF_THE_PROJECT BIN_DIR WRITE_SMALL_SCENE
 """
 import json
 import os
+import resource
 import shutil
 import stat
 import subprocess
@@ -126,6 +127,10 @@ class Tune(Case):
         self.run_script("restart", code=2)
 
 
+def may_be_real_time():
+    return os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_RTPRIO)[0] > 0
+
+
 class Verify(Case):
     def test_the_report_of_a_short_run_is_whole_and_is_read_by_controller_and_metrics(self):
         scene, out = f"{self.dir}/small.tact", f"{self.dir}/report.json"
@@ -142,10 +147,13 @@ class Verify(Case):
         late = report["lateness_us"]
         self.assertTrue(0 <= late["p50"] <= late["p99"] <= late["p999"] <= late["max"])
         self.assertIn("lateness_p999", report["thresholds_us"])
-        self.assertIn("after the controller" if "beside" not in report["cyclictest"]["text"] else "beside",
-                      report["cyclictest"]["text"])
-        if shutil.which("cyclictest"):
-            self.assertGreater(report["cyclictest"]["max_us"], 0)
+        cyclictest = report["cyclictest"]
+        if shutil.which("cyclictest") and may_be_real_time():
+            self.assertRegex(cyclictest["text"], "after the controller|beside")
+            self.assertGreater(cyclictest["max_us"], 0)
+        else:  # missing, or refused: said, and no figure is made up
+            self.assertRegex(cyclictest["text"], "cyclictest")
+            self.assertNotIn("max_us", cyclictest)
         self.assertTrue("count" in report["smi"] or report["smi"]["text"].startswith("not readable"))
         self.assertEqual(report["kernel"], f"{os.uname().release} {os.uname().version}")
 

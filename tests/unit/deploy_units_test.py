@@ -76,10 +76,13 @@ class Files(unittest.TestCase):
             os.makedirs(os.path.join(self.dir, folder))
         for name in NAMES:
             shutil.copy(os.path.join(UNITS, name), os.path.join(self.dir, "etc/systemd/system"))
+        # Under names without blanks: the checkout's may have some.
+        os.symlink(BIN, os.path.join(self.dir, "programs"))
+        os.symlink(os.path.join(ROOT, "deploy"), os.path.join(self.dir, "deploy"))
         paths = []
         for name in NAMES:
             with open(os.path.join(UNITS, name), encoding="utf-8") as f:
-                text = f.read().replace("/usr/bin/tact", f"{BIN}/tact").replace("/usr/local/lib/tact", f"{ROOT}/deploy")
+                text = f.read().replace("/usr/bin/tact", f"{self.dir}/programs/tact").replace("/usr/local/lib/tact", f"{self.dir}/deploy")
             paths.append(os.path.join(self.dir, name.replace("@", "@skull")))
             with open(paths[-1], "w", encoding="utf-8") as f:
                 f.write(text)
