@@ -15,7 +15,7 @@ refused() {
 
 ROOM_UNSHARE=--net step "no network" refused 10 "cannot be reached" anna ./deploy/run
 
-printf '%s\n' 'use Fcntl; open F, ">>", $ARGV[0] or die; fcntl(F, F_SETLK, pack("s s x4 l! l! i", F_WRLCK, 0, 0, 0, 0)) or die; sleep $ARGV[1];' >"$room/lock.pl"
+printf '%s\n' 'use Fcntl; open F, ">>", $ARGV[0] or die; my $l = pack("s s x4 l! l! i", F_WRLCK, 0, 0, 0, 0); fcntl(F, F_SETLK, $l) or die; sleep $ARGV[1];' >"$room/lock.pl"
 locked() {  # locked FILE SECONDS COMMAND: as anna, while root holds the lock
     room_as root "touch $1; perl /lock.pl $1 $2 & sleep 1; su -l anna -c \"cd '$room_checkout' && $3\""
 }
