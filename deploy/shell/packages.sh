@@ -129,7 +129,7 @@ tact_apt() {
         grep -q 'Could not get lock\|Unable to lock directory' "$log" && [ "$SECONDS" -lt "$until" ] || return "$status"
         if [ "$told" = 0 ]; then
             told=1
-            echo "Another package manager is at work ($(grep -m 1 -o 'held by process.*' "$log" || echo "its lock is taken")); waiting up to ${TACT_LOCK_SECONDS:-180} s."
+            echo "Another package manager is at work ($(grep -m 1 -o 'held by process.*' "$log" || echo "its lock is taken")); waiting up to ${TACT_LOCK_SECONDS:-180} s." >&2
         fi
         sleep 2
     done
@@ -158,7 +158,7 @@ tact_install_packages() {
     tact_become_root "Installing packages" "$by_hand" || return
     log=$(mktemp /tmp/tact-apt.XXXXXX) || return
     count=$(wc -w <<<"$missing")
-    echo "$count Debian packages are missing: $missing"
+    echo "Missing Debian packages ($count): $missing"
     # shellcheck disable=SC2086
     if ! tact_apt "$log" update >/dev/null; then
         tact_explain_apt "$log" "$missing"

@@ -9,7 +9,7 @@ refused() {
     printf '%s\n' "$output"
     [ $((SECONDS - start)) -le "$limit" ] || { echo "after $((SECONDS - start)) s, more than $limit"; return 1; }
     grep -qF "$part" <<<"$output" || { echo "it does not say: $part"; return 1; }
-    [ "$(grep -c ': .*' <<<"$(grep -v '^  fix:\|^$' <<<"$output")")" -le 3 ] || { echo "more than one message"; return 1; }
+    [ "$(grep -cE '^(install packages|Installing packages|build in [^:]*|configure [^:]*): ' <<<"$output")" = 1 ] || { echo "more than one message"; return 1; }
     grep -q '^  fix: ' <<<"$output" || { echo "no fix is named"; return 1; }
 }
 

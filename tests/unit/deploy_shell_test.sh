@@ -18,7 +18,7 @@ cat >"$work/bin/apt-get" <<'STUB'
 case " $* " in
     *" update --print-uris "*) [ -f "$STUB/no-archive" ] || echo "'file:/archive/dists/stable/InRelease' x 0" ;;
     *print-uris*) printf "'http://a/x.deb' x.deb 12000000 SHA256:0\n'http://a/y.deb' y.deb 500000 SHA256:0\n" ;;
-    *" update "*) [ ! -f "$STUB/update" ] || { cat "$STUB/update"; exit 100; } ;;
+    *" update "*) [ ! -f "$STUB/update" ] || { cat "$STUB/update"; [ ! -f "$STUB/update-once" ] || rm "$STUB/update"; exit 100; } ;;
     *" install "*)
         if [ -f "$STUB/install" ]; then cat "$STUB/install"; [ ! -f "$STUB/install-once" ] || rm "$STUB/install"; exit 100; fi
         printf 'dlstatus:1:50.0:x\npmstatus:lack:50.0:x\n'
@@ -45,7 +45,7 @@ install() {
 }
 
 out=$(install)
-expect_text "$out" "2 Debian packages are missing: held lack"
+expect_text "$out" "Missing Debian packages (2): held lack"
 expect_text "$out" "With what they need: 2 packages, 13 MB to download."
 expect_text "$out" "Downloading packages"
 expect_text "$out" "exit 0"
@@ -86,7 +86,11 @@ cause install "E: You don't have enough free space in /var/cache/apt/archives/."
 cause update "E: Failed to fetch http://a/x  Connection timed out" "the download broke off" "check the network"
 cause install "E: something new" "apt-get failed" "as root, run: apt-get install --no-install-recommends held lack"
 
-# A lock that is let go in time.
+# A lock that is let go in time; of the lists too, whose other output is not shown.
+printf 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 42 (apt)\n' >"$work/update"
+touch "$work/update-once"
+expect_text "$(install)" "Another package manager is at work (held by process 42 (apt)); waiting up to 3 s."
+rm -f "$work/update-once"
 printf 'E: Could not get lock /var/lib/dpkg/lock-frontend. It is held by process 42 (apt)\n' >"$work/install"
 touch "$work/install-once"
 out=$(install)
