@@ -25,7 +25,7 @@ step "apt's lock is held too long" refused 60 "another package manager still hol
     locked /var/lib/apt/lists/lock 120 "TACT_LOCK_SECONDS=4 ./deploy/run"
 waits() {
     local output
-    output=$(locked /var/lib/apt/lists/lock 8 ". deploy/shell/progress.sh; . deploy/shell/packages.sh; echo xauth >/tmp/list; tact_install_packages /tmp/list && dpkg -s xauth | grep Status")
+    output=$(locked /var/lib/apt/lists/lock 8 ". deploy/shell/progress.sh; . deploy/shell/packages.sh; echo xauth >/tmp/list; tact_install_packages /tmp/list && dpkg -s xauth | grep Status" 2>&1)
     printf '%s\n' "$output"
     grep -q "Another package manager is at work" <<<"$output" && grep -q "install ok installed" <<<"$output"
 }
