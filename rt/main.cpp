@@ -285,7 +285,7 @@ int main(int argc, char** argv) {
     if (journal) spdlog::set_formatter(make_journal_formatter());
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
-    app.footer("Exit codes: 0 as asked; 1 error or wrong usage.");
+    app.footer("Exit codes: 0 as asked; 1 error; 2 wrong usage.");
     StartOptions options;
     StartOverrides overrides;
     describe(app, options, overrides);
@@ -293,7 +293,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 1;
+        return app.exit(e) == 0 ? 0 : 2;
     }
     try {
         if (!options.check_config.empty())

@@ -21,7 +21,7 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     });
     app.add_option("--session", o.session, "name under which the other programs find this one")
         ->type_name("NAME");
-    app.add_option("--config", o.config, "TOML file; deploy/tact.toml shows every key")
+    app.add_option("--config", o.config, "TOML file; deploy/tact.toml (/etc/tact/tact.toml) shows every key")
         ->type_name("FILE.toml");
     app.add_option("--seconds", o.seconds, "end after this time; 0: run until a signal")
         ->type_name("S")

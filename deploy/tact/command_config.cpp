@@ -15,7 +15,7 @@ void add_config(CLI::App& app) {
                                                "device; exit code 1: the file has problems");
     const auto file = std::make_shared<std::string>();
     const auto as_json = std::make_shared<bool>(false);
-    check->add_option("file", *file, "TOML file; deploy/tact.toml shows every key")
+    check->add_option("file", *file, "TOML file; deploy/tact.toml (/etc/tact/tact.toml) shows every key")
         ->type_name("FILE")
         ->required();
     check->add_flag("--json", *as_json, "for programs: problems, and the value of every key");

@@ -264,6 +264,7 @@ private:
         const nlohmann::json report = run_report(region, &places_, facts_);
         std::printf("the run ended: %s\n", facts_.why_ended.c_str());
         std::fputs(report_summary(report).c_str(), stdout);
+        std::fflush(stdout);  // before the words of the next scene's programs, in a file too
         if (!options_.json.empty()) {
             write_whole(options_.json, report_text(report));
             std::printf("wrote %s\n", options_.json.c_str());

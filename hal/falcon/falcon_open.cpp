@@ -6,6 +6,7 @@
 
 #include "hal/falcon/falcon.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/rights.hpp"
 
 namespace tact {
 
@@ -40,9 +41,7 @@ bool passes(BusFault fault) noexcept {
         case BusFault::twins:
             throw StartupError(what, "two have this serial", "plug in one of them");
         case BusFault::denied:
-            throw StartupError(what, "this user may not open it (" + found.detail + ")",
-                               "sudo deploy/install.sh --rights, which installs deploy/60-tact.rules; log in "
-                               "again and plug it in again");
+            throw StartupError(what, "this user may not open it (" + found.detail + ")", kDeviceRightsFix);
         case BusFault::busy:
             throw StartupError(what, "another program has it (" + found.detail + ")",
                                "end that program; lsof names it");

@@ -6,13 +6,11 @@
 #include <filesystem>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/rights.hpp"
 
 namespace tact {
 
 namespace {
-
-constexpr const char* kRights =
-    "sudo deploy/install.sh --rights (it makes the group tact and its rules), and log in again";
 
 std::vector<std::string> chip_paths(const std::string& folder) {
     std::vector<std::string> paths;
@@ -51,7 +49,7 @@ GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder) {
     }
     if (!refused.empty()) {
         throw StartupError(attempt, refused + ": " + std::strerror(why),
-                           why == EACCES || why == EPERM ? kRights : "plug the adapter in anew");
+                           why == EACCES || why == EPERM ? kRightsFix : "plug the adapter in anew");
     }
     throw StartupError(attempt, seen.empty() ? "there is no GPIO chip at all" : "there are only " + seen,
                        "plug the adapter in, or give the label or name of one that is there as lines.chip");
@@ -60,7 +58,7 @@ GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder) {
 void throw_gpio_refusal(const GpioChip& chip, const GpioRefusal& r) {
     if (r.line.empty()) {
         throw StartupError("opening the GPIO chip " + words(chip), std::strerror(r.error),
-                           r.error == EACCES || r.error == EPERM ? kRights : "plug the adapter in anew");
+                           r.error == EACCES || r.error == EPERM ? kRightsFix : "plug the adapter in anew");
     }
     const std::string attempt = "taking line \"" + r.line + "\" of the GPIO chip " + words(chip);
     if (r.error == 0) {
@@ -73,7 +71,7 @@ void throw_gpio_refusal(const GpioChip& chip, const GpioRefusal& r) {
                            "end that program, or choose another line in [lines]");
     }
     throw StartupError(attempt, std::strerror(r.error),
-                       r.error == EACCES || r.error == EPERM ? kRights : "choose another line in [lines]");
+                       r.error == EACCES || r.error == EPERM ? kRightsFix : "choose another line in [lines]");
 }
 
 }  // namespace tact

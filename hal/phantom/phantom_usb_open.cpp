@@ -8,6 +8,7 @@
 #include "hal/phantom/libusb_bus.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/rights.hpp"
 
 namespace tact {
 
@@ -57,9 +58,7 @@ std::string awaited(const BusFinding& found, const std::string& serial) {
             throw StartupError(what, "two boards have this serial",
                                "give each board a serial of its own; until then plug in one of them");
         case BusFault::denied:
-            throw StartupError(what, "this user may not open it (" + found.detail + ")",
-                               "sudo deploy/install.sh --rights, which installs deploy/60-tact.rules; log in "
-                               "again and plug the board in again");
+            throw StartupError(what, "this user may not open it (" + found.detail + ")", kDeviceRightsFix);
         case BusFault::busy:
             throw StartupError(what, "another program has it (" + found.detail + ")",
                                "end that program; lsof names it");

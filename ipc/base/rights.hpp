@@ -3,11 +3,13 @@
 
 namespace tact {
 
-// Not a member of the group, or the files are not installed.
-inline constexpr const char* kRightsFix = "sudo deploy/install.sh --rights; log in again";
+// Not a member of the group, or the files are not installed. The package brings the files, so that only the membership lacks.
+inline constexpr const char* kRightsFix =
+    "sudo deploy/install.sh --rights (with the package: sudo usermod -aG tact,realtime $USER); log in again";
 // The same where a device's node may not be opened: udev applies its rules when the device is plugged in.
 inline constexpr const char* kDeviceRightsFix =
-    "sudo deploy/install.sh --rights; log in again, and plug the device in again";
+    "sudo deploy/install.sh --rights (with the package: sudo usermod -aG tact,realtime $USER); log in "
+    "again, and plug the device in again";
 // A member, but this session began before that.
 inline constexpr const char* kLoginFix = "log out of the whole session and in again (or restart the machine)";
 // All is installed, but nothing applied it to this session.
@@ -19,6 +21,7 @@ inline constexpr const char* kCapabilityFix =
     "run outside the container, or give it --cap-add SYS_NICE --cap-add IPC_LOCK";
 // From the controller itself, which does not look into the matter.
 inline constexpr const char* kLimitsFix =
-    "tact doctor tells what is missing; usually: sudo deploy/install.sh --rights; log in again";
+    "tact doctor tells what is missing; usually: sudo deploy/install.sh --rights (with the package: sudo "
+    "usermod -aG tact,realtime $USER); log in again";
 
 }  // namespace tact

@@ -168,7 +168,7 @@ int run(int argc, char** argv) {
         "meshes.",
         "tact-prep");
     app.set_version_flag("--version", program_version("tact-prep"));
-    app.footer("Exit codes: 0 done; 1 error or wrong usage; 130 cancelled by Ctrl-C, nothing written.");
+    app.footer("Exit codes: 0 done; 1 error; 2 wrong usage; 130 cancelled by Ctrl-C, nothing written.");
     app.require_subcommand(1);
     const auto output = [&](CLI::App* sub) {
         sub->add_option("-o,--output", o.scene, "the scene to write")->required()->type_name("SCENE");
@@ -216,7 +216,7 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 1;
+        return app.exit(error) == 0 ? 0 : 2;
     }
     if (simplify_parsed->parsed()) {
         simplify_file();

@@ -198,7 +198,7 @@ std::string nearest(const std::vector<ConfigKey>& keys, const std::string& name)
 void set_key(const ConfigKey& key, const toml::node& node, const std::string& where) {
     const auto wrong = [&](const char* wanted) {
         throw ConfigError(where, key.name, std::string("this is not ") + wanted,
-                          "see deploy/tact.toml for the key and its default");
+                          "see deploy/tact.toml (/etc/tact/tact.toml) for the key and its default");
     };
     if (const auto* d = std::get_if<double*>(&key.target)) {
         if (!node.is_number()) wrong("a number");
@@ -223,7 +223,8 @@ void set_key(const ConfigKey& key, const toml::node& node, const std::string& wh
     }
     const std::string bad = complaint(key);
     if (!bad.empty()) {
-        throw ConfigError(where, key.name, bad, "see deploy/tact.toml for the key and its default");
+        throw ConfigError(where, key.name, bad,
+                          "see deploy/tact.toml (/etc/tact/tact.toml) for the key and its default");
     }
 }
 

@@ -59,9 +59,10 @@ ConfigErrors read_all(const std::string& path, RtConfig& config) {
         file = toml::parse_file(path);
     } catch (const toml::parse_error& e) {
         const bool missing = e.source().begin.line == 0;
-        return {{"reading the configuration " + (missing ? path : at(path, e.source())), "",
-                 std::string(e.description()),
-                 missing ? kReadable : "fix this line; deploy/tact.toml shows the form"}};
+        return {
+            {"reading the configuration " + (missing ? path : at(path, e.source())), "",
+             std::string(e.description()),
+             missing ? kReadable : "fix this line; deploy/tact.toml (/etc/tact/tact.toml) shows the form"}};
     }
     ConfigErrors errors;
     const std::vector<ConfigKey> keys = keys_of(config);

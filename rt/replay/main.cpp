@@ -92,6 +92,7 @@ void print_json(const Wishes& w, const Replay& replay) {
                      {"steps", r.steps},
                      {"different", r.different},
                      {"obstacle", replay.obstacle()},
+                     {"recorded_by", replay.recording().about().controller},
                      {"repaired", replay.recording().about().repair.needed},
                      {"lost", replay.recording().about().dropped},
                      {"removed_levels", r.removed_levels},
@@ -106,6 +107,8 @@ void print_json(const Wishes& w, const Replay& replay) {
 
 void print_words(const Replay& replay) {
     const ReplayResult& r = replay.result();
+    const std::string& controller = replay.recording().about().controller;
+    if (!controller.empty()) std::printf("recorded by %s\n", controller.c_str());
     if (!replay.obstacle().empty()) std::printf("not exact: %s\n", replay.obstacle().c_str());
     const std::uint64_t all = replay.recording().about().cycles;
     if (r.steps < all)

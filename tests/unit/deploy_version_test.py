@@ -12,7 +12,7 @@ import unittest
 
 ROOT, BIN, PROJECT = sys.argv[1:4]
 del sys.argv[1:]
-PROGRAMS = ["tact", "tact-prep", "tact-rt", "tact-gui", "tact-record", "tact-replay"]
+PROGRAMS = ["tact", "tact-prep", "tact-rt", "tact-gui", "tact-record", "tact-replay", "tact-emu"]
 SCRIPT = os.path.join(ROOT, "ipc/version/version.cmake")
 
 
@@ -44,6 +44,14 @@ class Version(unittest.TestCase):
         self.assertRegex(version, re.escape(PROJECT) + r"($|[-+~])")
         if os.path.exists(os.path.join(ROOT, ".git")):
             self.assertEqual(version.split(".dirty")[0], version_of(ROOT).split(".dirty")[0])
+
+    def test_wrong_usage_is_exit_code_2_in_all(self):
+        for program in PROGRAMS:
+            path = os.path.join(BIN, program)
+            if os.path.exists(path):
+                run = subprocess.run([path, "--no-such-option"], capture_output=True, text=True, check=False)
+                self.assertEqual((run.returncode, run.stdout), (2, ""), program)
+                self.assertIn("--no-such-option", run.stderr, program)
 
     def test_the_version_counts_commits_names_the_last_and_says_if_that_is_not_all(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -188,12 +188,11 @@ TEST_F(Program, BadInputIsRefusedByNamePlaceReasonAndMend) {
     }
     expect_refused({"info", write("flipped.tact", flipped)},
                    {"flipped.tact", "section ", "at byte ", "checksum"});
-    // Wrong use of the command line is an error of the same code; it ends with the way to more help.
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
                                                   {"dock", map},
                                                   {"dock", map, model},
                                                   {"demo", "dock", "-o", out, "--unknown"}}) {
-        EXPECT_EQ(run(wrong).code, 1);
+        EXPECT_EQ(run(wrong).code, 2);
     }
     EXPECT_EQ(run({"--help"}).code, 0);
 }
@@ -232,7 +231,7 @@ TEST_F(Program, SimplifiesAMeshAndSaysWhatItDid) {
     expect_refused({"simplify", in, "--vertices", "100", "-o", in}, {"input files"});
     expect_refused({"simplify", write("bad.stl", std::string(200, 'x')), "--vertices", "9", "-o", out},
                    {"bad.stl", "its size"});
-    EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 1);
+    EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 2);
 }
 
 TEST_F(Program, BakesBoneToDrillFromAScanOrMadeHere) {

@@ -49,6 +49,8 @@ class Sessions:
             self.claim(name, False, err)
             return recording, {}
         said = json.loads(out)
+        version = self.must("tact-rt", "--version").strip()
+        self.claim("%s names the build that recorded it" % name, said["recorded_by"] == version != "", (said["recorded_by"], version))
         self.claim("%s: %d steps, up to %.2f N, the same to the bit" % (name, said["steps"], said["force_n_most"]),
                    code == 0 and said["different"] == 0 and said["obstacle"] == "" and said["lost"] == 0 and
                    said["force_n_most"] > felt_n and said["steps"] > 300 * self.seconds, said)

@@ -38,7 +38,8 @@ void need_emulated_device(const std::filesystem::path& config) {
     try {
         table = toml::parse_file(config.string());
     } catch (const toml::parse_error& e) {
-        throw StartupError(attempt, std::string(e.description()), "see deploy/tact.toml for every key");
+        throw StartupError(attempt, std::string(e.description()),
+                           "see deploy/tact.toml (/etc/tact/tact.toml) for every key");
     }
     for (const char* const hand : {"device", "device2"}) {
         const std::string unset = std::string(hand) == "device" ? "sim" : "none";
