@@ -67,7 +67,7 @@ class Check(Folder):
         done = run("tact-rt", "none.tact", "--config", self.file(BAD))
         self.assertEqual(done.returncode, 1)
         self.assertIn("servo.period_uss: there is no such key", done.stderr)
-        self.assertEqual(run("tact-rt").returncode, 1)  # no scene
+        self.assertEqual(run("tact-rt").returncode, 2)  # no scene
         self.assertEqual(run("tact-rt", "a.tact", "--check-config", "b").returncode, 1)
 
 

@@ -33,7 +33,9 @@ export DISPLAY=elsewhere:0
 expect "tact demo dock"
 expect "tact demo dock --law fixed" --law fixed
 expect "tact dock a.mrc b.pdb" dock a.mrc b.pdb
-export DISPLAY=:4242  # set, but nobody there
+number=4242  # set, but nobody there; a server that was killed leaves its socket
+while [ -e "/tmp/.X11-unix/X$number" ]; do number=$((number + 1)); done
+export DISPLAY=:$number
 expect "tact demo dock $headless"
 
 [ "$failures" -eq 0 ] && echo "all routed as wanted"
