@@ -68,7 +68,7 @@ class Check(Folder):
         self.assertEqual(done.returncode, 1)
         self.assertIn("servo.period_uss: there is no such key", done.stderr)
         self.assertEqual(run("tact-rt").returncode, 2)  # no scene
-        self.assertEqual(run("tact-rt", "a.tact", "--check-config", "b").returncode, 1)
+        self.assertEqual(run("tact-rt", "a.tact", "--check-config", "b").returncode, 2)
 
 
 class Probe(Folder):
