@@ -1,6 +1,6 @@
 # cmake --install: programs, documentation and what a system needs of them, in FHS places below the prefix. The programs
 # find each other in their own folder and the configuration in the prefix's etc (deploy/tact/installed_config.hpp), so any
-# prefix does, and so does the build folder. Test equipment (tact-emu, benches) is not installed.
+# prefix does, and so does the build folder. Test equipment (tact-emu) is not installed. tact-bench and tact-reproduce install themselves (tests).
 include(GNUInstallDirs)
 install(TARGETS tact tact-prep tact-rt tact-record tact-replay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TACT_GUI)

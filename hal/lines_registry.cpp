@@ -13,7 +13,7 @@ namespace {
 std::unique_ptr<Lines> make_none(const LinesSettings& /*s*/) { return nullptr; }
 std::unique_ptr<Lines> make_sim(const LinesSettings& s) {
     auto lines = std::make_unique<SimLines>(s.logic);
-    lines->board().obey_signals();
+    lines->board().apply_signals();
     return lines;
 }
 std::unique_ptr<Lines> make_gpio(const LinesSettings& s) {

@@ -15,7 +15,7 @@ namespace tact {
 struct DeviceSettings {
     std::string driver = "sim";
     SimSettings sim;
-    ArmFigures arm;                                      // of real arms
+    ArmParameterSet arm;                                 // of real arms
     std::string serial;                                  // of a real device; empty: the only one there is
     Duration state_hold = std::chrono::milliseconds(3);  // a real device's newest state is good for so long
     int pump_priority = kPumpPriority;  // FIFO, of the thread that owns a real device's bus; 0: ordinary

@@ -22,42 +22,42 @@
 #include <spdlog/spdlog.h>
 
 #include "hal/registry.hpp"
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/manual/manual.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/shm/servo_threads.hpp"
 #include "ipc/topics/text.hpp"
-#include "rt/check_config.hpp"
+#include "rt/config/check_config.hpp"
+#include "rt/config/config.hpp"
 #include "rt/force/drilling/drill_model.hpp"
-#include "rt/loop/config.hpp"
-#include "rt/loop/head_feed.hpp"
-#include "rt/loop/house.hpp"
-#include "rt/loop/journal_format.hpp"
-#include "rt/loop/log_sink.hpp"
-#include "rt/loop/rt_guard.hpp"
-#include "rt/loop/servo.hpp"
-#include "rt/loop/supervisor.hpp"
-#include "rt/loop/tend_thread.hpp"
-#include "rt/loop/thread_setup.hpp"
-#include "rt/run_text.hpp"
-#include "rt/scene_bone.hpp"
-#include "rt/start_model.hpp"
-#include "rt/start_options.hpp"
-#include "rt/start_station.hpp"
+#include "rt/servo/rt_guard.hpp"
+#include "rt/servo/servo.hpp"
+#include "rt/start/run_text.hpp"
+#include "rt/start/scene_bone.hpp"
+#include "rt/start/start_model.hpp"
+#include "rt/start/start_options.hpp"
+#include "rt/start/start_station.hpp"
+#include "rt/threads/head_feed.hpp"
+#include "rt/threads/housekeeping.hpp"
+#include "rt/threads/journal_format.hpp"
+#include "rt/threads/log_sink.hpp"
+#include "rt/threads/slow_update_thread.hpp"
+#include "rt/threads/supervisor.hpp"
+#include "rt/threads/thread_setup.hpp"
 
 namespace {
 
 using namespace tact;
 
-struct LevelWish {
+struct LevelRequest {
     std::uint32_t path;
     double level;
 };
 
-LevelWish parse_level(const std::string& text, const std::vector<std::string>& paths, const Servo& servo) {
+LevelRequest parse_level(const std::string& text, const std::vector<std::string>& paths, const Servo& servo) {
     const auto equals = text.find('=');
     char* end = nullptr;
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -78,9 +78,9 @@ LevelWish parse_level(const std::string& text, const std::vector<std::string>& p
 // The servo thread: its stack is small, locked and touched before the loop.
 struct ServoThread {
     Servo& servo;
-    ScheduleWish wish;
+    ScheduleRequest request;
     Platform& platform;
-    ServoMail& mail;
+    ServoMailbox& mailbox;
     std::atomic<int> running{0};
     int thread_id = 0;
     std::uint64_t faults_at_start = 0;
@@ -91,13 +91,13 @@ struct ServoThread {
     ~ServoThread() {
         if (!started) return;
         int none = 0;
-        mail.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
+        mailbox.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
         join();
     }
 
     static void* body(void* self) {
         ServoThread& t = *static_cast<ServoThread*>(self);
-        prepare_thread(t.wish, t.platform);
+        prepare_thread(t.request, t.platform);
         t.servo.set_schedule_flags(t.platform.flags);
         t.thread_id = gettid();
         t.servo.warm_up();
@@ -106,7 +106,7 @@ struct ServoThread {
         t.running.notify_one();
         t.servo.run();
         t.servo.publish_end(own_page_faults() - t.faults_at_start);
-        t.mail.ended.store(true, std::memory_order_release);
+        t.mailbox.ended.store(true, std::memory_order_release);
         return nullptr;
     }
     void start() {
@@ -170,8 +170,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (two_hands) second = load_second(scene, drilled, o, config);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
-    static ServoMail mail;
-    House::catch_signals(mail);
+    static ServoMailbox mailbox;
+    Housekeeping::catch_signals(mailbox);
     DeviceSettings of_device = device_settings_from(config);
     of_device.say = [](const char* text) { spdlog::warn("{}", text); };
     const std::unique_ptr<HapticDevice> device = driver.make(of_device);
@@ -200,7 +200,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     Servo servo({.clock = clock,
                  .hands = std::span(hands).first(two_hands ? 2 : 1),
                  .region = *region,
-                 .mail = mail,
+                 .mailbox = mailbox,
                  .lines = lines.get()},
                 settings);
     // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
@@ -215,8 +215,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
 
     std::vector<std::string> paths;  // in the governor's order
     for (const GovernedPath& p : servo.governor().paths()) paths.emplace_back(p.knob.path);
-    std::vector<LevelWish> wishes;
-    for (const std::string& text : o.levels) wishes.push_back(parse_level(text, paths, servo));
+    std::vector<LevelRequest> requests;
+    for (const std::string& text : o.levels) requests.push_back(parse_level(text, paths, servo));
     if (o.check) {
         device->relax();
         if (two_hands) device2->relax();
@@ -232,8 +232,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
                         .lock_memory = config.servo.lock_memory,
                         .limit_processor_time = sleeps(config.servo)},
                        platform,
-                       mail};
-    prepare_process(thread.wish, platform);
+                       mailbox};
+    prepare_process(thread.request, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
     if (const std::string shared = shared_core_text(pinned_servos(), getpid()); !shared.empty())
@@ -248,24 +248,25 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     std::optional<Supervisor> supervisor;
     // Emulated lines guard nothing: there lateness drops what it drops on an emulated device.
     if (lines && (config.lines.driver != "sim" || settings.watchdogs.timing_latches)) {
-        supervisor.emplace(mail.pulse, duration_us(config.safety.supervisor_us_max),
+        supervisor.emplace(mailbox.pulse, duration_us(config.safety.supervisor_us_max),
                            [&lines] { lines->drop(); });
         supervisor->start(thread.thread_id);
     }
 
-    std::optional<TendThread> tending;
-    if (hands[0].model->tended()) tending.emplace(*hands[0].model, region->tool[0], thread.thread_id);
+    std::optional<SlowUpdateThread> slow_updates;
+    if (hands[0].model->has_slow_update())
+        slow_updates.emplace(*hands[0].model, region->tool[0], thread.thread_id);
 
-    House house({.session = o.session,
-                 .seconds = o.seconds,
-                 .arm_with_gui = o.arm_with_gui && !o.arm,
-                 .path_names = paths,
-                 .servo_thread_id = thread.thread_id,
-                 .page_faults_at_start = thread.faults_at_start},
-                region, mail, *link);
-    for (const LevelWish& w : wishes) house.order(CommandKind::set_level, w.level, w.path);
-    if (o.arm) house.order(CommandKind::arm, 0.0, 0);
-    house.run();
+    Housekeeping housekeeping({.session = o.session,
+                               .seconds = o.seconds,
+                               .arm_with_gui = o.arm_with_gui && !o.arm,
+                               .path_names = paths,
+                               .servo_thread_id = thread.thread_id,
+                               .page_faults_at_start = thread.faults_at_start},
+                              region, mailbox, *link);
+    for (const LevelRequest& w : requests) housekeeping.order(CommandKind::set_level, w.level, w.path);
+    if (o.arm) housekeeping.order(CommandKind::arm, 0.0, 0);
+    housekeeping.run();
     thread.join();
     device->relax();
     if (two_hands) device2->relax();

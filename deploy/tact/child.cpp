@@ -44,8 +44,8 @@ struct Image {
     }
 };
 
-[[noreturn]] void become(const Image& image, const ChildSettings& settings, const cpu_set_t* cores,
-                         pid_t parent, int report_fd) {
+[[noreturn]] void exec_program(const Image& image, const ChildSettings& settings, const cpu_set_t* cores,
+                               pid_t parent, int report_fd) {
     const auto give_up = [report_fd]() {
         const int why = errno;
         [[maybe_unused]] const auto n = write(report_fd, &why, sizeof why);
@@ -95,7 +95,8 @@ Child::Child(std::string name, const std::filesystem::path& program, const Child
                            "close programs that hold many files open");
     const pid_t parent = getpid();
     pid_ = fork();
-    if (pid_ == 0) become(image, settings, settings.cores.empty() ? nullptr : &cores, parent, report[1]);
+    if (pid_ == 0)
+        exec_program(image, settings, settings.cores.empty() ? nullptr : &cores, parent, report[1]);
     const int fork_error = errno;
     close(report[1]);
     int why = 0;

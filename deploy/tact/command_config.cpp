@@ -1,8 +1,8 @@
 // tact config check FILE: the controller's own reader, in tact-rt, which this word becomes.
 #include <memory>
 
-#include "deploy/tact/become.hpp"
 #include "deploy/tact/commands.hpp"
+#include "deploy/tact/exec.hpp"
 
 namespace tact::launch {
 
@@ -22,7 +22,7 @@ void add_config(CLI::App& app) {
     check->callback([=] {
         std::vector<std::string> words{"--check-config=" + *file};
         if (*as_json) words.emplace_back("--json");
-        become("tact-rt", std::move(words));
+        exec_program("tact-rt", std::move(words));
     });
 }
 

@@ -27,7 +27,7 @@ void add_demo(CLI::App& app, int& exit_code) {
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
     });
     auto* const drill =
-        demo->add_subcommand("drill", "two hands open a temporal bone with a burr and a sucker");
+        demo->add_subcommand("drill", "two hands open a temporal bone with a burr and a suction tube");
     const auto drill_options = std::make_shared<RunOptions>();
     const auto voxels = std::make_shared<std::string>("256");
     drill->add_option("--voxels", *voxels, "voxels of the bone along each axis")->capture_default_str();

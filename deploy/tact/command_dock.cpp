@@ -10,7 +10,8 @@ namespace {
 constexpr PrepOption kDockPrep[] = {
     {"--contour", "LEVEL", "level of the drawn surface, in the map's unit"},
     {"--resolution-a", "A", "resolution of the map, where its header does not say it"},
-    {"--felt-resolution-a", "A", "feel the map smoothed to this, which draws a structure from farther away"},
+    {"--force-map-resolution-a", "A",
+     "feel the map smoothed to this, which draws a structure from farther away"},
     {"--vertices-max", "N", "most vertices of the drawn surface; 0: all"},
 };
 

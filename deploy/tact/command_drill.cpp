@@ -1,4 +1,4 @@
-// tact drill SCAN: bakes the bone once, then runs it, with a burr in one hand and a sucker in the other.
+// tact drill SCAN: bakes the bone once, then runs it, with a burr in one hand and a suction tube in the other.
 #include <memory>
 
 #include "deploy/tact/baked_run.hpp"

@@ -22,7 +22,7 @@ struct MetricsOptions {
 int metrics(const MetricsOptions& o) {
     Signals signals;
     Observer observer(o.session);
-    Metrics figures(o.session);
+    Metrics metrics(o.session);
     std::unique_ptr<MetricsServer> server;
     if (!o.once && o.textfile.empty()) {
         server = std::make_unique<MetricsServer>(o.address, o.port);
@@ -33,10 +33,10 @@ int metrics(const MetricsOptions& o) {
     do {
         const Observer::News news = observer.poll();
         const bool there = observer.attached() && observer.seen();
-        if (there) figures.follow(observer.region(), observer.generation());
+        if (there) metrics.follow(observer.region(), observer.generation());
         if (news == Observer::News::left && observer.seen())
-            figures.left(observer.region(), observer.generation());
-        const std::string text = figures.text(there ? &observer.region() : nullptr);
+            metrics.left(observer.region(), observer.generation());
+        const std::string text = metrics.text(there ? &observer.region() : nullptr);
         if (o.once) {
             const bool told = there && newest(observer.region().health);
             if (!told && Monotonic::now() - began < kAttachWithin) continue;

@@ -46,10 +46,10 @@ nlohmann::json buses_json(const probe::Buses& b) {
 
 int run_probe(const std::string& config, const std::string& root, bool as_json) {
     const std::string asked = config.empty() ? installed_config().string() : config;
-    const DeviceWish wish = asked.empty() ? DeviceWish{} : read_device_wish(asked);
+    const DeviceRequest request = asked.empty() ? DeviceRequest{} : read_device_request(asked);
     const probe::Buses buses = probe::read_buses(root);
     std::vector<Finding> findings =
-        judge_devices(buses, wish, read_person(), find_hd_library(root, wish.hd_library));
+        judge_devices(buses, request, read_person(), find_hd_library(root, request.hd_library));
     for (Finding& f : judge(read_machine(root))) {
         for (const char* const name : kMachineRows) {
             if (f.name == name) findings.push_back(std::move(f));

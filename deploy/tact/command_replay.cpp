@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "deploy/tact/become.hpp"
 #include "deploy/tact/commands.hpp"
+#include "deploy/tact/exec.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
@@ -101,7 +101,7 @@ void add_replay(CLI::App& app, int& exit_code) {
         ->type_name("NAME")
         ->needs(shown);
     command->callback([o, &exit_code] {
-        if (!o->show) become("tact-replay", words_of(*o));
+        if (!o->show) exec_program("tact-replay", words_of(*o));
         exit_code = show(*o);
     });
 }

@@ -48,8 +48,8 @@ int error_of_dma_latency(const std::filesystem::path& path) {
 Finding ok(std::string name, std::string says) {
     return {std::move(name), FindingLevel::ok, std::move(says), ""};
 }
-Finding warn(std::string name, std::string says, std::string mend) {
-    return {std::move(name), FindingLevel::warn, std::move(says), std::move(mend)};
+Finding warn(std::string name, std::string says, std::string fix) {
+    return {std::move(name), FindingLevel::warn, std::move(says), std::move(fix)};
 }
 
 Finding kernel(const Machine& m) {

@@ -21,7 +21,7 @@ struct Finding {
     std::string name;  // stable, for programs: "kernel", "rtprio"
     FindingLevel level = FindingLevel::ok;
     std::string says;
-    std::string mend;  // "" where nothing is to be mended
+    std::string fix;  // "" where nothing is to be mended
 };
 
 // As the kernel tells it; "" where a file is missing.

@@ -18,7 +18,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr const char* kFolderMend = "set TACT_RUNTIME_DIR to a folder of your own (mode 0700)";
+constexpr const char* kFolderFix = "set TACT_RUNTIME_DIR to a folder of your own (mode 0700)";
 
 // The text of a StartupError as a finding: its first line says what, its second how to mend it.
 Finding failed(const std::string& name, const std::exception& e) {
@@ -50,10 +50,10 @@ Finding runtime_folder(const std::string& session) {
                                 !std::filesystem::exists(folder) &&
                                 access(folder.parent_path().c_str(), W_OK | X_OK) == 0;
         const std::string distrust = made_later ? "" : distrust_runtime_folder(folder);
-        if (!distrust.empty()) return {"runtime_folder", FindingLevel::fail, distrust, kFolderMend};
+        if (!distrust.empty()) return {"runtime_folder", FindingLevel::fail, distrust, kFolderFix};
         if (!made_later && access(folder.c_str(), R_OK | W_OK | X_OK) != 0)
             return {"runtime_folder", FindingLevel::fail,
-                    folder.string() + " cannot be used: " + std::strerror(errno), kFolderMend};
+                    folder.string() + " cannot be used: " + std::strerror(errno), kFolderFix};
         return {"runtime_folder", FindingLevel::ok, "the processes meet in " + folder.string(), ""};
     } catch (const StartupError& e) {
         return failed("runtime_folder", e);

@@ -2,10 +2,10 @@
 
 #include <array>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/bone_volume.hpp"
-#include "ipc/assets/distance_field.hpp"
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/drilling/drill_model.hpp"
 
 namespace tact::launch {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ipc/assets/scene_file.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 
 namespace tact::launch {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/touch_tool.hpp"
-#include "ipc/assets/vertex_forest.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 
 namespace tact::launch {
 namespace {

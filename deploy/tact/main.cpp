@@ -33,8 +33,8 @@ int main(int argc, char** argv) {
     add_config(app);
     add_info(app, exit_code);
     add_eval(app, exit_code);
-    add_bench(app, exit_code);
-    add_reproduce(app, exit_code);
+    add_bench(app);
+    add_reproduce(app);
     if (const auto answered = tact::manual::answer(
             app, "tact", argc, argv,
             {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact where the variable is not set"},

@@ -109,9 +109,9 @@ void health(Page& page, const HealthTopic& h) {
     page.about("tact_state", "gauge", "1 for the state that the controller is in");
     for (int s = 0; s <= static_cast<int>(RunState::fault); ++s)
         page.value(h.state == s ? 1.0 : 0.0, label("state", run_state_text(static_cast<RunState>(s))));
-    page.one("tact_picture_attached", "gauge", "1 where a visual process is attached",
+    page.one("tact_display_attached", "gauge", "1 where a visual process is attached",
              h.gui_attached != 0 ? 1.0 : 0.0);
-    page.one("tact_picture_rate_hertz", "gauge", "pictures in the last second", h.gui_fps);
+    page.one("tact_display_rate_hertz", "gauge", "pictures in the last second", h.gui_fps);
     if (h.gui_fps > 0.0)
         page.one("tact_frame_time_seconds", "gauge", "mean time of a picture in the last second",
                  1.0 / h.gui_fps);
@@ -190,7 +190,7 @@ void levels(Page& page, const LevelsTopic& l) {
          [](const PathLevel& p) { return p.cost_s; });
 }
 
-void picture(Page& page, const FrameFigures& f) {
+void picture(Page& page, const FrameMetrics& f) {
     const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
     page.one("tact_frames_total", "counter", "pictures since the visual process started", count(f.frames));
     page.one("tact_frames_late_total", "counter",
@@ -202,7 +202,7 @@ void picture(Page& page, const FrameFigures& f) {
          {std::pair{"0.5", f.p50_s}, std::pair{"0.99", f.p99_s}, std::pair{"1", f.most_s}})
         page.value(static_cast<double>(s), label("quantile", q));
     const auto times = [&page](const char* name, const char* help, const char* key, std::size_t n,
-                               const auto& text, const PassFigures* of, bool drawn) {
+                               const auto& text, const PassMetrics* of, bool drawn) {
         page.about(name, "summary", help);
         for (std::size_t i = 0; i < n; ++i) {
             const float p50_s = drawn ? of[i].drawn_p50_s : of[i].work_p50_s;
@@ -222,10 +222,10 @@ void picture(Page& page, const FrameFigures& f) {
           path, f.path, false);
     times("tact_path_drawn_seconds", "time of the renderer for a visual path, where it is known", "path",
           kVisualPaths, path, f.path, true);
-    page.one("tact_picture_gl_objects", "gauge", "objects of the graphics driver that are kept",
+    page.one("tact_display_gl_objects", "gauge", "objects of the graphics driver that are kept",
              count(f.gl_objects));
-    page.one("tact_picture_heap_bytes", "gauge", "heap of the visual process", count(f.heap_bytes));
-    page.one("tact_picture_resident_bytes", "gauge", "memory of the visual process that is resident",
+    page.one("tact_display_heap_bytes", "gauge", "heap of the visual process", count(f.heap_bytes));
+    page.one("tact_display_resident_bytes", "gauge", "memory of the visual process that is resident",
              count(f.resident_bytes));
 }
 
@@ -286,8 +286,8 @@ std::string Metrics::text(const RtRegion* region) const {
     if (const auto t = newest(region->tracker)) tracker(page, *t);
     if (const auto l = newest(region->lateness)) lateness(page, *l);
     if (const auto l = newest(region->levels)) levels(page, *l);
-    if (const auto p = newest(region->picture); p && p->taken_at_ns > 0 && plausible(p->figures))
-        picture(page, p->figures);
+    if (const auto p = newest(region->picture); p && p->taken_at_ns > 0 && plausible(p->metrics))
+        picture(page, p->metrics);
     return page.take() + station;
 }
 

@@ -45,7 +45,7 @@ std::string field_text(const char* field, std::size_t size);
 
 // The level of one path, by name.
 std::optional<PathLevel> level_of(const LevelsTopic& levels, const char* path);
-// By its place: kPicturePathIndex and the like.
+// By its place: kDisplayPathIndex and the like.
 std::optional<PathLevel> level_at(const LevelsTopic& levels, std::size_t index);
 
 }  // namespace tact::launch

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/fit_metrics.hpp"
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
 
 namespace tact::launch {

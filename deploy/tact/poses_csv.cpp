@@ -16,8 +16,8 @@ constexpr std::array<const char*, 8> kColumns{"t_s", "x_m", "y_m", "z_m", "qx", 
 constexpr std::size_t kLineMax = 1024;
 
 [[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& why,
-                       const std::string& mend) {
-    throw StartupError("reading the poses in '" + name + "', line " + std::to_string(line), why, mend);
+                       const std::string& fix) {
+    throw StartupError("reading the poses in '" + name + "', line " + std::to_string(line), why, fix);
 }
 
 // What may be shown of a hostile file: a few printable characters.

@@ -69,7 +69,7 @@ Finding usb(const Buses& b) {
 }
 
 // One row a device that Tact knows.
-void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>& out) {
+void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Finding>& out) {
     for (const UsbDevice& d : b.usb.there) {
         if (d.known == nullptr) continue;
         const bool arm = d.known->use == probe::Use::arm;
@@ -77,7 +77,8 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
         const auto asked = [&](const std::string& by, const std::string& serial) {
             return by == driver && (serial.empty() || serial == d.serial);
         };
-        const bool wanted = arm && (asked(wish.driver, wish.serial) || asked(wish.driver2, wish.serial2));
+        const bool wanted =
+            arm && (asked(request.driver, request.serial) || asked(request.driver2, request.serial2));
         Finding f{arm ? "arm" : "adapter", FindingLevel::ok, name_of(d), ""};
         if (arm && driver.empty()) {
             f.says += ": seen, but there is no driver for it here";
@@ -85,10 +86,10 @@ void known_devices(const Buses& b, const DeviceWish& wish, std::vector<Finding>&
             const std::string no = refusal(node_of(d));
             if (!no.empty()) {
                 f.level = wanted ? FindingLevel::fail : FindingLevel::warn;
-                f.mend = kDeviceRightsFix;
+                f.fix = kDeviceRightsFix;
             } else if (driver == "phantom-usb" && d.speed_mbit != "480" && !d.speed_mbit.empty()) {
                 f.level = FindingLevel::warn;
-                f.mend = "plug it into a port of USB 2 high speed, without a slow hub between";
+                f.fix = "plug it into a port of USB 2 high speed, without a slow hub between";
             }
             f.says += ": driver " + driver +
                       (!no.empty()                   ? "; " + no
@@ -138,24 +139,25 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
 }
 
 // A Falcon forgets its firmware with its power, and its owner has the file.
-Finding falcon_firmware(const DeviceWish& wish) {
-    if (wish.firmware.empty())
+Finding falcon_firmware(const DeviceRequest& request) {
+    if (request.firmware.empty())
         return {"firmware", FindingLevel::warn,
                 "device.firmware is not set: a Falcon that has just got its power does not start",
                 "set it to the file that came with the device's own software"};
-    if (wish.firmware_bytes <= 0)
+    if (request.firmware_bytes <= 0)
         return {"firmware", FindingLevel::fail,
-                "device.firmware = \"" + wish.firmware +
+                "device.firmware = \"" + request.firmware +
                     "\": there is no such file, it cannot be read, or it is empty",
                 "set it to the file that came with the device's own software"};
     return {"firmware", FindingLevel::ok,
-            "device.firmware = \"" + wish.firmware + "\": " + std::to_string(wish.firmware_bytes) + " bytes",
+            "device.firmware = \"" + request.firmware + "\": " + std::to_string(request.firmware_bytes) +
+                " bytes",
             ""};
 }
 
-Finding can(const Buses& b, const DeviceWish& wish) {
-    const bool wanted = wish.tracker == "can";
-    const std::string what = wanted ? "tracker.interface = \"" + wish.tracker_interface + "\": " : "";
+Finding can(const Buses& b, const DeviceRequest& request) {
+    const bool wanted = request.tracker == "can";
+    const std::string what = wanted ? "tracker.interface = \"" + request.tracker_interface + "\": " : "";
     const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
     if (!b.can.visible)
         return {"can", bad, what + "this kernel has no CAN, or hides it: no interface can be seen",
@@ -164,7 +166,7 @@ Finding can(const Buses& b, const DeviceWish& wish) {
     const CanInterface* mine = nullptr;
     for (const CanInterface& c : b.can.there) {
         names.push_back(c.name + (c.up ? " (up" : " (down") + (c.fd ? ", FD)" : ")"));
-        if (c.name == wish.tracker_interface) mine = &c;
+        if (c.name == request.tracker_interface) mine = &c;
     }
     const std::string list = names.empty() ? "no CAN interface" : "CAN interfaces: " + joined(names);
     if (!wanted) return {"can", FindingLevel::ok, list, ""};
@@ -172,16 +174,16 @@ Finding can(const Buses& b, const DeviceWish& wish) {
         return {"can", bad, what + "there is none of this name; " + list,
                 "plug the adapter in, or set tracker.interface"};
     if (!mine->up) return {"can", bad, what + "it is down", "sudo deploy/can-up " + mine->name};
-    if (wish.tracker_format == "fd" && !mine->fd)
+    if (request.tracker_format == "fd" && !mine->fd)
         return {
             "can", bad, what + "it does not do CAN FD, which tracker.format asks for",
             "sudo deploy/can-up " + mine->name + "; if that says classic, set tracker.format = \"classic\""};
     return {"can", FindingLevel::ok, what + list, ""};
 }
 
-Finding gpio(const Buses& b, const DeviceWish& wish) {
-    const bool wanted = wish.lines == "gpio";
-    const std::string what = wanted ? "lines.chip = \"" + wish.lines_chip + "\": " : "";
+Finding gpio(const Buses& b, const DeviceRequest& request) {
+    const bool wanted = request.lines == "gpio";
+    const std::string what = wanted ? "lines.chip = \"" + request.lines_chip + "\": " : "";
     const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
     if (!b.gpio.visible)
         return {"gpio", bad, what + "this kernel or container shows no GPIO (no /sys/bus/gpio)",
@@ -190,7 +192,8 @@ Finding gpio(const Buses& b, const DeviceWish& wish) {
     std::vector<const GpioChip*> mine;
     for (const GpioChip& c : b.gpio.there) {
         names.push_back(c.name + (c.label.empty() ? "" : " \"" + c.label + "\""));
-        if (c.label == wish.lines_chip || c.name == wish.lines_chip || c.node.path == wish.lines_chip)
+        if (c.label == request.lines_chip || c.name == request.lines_chip ||
+            c.node.path == request.lines_chip)
             mine.push_back(&c);
     }
     const std::string list = names.empty() ? "no GPIO chip" : "GPIO chips: " + joined(names);
@@ -222,22 +225,22 @@ Finding groups(const Person& p) {
 
 }  // namespace
 
-std::vector<Finding> judge_devices(const Buses& buses, const DeviceWish& wish, const Person& person,
+std::vector<Finding> judge_devices(const Buses& buses, const DeviceRequest& request, const Person& person,
                                    const std::string& hd_library) {
-    std::vector<Finding> out = wish.problems;
-    out.push_back(driver_arm(buses, "device", wish.driver, wish.serial, hd_library));
-    if (wish.driver2 != "none")
-        out.push_back(driver_arm(buses, "device2", wish.driver2, wish.serial2, hd_library));
+    std::vector<Finding> out = request.problems;
+    out.push_back(driver_arm(buses, "device", request.driver, request.serial, hd_library));
+    if (request.driver2 != "none")
+        out.push_back(driver_arm(buses, "device2", request.driver2, request.serial2, hd_library));
     out.push_back(usb(buses));
-    known_devices(buses, wish, out);
-    if (wish.driver == "falcon" || wish.driver2 == "falcon") out.push_back(falcon_firmware(wish));
-    if (wish.driver != "openhaptics" && wish.driver2 != "openhaptics")
+    known_devices(buses, request, out);
+    if (request.driver == "falcon" || request.driver2 == "falcon") out.push_back(falcon_firmware(request));
+    if (request.driver != "openhaptics" && request.driver2 != "openhaptics")
         out.push_back({"openhaptics", FindingLevel::ok,
                        hd_library.empty() ? "the maker's library libHD.so is not where it is looked for"
                                           : "the maker's library is there: " + hd_library,
                        ""});
-    out.push_back(can(buses, wish));
-    out.push_back(gpio(buses, wish));
+    out.push_back(can(buses, request));
+    out.push_back(gpio(buses, request));
     out.push_back(groups(person));
     return out;
 }

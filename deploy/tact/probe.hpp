@@ -17,7 +17,7 @@
 namespace tact::launch {
 
 // Of the configuration of tact-rt, what it says about devices; the defaults are tact-rt's.
-struct DeviceWish {
+struct DeviceRequest {
     std::string driver = "sim", serial, hd_library, firmware;
     std::string driver2 = "none", serial2;  // of the second hand
     std::int64_t firmware_bytes = -1;       // of that file, as the machine has it; -1: it cannot be read
@@ -27,14 +27,14 @@ struct DeviceWish {
 };
 
 // Asks tact-rt, whose reader is the only one. Throws StartupError where the file cannot be read at all.
-[[nodiscard]] DeviceWish read_device_wish(const std::string& path);
+[[nodiscard]] DeviceRequest read_device_request(const std::string& path);
 // From the answer of tact-rt --check-config FILE --json. The size of the firmware file is read too.
-[[nodiscard]] DeviceWish device_wish_from(const nlohmann::json& answer);
+[[nodiscard]] DeviceRequest device_request_from(const nlohmann::json& answer);
 
 // The library of driver openhaptics: its path where one of the files is there, else "".
 [[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
 
-[[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceWish& wish,
+[[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceRequest& request,
                                                  const Person& person, const std::string& hd_library);
 
 }  // namespace tact::launch

@@ -18,7 +18,7 @@ json tool_json(const DrillTopic& drill, const DrillHand& hand) {
     if (hand.kind == DrillKind::none) return nullptr;
     const auto mm = [](float m) { return 1e3 * static_cast<double>(m); };
     json j = {{"diameter_mm", 2.0 * mm(hand.radius_m)}};
-    if (hand.kind == DrillKind::sucker) {
+    if (hand.kind == DrillKind::suction_tube) {
         j["suction_l_min"] = 6e4 * static_cast<double>(drill.suction_m3_s_most);
         return j;
     }
@@ -78,7 +78,7 @@ json drilling_report(const RtRegion& region, const std::filesystem::path& traine
     json j = {{"removed_mm3", 1e9 * drill->level_m3 * static_cast<double>(drill->removed_levels)},
               {"removed_levels", drill->removed_levels},
               {"burr", tool_json(*drill, drill->hand[0])},
-              {"sucker", tool_json(*drill, drill->hand[1])}};
+              {"suction_tube", tool_json(*drill, drill->hand[1])}};
     std::ifstream in(trainee, std::ios::binary);
     const json told = json::parse(in, nullptr, false);
     j["trainee"] = told.is_object() ? told : json(nullptr);

@@ -12,12 +12,12 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
-#include "deploy/tact/hand_over.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/run_report.hpp"
 #include "deploy/tact/save_fit.hpp"
+#include "deploy/tact/scene_switch.hpp"
 #include "deploy/tact/servo_core.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
@@ -45,9 +45,9 @@ std::string advice(const std::string& name, const Ending& e) {
 class OneRun {
 public:
     // The first scene of a run is armed as soon as it is seen; one that was opened from the window waits for a person.
-    OneRun(const std::filesystem::path& scene, RunOptions options, HandOver* hand_over, bool first)
+    OneRun(const std::filesystem::path& scene, RunOptions options, SceneSwitch* scene_switch, bool first)
         : options_(std::move(options)),
-          hand_over_(hand_over),
+          scene_switch_(scene_switch),
           first_(first),
           file_(SceneFile::open(scene)),
           places_(file_),
@@ -105,16 +105,18 @@ private:
         if (options_.gui) {
             ChildSettings gui;
             gui.arguments = {facts_.scene.string(), "--session", options_.session};
-            const auto desk = std::find(options_.visual.begin(), options_.visual.end(), "--desk");
-            const bool desk_given = desk != options_.visual.end();
+            const auto window_state =
+                std::find(options_.visual.begin(), options_.visual.end(), "--window-state");
+            const bool window_state_given = window_state != options_.visual.end();
             // What a person set in the window goes on with the next scene.
-            if (!desk_given && hand_over_ != nullptr)
-                gui.arguments.insert(gui.arguments.end(), {"--desk", hand_over_->desk().string()});
-            const std::filesystem::path left = desk_given              ? std::filesystem::path(desk[1])
-                                               : hand_over_ != nullptr ? hand_over_->desk()
-                                                                       : "";
+            if (!window_state_given && scene_switch_ != nullptr)
+                gui.arguments.insert(gui.arguments.end(),
+                                     {"--window-state", scene_switch_->window_state().string()});
+            const std::filesystem::path left = window_state_given ? std::filesystem::path(window_state[1])
+                                               : scene_switch_ != nullptr ? scene_switch_->window_state()
+                                                                          : "";
             // A desk file has a size of its own.
-            if (first_ ? options_.size_given || !desk_given : !std::filesystem::exists(left))
+            if (first_ ? options_.size_given || !window_state_given : !std::filesystem::exists(left))
                 gui.arguments.insert(gui.arguments.end(), {"--size", options_.size});
             gui.environment = display_;
             if (!options_.screenshot.empty())
@@ -125,8 +127,9 @@ private:
                 facts_.trainee = scratch().path() / "drilling.json";
                 gui.arguments.insert(gui.arguments.end(), {"--report", facts_.trainee.string()});
             }
-            if (hand_over_ != nullptr)
-                gui.arguments.insert(gui.arguments.end(), {"--hand-over", hand_over_->folder().string()});
+            if (scene_switch_ != nullptr)
+                gui.arguments.insert(gui.arguments.end(),
+                                     {"--scene-switch", scene_switch_->folder().string()});
             gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
             gui.grace = options_.grace;
             gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
@@ -167,9 +170,9 @@ private:
         if (observer_.seen() && rt_ && !rt_->poll() && now >= core_due_) leave_core(now);
         if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
         judge(now);
-        if (hand_over_ != nullptr && !ending_ && now >= asked_due_) {
+        if (scene_switch_ != nullptr && !ending_ && now >= asked_due_) {
             asked_due_ = now + kSampleEvery;
-            if ((next_ = hand_over_->poll())) {
+            if ((next_ = scene_switch_->poll())) {
                 end(true, "another scene was asked for: " + next_->string());
                 rt_->stop();  // at once: no force goes on while the window is being closed
             }
@@ -308,10 +311,10 @@ private:
     }
 
     RunOptions options_;
-    HandOver* hand_over_;  // null: nobody is there to ask
+    SceneSwitch* scene_switch_;  // null: nobody is there to ask
     bool first_;
     std::optional<std::filesystem::path> next_;
-    RunFacts facts_;
+    RunDescription facts_;
     SceneFile file_;
     Places places_;
     Signals signals_;
@@ -332,15 +335,15 @@ private:
 
 int run_scene(const std::filesystem::path& scene, RunOptions options) {
     options.settle();
-    std::optional<HandOver> hand_over;
-    if (options.gui && !options.headless) hand_over.emplace(options);
+    std::optional<SceneSwitch> scene_switch;
+    if (options.gui && !options.headless) scene_switch.emplace(options);
     std::filesystem::path now = scene, before;
     for (bool first = true;; first = false) {
         int code = 1;
         bool came_up = false;
         std::optional<std::filesystem::path> next;
         try {
-            OneRun run(now, options, hand_over ? &*hand_over : nullptr, first);
+            OneRun run(now, options, scene_switch ? &*scene_switch : nullptr, first);
             code = run.go();
             came_up = run.came_up();
             next = run.next();
@@ -352,7 +355,7 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
             before = std::exchange(now, *next);
             options.forget_scene();
         } else if (code != 0 && !came_up && !before.empty()) {
-            hand_over->refuse(
+            scene_switch->refuse(
                 "opening " + now.string() +
                 ": it could not be started with the options of this run; what the programs said "
                 "is in the terminal\n  mend: close the window and start: tact run " +

@@ -34,9 +34,9 @@ constexpr Passed kController[] = {
     {"--core", "N", "processor core of the servo thread"},
     {"--priority", "P", "real-time priority of the servo thread"},
     {"--force-scale", "X", "gain of the shown force"},
-    {"--hand", "passive|wander|stroke|drill|surgeon|sucker", "motion of the emulated hand"},
-    {"--hand2", "passive|wander|stroke|drill|surgeon|sucker",
-     "motion of an emulated second hand; sucker: beside a surgeon"},
+    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube", "motion of the emulated hand"},
+    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube",
+     "motion of an emulated second hand; suction-tube: beside a surgeon"},
     {"--hand-at-mm", "X,Y", "position in mm at which an emulated surgeon works"},
     {"--pedal", "button|line|always",
      "switch of the burr: button of the stylus, line of a foot pedal, or always on"},
@@ -55,7 +55,7 @@ constexpr Passed kVisual[] = {
     {"--ui-scale", "X", "letters and panels so many times as large as the display asks for"},
     {"--particles", "N", "keep this many particles over bone, to measure what they cost"},
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "stereo mode of the window"},
-    {"--desk", "FILE.toml",
+    {"--window-state", "FILE.toml",
      "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
     {"--stage", "FILE.toml", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
     {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
@@ -76,7 +76,7 @@ constexpr PassedFlag kVisualFlags[] = {
 bool hand_is_free(const RunOptions& options) {
     if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return false;
     const auto config = installed_config();
-    return config.empty() || read_device_wish(config).driver.starts_with("sim");
+    return config.empty() || read_device_request(config).driver.starts_with("sim");
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ void let_the_hand_stroke(RunOptions& options) {
 void let_the_hands_drill(RunOptions& options) {
     if (!hand_is_free(options)) return;
     options.add_for_scene({"--hand", "surgeon"});
-    if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "sucker"});
+    if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "suction-tube"});
 }
 
 void RunOptions::settle() {

@@ -45,7 +45,7 @@ struct RunOptions {
 // A surface moves nobody: without a device and without another wish, the emulated hand strokes it.
 void let_the_hand_stroke(RunOptions& options);
 
-// And bone: a surgeon with a burr, and a hand with a sucker.
+// And bone: a surgeon with a burr, and a hand with a suction tube.
 void let_the_hands_drill(RunOptions& options);
 
 // Where they open the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).

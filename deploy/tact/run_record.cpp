@@ -19,7 +19,7 @@ std::optional<Sample> take_sample(const RtRegion& region, const Places* places, 
     s.t_s = t_s;
     s.health = *health;
     if (const auto levels = newest(region.levels)) {
-        if (const auto picture = level_at(*levels, kPicturePathIndex)) {
+        if (const auto picture = level_at(*levels, kDisplayPathIndex)) {
             s.level_picture = picture->level;
             s.vertices_asked = picture->items;
         }

@@ -137,7 +137,7 @@ json bodies_report(const RtRegion& region, const Places& places) {
 }
 
 // Offsets are those of the body in the hand, or of the first; the fit is that of all together.
-json fit_report(const RtRegion& region, const Places& places, const RunFacts& facts) {
+json fit_report(const RtRegion& region, const Places& places, const RunDescription& description) {
     const auto bodies = bodies_of(region, places);
     if (!bodies || bodies->empty()) return nullptr;
     const auto in_hand =
@@ -150,8 +150,8 @@ json fit_report(const RtRegion& region, const Places& places, const RunFacts& fa
     j["resolution_a"] =
         places.meta().resolution_m > 0.0 ? json(places.meta().resolution_m * 1e10) : json(nullptr);
     j["voxel_a"] = places.grid().spacing_m.maxCoeff() * 1e10;
-    if (facts.bodies_start) {
-        const auto& start = *facts.bodies_start;
+    if (description.bodies_start) {
+        const auto& start = *description.bodies_start;
         const auto same =
             std::find_if(start.begin(), start.end(), [&](const BodyAt& b) { return b.id == judged.id; });
         if (same != start.end()) j["at_start"] = fit_numbers(places, start, *same);
@@ -196,7 +196,7 @@ json controller_report(const RtRegion& region) {
                     {"max", us(static_cast<double>(h.cycle_cost_max_ns))}}},
                   {"schedule_flags", h.schedule_flags},
                   {"schedule", schedule_text(h.schedule_flags)},
-                  {"fresh", {{"mean", h.fresh_mean}, {"least", h.fresh_least}}},
+                  {"fresh", {{"mean", h.recomputed_fraction_mean}, {"least", h.recomputed_fraction_least}}},
                   {"rested", h.rested},
                   {"bad_input", h.bad_input},
                   {"events", h.events}};
@@ -209,8 +209,8 @@ json controller_report(const RtRegion& region) {
                                          : json(nullptr)}};
     // A hostile picture's figures are none.
     const auto picture = newest(region.picture);
-    j["gui"]["frames"] = picture && picture->taken_at_ns > 0 && plausible(picture->figures)
-                             ? frames_json(picture->figures)
+    j["gui"]["frames"] = picture && picture->taken_at_ns > 0 && plausible(picture->metrics)
+                             ? frames_json(picture->metrics)
                              : json(nullptr);
     j["devices"] = devices(h);
     j["governor"] = governor(region);
@@ -220,26 +220,26 @@ json controller_report(const RtRegion& region) {
     return j;
 }
 
-json run_report(const RtRegion* region, const Places* places, const RunFacts& facts) {
+json run_report(const RtRegion* region, const Places* places, const RunDescription& description) {
     json j = region != nullptr ? controller_report(*region) : json::object();
     if (region != nullptr && places != nullptr) {
         j["bodies"] = bodies_report(*region, *places);
-        j["fit"] = fit_report(*region, *places, facts);
-        if (json drilling = drilling_report(*region, facts.trainee); drilling.is_object())
+        j["fit"] = fit_report(*region, *places, description);
+        if (json drilling = drilling_report(*region, description.trainee); drilling.is_object())
             j["drilling"] = std::move(drilling);
     }
     if (j.contains("gui")) {
         // The controller's last word is from when the window was closing.
         j["gui"]["fps_last"] = j["gui"]["fps"];
-        if (facts.fps_median) j["gui"]["fps"] = *facts.fps_median;
-        j["gui"]["ran"] = facts.fps_median.has_value();
+        if (description.fps_median) j["gui"]["fps"] = *description.fps_median;
+        j["gui"]["ran"] = description.fps_median.has_value();
     }
-    if (!j.contains("scene")) j["scene"] = {{"path", facts.scene.string()}, {"checksum", nullptr}};
-    j["session"] = facts.session;
-    j["seconds"] = facts.length_s;
+    if (!j.contains("scene")) j["scene"] = {{"path", description.scene.string()}, {"checksum", nullptr}};
+    j["session"] = description.session;
+    j["seconds"] = description.length_s;
     j["versions"] = {{"tact", version()}, {"compiler", __VERSION__}};
-    json ended = {{"ok", facts.intended}, {"why", facts.why_ended}};
-    for (const auto& [name, ending] : facts.endings) ended[name] = ending_json(ending);
+    json ended = {{"ok", description.intended}, {"why", description.why_ended}};
+    for (const auto& [name, ending] : description.endings) ended[name] = ending_json(ending);
     j["ended"] = ended;
     return j;
 }

@@ -16,7 +16,7 @@
 
 namespace tact::launch {
 
-struct RunFacts {
+struct RunDescription {
     std::filesystem::path scene;
     std::string session;
     double length_s = 0.0;                            // the controller was seen
@@ -29,7 +29,7 @@ struct RunFacts {
 };
 
 // places: null where the scene is not known. Computes the fit, which may take a second.
-nlohmann::json run_report(const RtRegion* region, const Places* places, const RunFacts& facts);
+nlohmann::json run_report(const RtRegion* region, const Places* places, const RunDescription& description);
 
 // A controller's state alone, for `tact status`.
 nlohmann::json controller_report(const RtRegion& region);

@@ -8,9 +8,9 @@
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/run_report.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact::launch {
 namespace {

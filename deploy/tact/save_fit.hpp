@@ -9,7 +9,7 @@
 
 #include "deploy/tact/place.hpp"
 #include "deploy/tact/signals.hpp"
-#include "ipc/assets/scene_file.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "ipc/topics/bodies.hpp"
 
 namespace tact::launch {

@@ -46,11 +46,11 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
     }
     view_options_.depth_cue = options.depth_cue;
-    if (!options.desk_file.empty()) {
-        state_.toggles = options.desk.toggles;
+    if (!options.window_state_file.empty()) {
+        state_.toggles = options.window_state.toggles;
         state_.toggles.style = SceneToggles{}.style;  // of the scene
-        state_.span_choice = options.desk.span_choice;
-        state_.lateness_choice = options.desk.lateness_choice;
+        state_.span_choice = options.window_state.span_choice;
+        state_.lateness_choice = options.window_state.lateness_choice;
     }
     state_.toggles.smooth_edges = !window_.software();
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
@@ -74,10 +74,10 @@ int GuiApp::run() {
         frame(now, last && pictures_.wanted_at_end());
         if (!last) clock_.pace(fps_max_);
     }
-    keep_desk();
-    desk_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
+    keep_window_state();
+    fit_controller_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
     drilling_.save(controller_, options_.report);
-    write_frame_report(options_.frames, frame_figures(clock_, passes_));
+    write_frame_report(options_.frames, frame_metrics(clock_, passes_));
     if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
     return pictures_.failed() ? 1 : 0;
 }
@@ -101,7 +101,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
         const PassClock::Scope scope(&passes_, Pass::adapt);
         if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
         follow_calibration(now_ns);
-        obey_level();
+        apply_level();
         clock_.end_part(FramePart::adapt);
         if (view_) view_->upload();
         clock_.end_part(FramePart::upload);
@@ -169,15 +169,15 @@ void GuiApp::draw_panels() {
     const ImGuiIO& io = ImGui::GetIO();
     draw_dashboard(theme_, state_, io.DisplaySize.x, io.DisplaySize.y);
     window_.draw_panels();
-    for (const Wish& wish : state_.wishes)
-        if (!commands_.send({wish.kind,
-                             wish.value,
-                             wish.text,
-                             wish.body,
-                             {Vec3(wish.second, 0.0, 0.0), Quat::Identity()}},
+    for (const Request& request : state_.requests)
+        if (!commands_.send({request.kind,
+                             request.value,
+                             request.text,
+                             request.body,
+                             {Vec3(request.second, 0.0, 0.0), Quat::Identity()}},
                             state_.now_ns))
             spdlog::warn("a command with a text too long was not sent");
-    state_.wishes.clear();
+    state_.requests.clear();
 }
 
 void GuiApp::publish_load() {
@@ -209,7 +209,7 @@ void GuiApp::publish_frames() {
     frames_told_ = now;
     FramesTopic topic{};
     topic.taken_at_ns = to_ns(now);
-    topic.figures = state_.frames = frame_figures(clock_, passes_);
+    topic.metrics = state_.frames = frame_metrics(clock_, passes_);
     region_->frames.publish(topic);
 }
 
@@ -218,7 +218,7 @@ double GuiApp::due_s() const {
     double due = window_.paced_by_display() ? window_.display_period_s() : 0.0;
     if (fps_max_ > 0.0) due = std::max(due, 1.0 / fps_max_);
     const double goal_hz = controller_.attached() && controller_.have_levels
-                               ? static_cast<double>(controller_.levels.picture_goal_hz)
+                               ? static_cast<double>(controller_.levels.display_goal_hz)
                                : 0.0;
     return goal_hz > 0.0 ? std::max(due, 1.0 / goal_hz) : due;
 }

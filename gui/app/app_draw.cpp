@@ -41,7 +41,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     view.active = list_.active().value_or(shown_.size());
     const PathLevel* const force =
         controller_.have_levels ? find_path(controller_.levels, kDockingPath) : nullptr;
-    view.points_felt = force != nullptr ? force->items : 0;
+    view.points_summed = force != nullptr ? force->items : 0;
     if (controller_.attached() && controller_.have_tool) {
         const double* const f = controller_.tool.force_model_n;
         view.force_world_n = Vec3(f[0], f[1], f[2]);

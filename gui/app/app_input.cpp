@@ -38,9 +38,9 @@ void GuiApp::handle_input() {
 void GuiApp::act(KeyAct what, std::size_t place) {
     const auto active = list_.active();
     const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
-    const auto fit = [&](FitAct wish) { state_.fit_wishes.push_back({wish, held, {}}); };
+    const auto fit = [&](FitAct request) { state_.fit_requests.push_back({request, held, {}}); };
     const auto command = [&](CommandKind kind, std::uint32_t body = 0) {
-        state_.wishes.push_back({kind, 0.0, {}, body});
+        state_.requests.push_back({kind, 0.0, {}, body});
     };
     const RunState run =
         controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "gui/app/body_list.hpp"
-#include "gui/app/browser_desk.hpp"
-#include "gui/app/calibration_desk.hpp"
+#include "gui/app/browser_controller.hpp"
+#include "gui/app/calibration_controller.hpp"
 #include "gui/app/command_sender.hpp"
 #include "gui/app/controller.hpp"
-#include "gui/app/detail_desk.hpp"
+#include "gui/app/detail_controller.hpp"
 #include "gui/app/drill_show.hpp"
-#include "gui/app/fit_desk.hpp"
+#include "gui/app/fit_controller.hpp"
 #include "gui/app/frame_clock.hpp"
 #include "gui/app/frame_report.hpp"
 #include "gui/app/options.hpp"
@@ -47,12 +47,12 @@ private:
     void use_scene(DrillStart drill);
     void home_view();
     void begin_as_left();
-    void keep_desk() const;
+    void keep_window_state() const;
     void look_at_burr();
     void show_bone(DrillStart drill);
     void handle_input();
     void act(KeyAct what, std::size_t place);
-    void obey_level();
+    void apply_level();
     void follow_detail();
     void follow_bodies(std::int64_t now_ns);
     void draw_scene(std::int64_t now_ns);
@@ -83,18 +83,18 @@ private:
     Instant frames_told_{};
     std::unique_ptr<Stage> stage_;  // of a stereo picture
     std::unique_ptr<PicturePainter> calibration_painter_;
-    CalibrationDesk calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
+    CalibrationController calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
-    BrowserDesk browser_{options_.hand_over};
-    FitDesk desk_;
-    DetailDesk detail_;
+    BrowserController browser_{options_.scene_switch};
+    FitController fit_controller_;
+    DetailController detail_;
     DrillShow drilling_{window_.software()};
     float bone_reach_a_ = 0.0F;
     bool near_burr_wanted_ = options_.near_burr;
-    bool as_left_wanted_ = !options_.desk_file.empty();  // for the first scene that is shown
+    bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene that is shown
     BodyList list_;
     SecondHand second_hand_;
     RingCursor traces_place_;  // in the trace ring

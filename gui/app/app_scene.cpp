@@ -37,8 +37,8 @@ void GuiApp::follow_scene() {
             use_scene(std::move(loaded->drill));
         } else {
             spdlog::error("{}", loaded->error);
-            const SceneFacts before = state_.scene;
-            state_.scene = content_ ? before : SceneFacts{};
+            const SceneState before = state_.scene;
+            state_.scene = content_ ? before : SceneState{};
             state_.scene.status = loaded->error;
         }
     }
@@ -74,7 +74,7 @@ void GuiApp::use_scene(DrillStart drill) {
     for (const Structure& structure : content_->bodies) homes.push_back(structure.home());
     list_.start(homes);
     if (controller_.have_bodies) list_.follow(controller_.bodies);
-    desk_.use(content_);
+    fit_controller_.use(content_);
     detail_.use(content_, state_.detail);
     state_.scene = describe(*content_);
     browser_.used(content_->path, state_.browser);
@@ -93,34 +93,35 @@ void GuiApp::home_view() {
 
 // The scene is drawn and seen as when the window was closed, if it is the same one.
 void GuiApp::begin_as_left() {
-    const DeskSettings& desk = options_.desk;
-    if (!std::exchange(as_left_wanted_, false) || desk.scene != content_->checksum || desk.distance_a <= 0.0)
+    const WindowState& window_state = options_.window_state;
+    if (!std::exchange(as_left_wanted_, false) || window_state.scene != content_->checksum ||
+        window_state.distance_a <= 0.0)
         return;
-    state_.toggles.style = desk.toggles.style;
-    state_.toggles.molecule = desk.toggles.molecule;
-    state_.toggles.colouring = desk.toggles.colouring;
-    camera_.place(desk.target_a.cast<float>(), desk.q_eye_scene.cast<float>(),
-                  static_cast<float>(desk.distance_a));
+    state_.toggles.style = window_state.toggles.style;
+    state_.toggles.molecule = window_state.toggles.molecule;
+    state_.toggles.colouring = window_state.toggles.colouring;
+    camera_.place(window_state.target_a.cast<float>(), window_state.q_eye_scene.cast<float>(),
+                  static_cast<float>(window_state.distance_a));
 }
 
-void GuiApp::keep_desk() const {
-    if (options_.desk_file.empty()) return;
-    DeskSettings desk;
+void GuiApp::keep_window_state() const {
+    if (options_.window_state_file.empty()) return;
+    WindowState window_state;
     const Window::Size size = window_.size();
-    desk.width_px = size.width;
-    desk.height_px = size.height;
-    desk.traces = state_.strip == 1;
-    desk.span_choice = state_.span_choice;
-    desk.lateness_choice = state_.lateness_choice;
-    desk.toggles = state_.toggles;
+    window_state.width_px = size.width;
+    window_state.height_px = size.height;
+    window_state.traces = state_.strip == 1;
+    window_state.span_choice = state_.span_choice;
+    window_state.lateness_choice = state_.lateness_choice;
+    window_state.toggles = state_.toggles;
     if (content_) {
-        desk.scene = content_->checksum;
-        desk.target_a = camera_.target_a().cast<double>();
-        desk.q_eye_scene = camera_.orientation().cast<double>();
-        desk.distance_a = static_cast<double>(camera_.distance_a());
+        window_state.scene = content_->checksum;
+        window_state.target_a = camera_.target_a().cast<double>();
+        window_state.q_eye_scene = camera_.orientation().cast<double>();
+        window_state.distance_a = static_cast<double>(camera_.distance_a());
     }
     try {
-        write_desk_file(options_.desk_file, desk);
+        write_window_state_file(options_.window_state_file, window_state);
     } catch (const StartupError& e) {
         spdlog::error("{}", e.what());
     }
@@ -148,7 +149,7 @@ void GuiApp::show_bone(DrillStart drill) {
     home_view();
 }
 
-void GuiApp::obey_level() {
+void GuiApp::apply_level() {
     if (!view_) return;
     const PathLevel* const path = controller_.level(kMeshPath);
     // Without a controller the surface stays as it was last told; at first that is all of it.
@@ -164,7 +165,7 @@ void GuiApp::obey_level() {
 void GuiApp::follow_detail() {
     const bool touched = controller_.attached() && controller_.have_touch;
     if (const auto made = detail_.follow(touched ? &controller_.touch : nullptr, state_.toggles.detail,
-                                         state_.detail, state_.wishes))
+                                         state_.detail, state_.requests))
         view_->show_detail(*made);
 }
 
@@ -173,14 +174,14 @@ void GuiApp::follow_bodies(std::int64_t now_ns) {
     const BodiesTopic* const topic =
         controller_.attached() && controller_.have_bodies ? &controller_.bodies : nullptr;
     std::vector<Command> commands;
-    for (const auto& [id, hidden] : state_.hide_wishes) list_.set_hidden(id, hidden);
-    for (const FitWish& wish : state_.fit_wishes) desk_.act(wish, list_, commands);
-    state_.hide_wishes.clear();
-    state_.fit_wishes.clear();
-    desk_.follow(list_, topic, commands);
+    for (const auto& [id, hidden] : state_.hide_requests) list_.set_hidden(id, hidden);
+    for (const FitRequest& request : state_.fit_requests) fit_controller_.act(request, list_, commands);
+    state_.hide_requests.clear();
+    state_.fit_requests.clear();
+    fit_controller_.follow(list_, topic, commands);
     if (topic != nullptr)
         for (const Command& command : commands) commands_.send(command, now_ns);
-    desk_.describe(list_, topic, state_.fitting, state_.fit);
+    fit_controller_.describe(list_, topic, state_.fitting, state_.fit);
 }
 
 }  // namespace tact

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/bone_volume.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/topics/bone_region.hpp"
 
 namespace tact {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "gui/app/calibration_desk.hpp"
+#include "gui/app/calibration_controller.hpp"
 #include "gui/panels/widgets.hpp"
 
 namespace tact {
@@ -35,8 +35,8 @@ Vec3 metres(const std::array<double, 3>& mm) { return 1e-3 * Vec3(mm[0], mm[1], 
 
 }  // namespace
 
-void CalibrationDesk::take_typed(CalibrationFacts& f) {
-    using Typed = CalibrationFacts::Typed;
+void CalibrationController::take_typed(CalibrationCardState& f) {
+    using Typed = CalibrationCardState::Typed;
     Calibration& c = *calibration_;
     switch (std::exchange(f.edited, Typed::none)) {
         case Typed::none:
@@ -67,18 +67,18 @@ void CalibrationDesk::take_typed(CalibrationFacts& f) {
     }
 }
 
-void CalibrationDesk::tell(CalibrationFacts& f) const {
+void CalibrationController::tell(CalibrationCardState& f) const {
     const Calibration& c = *calibration_;
     f.open = true;
     f.step = static_cast<std::size_t>(c.step());
     f.steps.resize(kCalibrationSteps);
     for (std::size_t i = 0; i < kCalibrationSteps; ++i) {
         const auto step = static_cast<CalibrationStep>(i);
-        const Calibration::Verdict v = c.verdict(step);
+        const Calibration::StatusText v = c.status(step);
         f.steps[i] = {calibration_step_title(step), v.words, grade_of(v.grade)};
     }
-    const Calibration::Verdict verdict = c.verdict();
-    f.verdict = {grade_of(verdict.grade), verdict.words};
+    const Calibration::StatusText status = c.status();
+    f.status = {grade_of(status.grade), status.words};
     f.instruction = c.instruction();
     f.live = c.live();
     f.said = c.said();
@@ -91,7 +91,7 @@ void CalibrationDesk::tell(CalibrationFacts& f) const {
     for (std::size_t i = 0; i < kMarks; ++i) {
         const Calibration::Mark& mark = c.marks().mark[i];
         const auto left = c.marks().residual_m(i);
-        CalibrationFacts::Point& p = f.points[i];
+        CalibrationCardState::Point& p = f.points[i];
         p.taken = mark.taken;
         p.current = lit && c.marks().current == i;
         p.grade = !left                      ? Grade::unknown

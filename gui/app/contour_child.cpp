@@ -6,8 +6,8 @@
 
 #include "gui/app/child_job.hpp"
 #include "gui/app/scratch_folder.hpp"
-#include "ipc/assets/contour_mesh.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/density/contour_mesh.hpp"
 
 namespace tact {
 namespace {

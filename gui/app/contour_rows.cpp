@@ -29,48 +29,48 @@ Contour contour_of(const ContourRow& row) {
 
 }  // namespace
 
-void begin_contours(const Contours& contours, const ContourScale& scale, ContourFacts& facts) {
-    facts = ContourFacts{};
-    facts.rows_max = kContoursMax;
-    facts.least = scale.least();
-    facts.greatest = scale.greatest();
-    if (scale.voxels() > 0) facts.histogram = scale.histogram(kBinsShown);
-    for (const Contour& c : contours.contours()) facts.row.push_back(row_of(c));
+void begin_contours(const Contours& contours, const ContourScale& scale, ContourRowState& state) {
+    state = ContourRowState{};
+    state.rows_max = kContoursMax;
+    state.least = scale.least();
+    state.greatest = scale.greatest();
+    if (scale.voxels() > 0) state.histogram = scale.histogram(kBinsShown);
+    for (const Contour& c : contours.contours()) state.row.push_back(row_of(c));
 }
 
-void follow_contours(Contours& contours, const ContourScale& scale, ContourFacts& facts) {
-    if (facts.add && facts.row.size() < facts.rows_max) {
+void follow_contours(Contours& contours, const ContourScale& scale, ContourRowState& state) {
+    if (state.add && state.row.size() < state.rows_max) {
         Contour next;
         // Halfway up from the highest: inside of what is shown.
-        double highest = facts.row.empty() ? facts.least : facts.row.front().level;
-        for (const ContourRow& r : facts.row) highest = std::max(highest, r.level);
-        next.level = 0.5 * (highest + facts.greatest);
-        next.colour = contour_colour(facts.row.size());
-        facts.row.push_back(row_of(next));
-        facts.changed = true;
+        double highest = state.row.empty() ? state.least : state.row.front().level;
+        for (const ContourRow& r : state.row) highest = std::max(highest, r.level);
+        next.level = 0.5 * (highest + state.greatest);
+        next.colour = contour_colour(state.row.size());
+        state.row.push_back(row_of(next));
+        state.changed = true;
     }
-    facts.add = false;
-    if (facts.changed) {
+    state.add = false;
+    if (state.changed) {
         std::vector<Contour> wanted;
-        std::transform(facts.row.begin(), facts.row.end(), std::back_inserter(wanted), contour_of);
+        std::transform(state.row.begin(), state.row.end(), std::back_inserter(wanted), contour_of);
         contours.set(wanted);
-        facts.changed = false;
+        state.changed = false;
     }
-    for (std::size_t i = 0; i < facts.row.size(); ++i) {
-        ContourRow& row = facts.row[i];
-        const ContourState state = contours.state(i);
+    for (std::size_t i = 0; i < state.row.size(); ++i) {
+        ContourRow& row = state.row[i];
+        const ContourState shown = contours.state(i);
         row.sigma = scale.sigma_of(row.level);
         row.fraction_inside = scale.fraction_inside(row.level);
-        row.final = state.final;
-        row.error = state.error;
+        row.final = shown.final;
+        row.error = shown.error;
     }
 }
 
-void nudge_contour(ContourFacts& facts, const ContourScale& scale, double tenths) {
-    if (facts.row.empty()) return;
+void nudge_contour(ContourRowState& state, const ContourScale& scale, double tenths) {
+    if (state.row.empty()) return;
     const double sigma = scale.level_of_sigma(1.0) - scale.level_of_sigma(0.0);
-    facts.row[0].level = std::clamp(facts.row[0].level + 0.1 * tenths * sigma, facts.least, facts.greatest);
-    facts.changed = true;
+    state.row[0].level = std::clamp(state.row[0].level + 0.1 * tenths * sigma, state.least, state.greatest);
+    state.changed = true;
 }
 
 }  // namespace tact

@@ -9,10 +9,10 @@
 namespace tact {
 
 // Another scene: the rows are those of the view.
-void begin_contours(const Contours& contours, const ContourScale& scale, ContourFacts& facts);
+void begin_contours(const Contours& contours, const ContourScale& scale, ContourRowState& state);
 // What the panel changed goes to the view, what the view and the map know of it comes back.
-void follow_contours(Contours& contours, const ContourScale& scale, ContourFacts& facts);
+void follow_contours(Contours& contours, const ContourScale& scale, ContourRowState& state);
 // The first contour, by so many tenths of a sigma.
-void nudge_contour(ContourFacts& facts, const ContourScale& scale, double tenths);
+void nudge_contour(ContourRowState& state, const ContourScale& scale, double tenths);
 
 }  // namespace tact

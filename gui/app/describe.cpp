@@ -4,26 +4,26 @@
 
 namespace tact {
 
-SceneFacts describe(const SceneContent& content) {
-    SceneFacts facts;
-    facts.loaded = true;
-    facts.file = content.path.filename().string();
-    facts.title = content.meta.title[0] != '\0' ? content.meta.title : facts.file;
-    facts.contour = content.meta.contour;
-    facts.map_sigma = content.meta.map_sigma;
-    facts.contour_sigma = (content.meta.contour - content.meta.map_mean) / content.meta.map_sigma;
-    facts.resolution_m = content.meta.resolution_m;
-    facts.vertices_max = content.mesh ? content.mesh->vertices() : 0;
-    facts.bodies = content.bodies.size();
-    for (const Structure& s : content.bodies) facts.atoms += s.size();
-    facts.voxels = content.grid.size;
-    facts.surface = content.meta.kind == SceneKind::surface;
-    facts.bone = content.meta.kind == SceneKind::drilling;
+SceneState describe(const SceneContent& content) {
+    SceneState state;
+    state.loaded = true;
+    state.file = content.path.filename().string();
+    state.title = content.meta.title[0] != '\0' ? content.meta.title : state.file;
+    state.contour = content.meta.contour;
+    state.map_sigma = content.meta.map_sigma;
+    state.contour_sigma = (content.meta.contour - content.meta.map_mean) / content.meta.map_sigma;
+    state.resolution_m = content.meta.resolution_m;
+    state.vertices_max = content.mesh ? content.mesh->vertices() : 0;
+    state.bodies = content.bodies.size();
+    for (const Structure& s : content.bodies) state.atoms += s.size();
+    state.voxels = content.grid.size;
+    state.surface = content.meta.kind == SceneKind::surface;
+    state.bone = content.meta.kind == SceneKind::drilling;
     if (content.bone) {
-        facts.voxels = content.bone->volume.bricks.size;
-        facts.voxel_m = content.bone->volume.bricks.voxel_m;
+        state.voxels = content.bone->volume.bricks.size;
+        state.voxel_m = content.bone->volume.bricks.voxel_m;
     }
-    return facts;
+    return state;
 }
 
 EventLine describe(const EventTopic& event) {

@@ -7,7 +7,7 @@
 
 namespace tact {
 
-[[nodiscard]] SceneFacts describe(const SceneContent& content);
+[[nodiscard]] SceneState describe(const SceneContent& content);
 [[nodiscard]] EventLine describe(const EventTopic& event);
 
 }  // namespace tact

@@ -24,7 +24,7 @@ std::span<const DrawnDrillTool> DrillHands::follow(const DrillTopic& topic, cons
         d.tip_radius_m = to_model * static_cast<double>(h.tip_radius_m);
         d.shaft_radius_m = to_model * static_cast<double>(h.shaft_radius_m);
         d.shaft_length_m = to_model * static_cast<double>(h.shaft_length_m);
-        d.head = h.kind == DrillKind::sucker       ? DrillHead::tube
+        d.head = h.kind == DrillKind::suction_tube ? DrillHead::tube
                  : h.shape == DrillShape::cylinder ? DrillHead::cylinder
                  : h.shape == DrillShape::cone     ? DrillHead::cone
                                                    : DrillHead::sphere;

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "gui/render/drill_tools.hpp"
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/topics/drill.hpp"
 
 namespace tact {

@@ -85,9 +85,9 @@ void DrillShow::ended(SceneView& view, double work_s) {
 
 void DrillShow::add_to(LoadTopic& load, SceneView& view) const {
     if (site_) {
-        load.particles = site_->figures().shown;
-        load.particle_moves = std::min(site_->figures().moves, site_->figures().most);
-        load.particles_max = site_->figures().most;
+        load.particles = site_->metrics().shown;
+        load.particle_moves = std::min(site_->metrics().moves, site_->metrics().most);
+        load.particles_max = site_->metrics().most;
     }
     if (view.bone() != nullptr) {
         load.vertices_max = view.bone()->rays_max();
@@ -98,7 +98,7 @@ void DrillShow::add_to(LoadTopic& load, SceneView& view) const {
 void DrillShow::save(const Controller& controller, const std::string& report) const {
     std::optional<BurrVisibility> visibility;
     if (site_) {
-        visibility = {site_->figures().drilling_s, site_->figures().seen_s};
+        visibility = {site_->metrics().drilling_s, site_->metrics().seen_s};
         const Ledger& l = site_->particles().ledger();
         spdlog::info(
             "levels of bone: {} taken by the controller, {} seen to go while shown: {} sucked, {} carried, "

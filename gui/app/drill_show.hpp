@@ -13,9 +13,9 @@
 #include <memory>
 #include <optional>
 
-#include "gui/app/bone_desk.hpp"
+#include "gui/app/bone_controller.hpp"
 #include "gui/app/controller.hpp"
-#include "gui/app/drill_desk.hpp"
+#include "gui/app/drill_controller.hpp"
 #include "gui/app/drill_hands.hpp"
 #include "gui/app/drill_start.hpp"
 #include "gui/app/site.hpp"
@@ -52,13 +52,13 @@ private:
 
     const bool software_;
     std::shared_ptr<const SceneContent> content_;
-    BoneDesk bone_;
+    BoneController bone_;
     std::unique_ptr<Site> site_;  // goes before the bone that it reads
     ParticlePace particle_pace_;
     RayPace ray_pace_;
     float particles_level_ = 1.0F;
     double rays_share_ = 1.0;  // of the pixels
-    DrillDesk desk_;
+    DrillController desk_;
     DrillHands hands_;
 };
 

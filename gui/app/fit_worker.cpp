@@ -31,11 +31,11 @@ FitWorker::~FitWorker() {
     thread_.join();
 }
 
-void FitWorker::wish(std::span<const FitBody> bodies) {
+void FitWorker::request(std::span<const FitBody> bodies) {
     {
         const std::lock_guard lock(mutex_);
-        wished_.clear();
-        std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(wished_),
+        requested_.clear();
+        std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(requested_),
                      [&](const FitBody& b) { return b.structure < content_->bodies.size(); });
     }
     changed_.notify_all();
@@ -54,9 +54,9 @@ void FitWorker::work() {
     std::vector<FitBody> places;
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [&] { return stop_ || (!wished_.empty() && moved(wished_, places)); });
+        changed_.wait(lock, [&] { return stop_ || (!requested_.empty() && moved(requested_, places)); });
         if (stop_) return;
-        places = wished_;
+        places = requested_;
         const std::uint64_t number = outcome_.number + 1;
         lock.unlock();
         FitOutcome outcome = compute(places);

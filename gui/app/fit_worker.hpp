@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "gui/render/scene_content.hpp"
-#include "ipc/assets/fit_metrics.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
 
 namespace tact {
 
@@ -48,7 +48,7 @@ public:
     FitWorker& operator=(const FitWorker&) = delete;
 
     // Bodies of structures that the content does not have are left out.
-    void wish(std::span<const FitBody> bodies);
+    void request(std::span<const FitBody> bodies);
     // True when there is one newer than outcome.number.
     [[nodiscard]] bool take(FitOutcome& outcome);
 
@@ -60,7 +60,7 @@ private:
     const Duration pause_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<FitBody> wished_;
+    std::vector<FitBody> requested_;
     FitOutcome outcome_;
     bool stop_ = false;
     std::thread thread_;

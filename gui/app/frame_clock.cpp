@@ -33,7 +33,7 @@ void FrameClock::end_part(FramePart part) {
     mark_ = now;
 }
 
-void FrameClock::fill(FrameFigures& f) const {
+void FrameClock::fill(FrameMetrics& f) const {
     const auto of_run = [this](double p) {
         return static_cast<float>(1e-9 * static_cast<double>(run_.percentile_ns(p)));
     };

@@ -28,7 +28,7 @@ public:
     [[nodiscard]] std::uint64_t frame() const { return frame_; }
     [[nodiscard]] Instant started_at() const { return started_; }
 
-    void fill(FrameFigures& figures) const;
+    void fill(FrameMetrics& metrics) const;
 
     [[nodiscard]] static double process_cpu_s();
 

@@ -20,8 +20,8 @@ std::uint64_t resident_bytes() {
 
 }  // namespace
 
-FrameFigures frame_figures(const FrameClock& clock, const PassClock& passes) {
-    FrameFigures f{};
+FrameMetrics frame_metrics(const FrameClock& clock, const PassClock& passes) {
+    FrameMetrics f{};
     clock.fill(f);
     passes.fill(f);
     f.gl_objects = gl_names_held();
@@ -31,10 +31,10 @@ FrameFigures frame_figures(const FrameClock& clock, const PassClock& passes) {
     return f;
 }
 
-void write_frame_report(const std::string& path, const FrameFigures& figures) {
+void write_frame_report(const std::string& path, const FrameMetrics& metrics) {
     if (path.empty()) return;
     std::ofstream file(path, std::ios::trunc);
-    file << frames_json(figures).dump(2) << '\n';
+    file << frames_json(metrics).dump(2) << '\n';
     if (!file.flush())
         throw StartupError("writing what the frames took to " + path, "it cannot be written",
                            "give --frames another path");

@@ -10,9 +10,9 @@
 namespace tact {
 
 // Frame thread. Resident memory: 0 where the kernel does not say.
-[[nodiscard]] FrameFigures frame_figures(const FrameClock& clock, const PassClock& passes);
+[[nodiscard]] FrameMetrics frame_metrics(const FrameClock& clock, const PassClock& passes);
 
 // JSON; the layout is that of "frames" in the report of tact run. Throws StartupError where it cannot be written.
-void write_frame_report(const std::string& path, const FrameFigures& figures);
+void write_frame_report(const std::string& path, const FrameMetrics& metrics);
 
 }  // namespace tact

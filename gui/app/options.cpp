@@ -25,7 +25,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--session", options.session, "name of the session that the controller runs in")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--hand-over", options.hand_over,
+    app.add_option("--scene-switch", options.scene_switch,
                    "folder in which the launcher takes the wish for another scene; tact gives it")
         ->check(CLI::ExistingDirectory);
     app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
@@ -44,7 +44,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->check(CLI::Range(0.1, 1e5));
     app.add_option("--zoom", options.zoom, "factor by which the view is nearer at the start")
         ->check(CLI::Range(0.1, 20.0));
-    app.add_option("--desk", options.desk_file,
+    app.add_option("--window-state", options.window_state_file,
                    "TOML file of what was set in the window: begin as it says, and write it at the end; it "
                    "need not exist")
         ->type_name("FILE.toml");
@@ -122,12 +122,12 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         if (!options.stage_file.empty() &&
             !(options.calibrate && !std::filesystem::exists(options.stage_file)))
             options.stage = read_stage_file(options.stage_file);
-        if (!options.desk_file.empty()) {
-            options.desk = read_desk_file(options.desk_file);
-            options.traces = options.traces || options.desk.traces;
+        if (!options.window_state_file.empty()) {
+            options.window_state = read_window_state_file(options.window_state_file);
+            options.traces = options.traces || options.window_state.traces;
             if (size_option->count() == 0) {
-                options.width_px = options.desk.width_px;
-                options.height_px = options.desk.height_px;
+                options.width_px = options.window_state.width_px;
+                options.height_px = options.window_state.height_px;
             }
         }
         if (!stereo.empty()) static_cast<void>(read_stereo_mode(stereo, options.stage.mode));

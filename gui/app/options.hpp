@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "gui/app/contour_option.hpp"
-#include "gui/desk/desk_file.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/stage/stage_file.hpp"
+#include "gui/window/window_state.hpp"
 
 namespace tact {
 
@@ -16,15 +16,15 @@ struct GuiOptions {
     std::string scene;  // empty: the controller's
     std::string session = "default";
     std::string
-        desk_file;      // what a person set in the window: read at the start, written at the end; empty: none
-    DeskSettings desk;  // as it was read
-    std::string hand_over;   // the launcher's folder, where it takes wishes for another scene; empty: none
-    std::string screenshot;  // empty: none
-    std::string report;      // of drilling, JSON, at the end; empty: none
-    std::string frames;      // what frames took, JSON, at the end; empty: none
-    double every_s = 0.0;    // between pictures of a series beside the screenshot; 0: none
-    double seconds = 0.0;    // 0: until closed
-    double zoom = 1.0;       // of the home view
+        window_state_file;     // settings of the window: read at the start, written at the end; empty: none
+    WindowState window_state;  // as it was read
+    std::string scene_switch;  // the launcher's folder, where it takes wishes for another scene; empty: none
+    std::string screenshot;    // empty: none
+    std::string report;        // of drilling, JSON, at the end; empty: none
+    std::string frames;        // what frames took, JSON, at the end; empty: none
+    double every_s = 0.0;      // between pictures of a series beside the screenshot; 0: none
+    double seconds = 0.0;      // 0: until closed
+    double zoom = 1.0;         // of the home view
     int width_px = 1280, height_px = 720;
     float ui_scale = 1.0F;  // of letters and panels
     bool traces = false;    // in the place of the plots, at the start

@@ -14,13 +14,13 @@ namespace tact {
 
 void write_png(const std::filesystem::path& path, const Image& image) {
     const std::string attempt = "writing the picture " + path.string();
-    const std::string mend = "choose a folder that exists and can be written, with space left";
+    const std::string fix = "choose a folder that exists and can be written, with space left";
     std::filesystem::path partial = path;
     partial += "." + std::to_string(getpid()) + ".partial";
     const auto fail = [&](const std::string& why) {
         std::error_code ignored;
         std::filesystem::remove(partial, ignored);
-        throw StartupError(attempt, why, mend);
+        throw StartupError(attempt, why, fix);
     };
     std::FILE* const opened = std::fopen(partial.c_str(), "wb");
     if (opened == nullptr) fail(last_error());

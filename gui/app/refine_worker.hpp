@@ -1,4 +1,4 @@
-// Refines one body beside the frame loop (ipc/assets/refine.hpp).
+// Refines one body beside the frame loop (ipc/scene/fit/refine.hpp).
 //
 // Thread   start(), poll() and cancel() on the frame thread; the work on one of its own, at low priority.
 #pragma once
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "gui/app/fit_worker.hpp"
-#include "ipc/assets/refine.hpp"
+#include "ipc/scene/fit/refine.hpp"
 
 namespace tact {
 

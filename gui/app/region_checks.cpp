@@ -69,7 +69,7 @@ bool sensible(const DrillTopic& t) noexcept {
         return false;
     return std::all_of(t.hand, t.hand + kDrillHands, [&within](const DrillHand& h) {
         if (h.kind == DrillKind::none) return true;
-        return h.kind <= DrillKind::sucker && h.shape <= DrillShape::cone && near(h.pos_model_m) &&
+        return h.kind <= DrillKind::suction_tube && h.shape <= DrillShape::cone && near(h.pos_model_m) &&
                unit_quaternion(h.quat_model_tool_xyzw) && h.radius_m > 0.0F && within(h.radius_m, 1.0F) &&
                within(h.length_m, 1.0F) && within(h.tip_radius_m, 1.0F) && within(h.shaft_radius_m, 1.0F) &&
                within(h.shaft_length_m, 1.0F) && within(h.burr_rad_s, 1e6F) && within(h.suction, 1.0F) &&
@@ -111,14 +111,15 @@ bool sensible(const HealthTopic& h) noexcept {
     return rate(h.force_rate_hz) && rate(h.force_rate_mean_hz) && rate(h.goal_hz) &&
            std::isfinite(h.gui_fps) && duration(h.period_ns) && duration(h.lateness_p50_ns) &&
            duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
-           duration(h.cycle_cost_max_ns) && fraction(h.fresh_mean) && fraction(h.fresh_least) &&
-           fraction(h.rested) && duration(h.delay_p50_ns) && duration(h.delay_p99_ns) &&
-           std::isfinite(h.stiffness_n_m_max) && h.state <= static_cast<std::uint8_t>(RunState::fault);
+           duration(h.cycle_cost_max_ns) && fraction(h.recomputed_fraction_mean) &&
+           fraction(h.recomputed_fraction_least) && fraction(h.rested) && duration(h.delay_p50_ns) &&
+           duration(h.delay_p99_ns) && std::isfinite(h.stiffness_n_m_max) &&
+           h.state <= static_cast<std::uint8_t>(RunState::fault);
 }
 
 bool sensible(const LevelsTopic& l) noexcept {
     if (l.count > kPathsMax || !rate(l.goal_hz) || !rate(l.rate_hz) ||
-        !rate(static_cast<double>(l.picture_goal_hz)) || !ended(l.law))
+        !rate(static_cast<double>(l.display_goal_hz)) || !ended(l.law))
         return false;
     return std::all_of(l.path, l.path + l.count, [](const PathLevel& p) {
         return ended(p.path) && std::isfinite(p.level) && p.level >= 0.0F && p.level <= 1.0F &&

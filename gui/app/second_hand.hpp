@@ -1,6 +1,6 @@
 // The second of two hands as the picture shows it: where it will be when the picture is seen.
 //
-// Frames   comes in world axes and metres, goes in model axes; the two are parallel (ipc/assets/scene_meta.hpp)
+// Frames   comes in world axes and metres, goes in model axes; the two are parallel (ipc/scene/file/scene_meta.hpp)
 // Thread   frame thread
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "gui/app/pose_predictor.hpp"
 #include "gui/render/second_hand.hpp"
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/topics/tool.hpp"
 
 namespace tact {

@@ -49,14 +49,14 @@ Site::Site(const BoneVolumeView& bone, const BoneLabelsView& labels, double worl
       world_per_model_(world_per_model),
       particles_(bone.bricks, bone.density, settings_of(world_per_model)),
       bleeding_(bone.bricks, labels.structure, labels.label, 3) {
-    figures_.most = kMost;
+    metrics_.most = kMost;
 }
 
 void Site::step(const Frame& frame) noexcept {
     const double dt_s = std::clamp(frame.dt_s, 0.0, kLongestFrame_s);
     const double level = frame.level >= 0.0F ? std::min(static_cast<double>(frame.level), 1.0) : 0.0;
     const DrillHand* const burr = find(frame.drill, DrillKind::burr);
-    const DrillHand* const sucker = find(frame.drill, DrillKind::sucker);
+    const DrillHand* const suction_tube = find(frame.drill, DrillKind::suction_tube);
     kept_ = static_cast<std::uint32_t>(std::lround(level * kMost));
     particles_.keep_at_most(kept_);
     take_changes(frame, burr);
@@ -73,22 +73,22 @@ void Site::step(const Frame& frame) noexcept {
                     quat(burr->quat_model_tool_xyzw) * Vec3(0.0, 0.0, static_cast<double>(burr->burr_rad_s))};
     }
     Suction suction;
-    if (sucker != nullptr && sucker->suction > 0.0F)
-        suction = {vec(sucker->pos_model_m), kSuctionReach * static_cast<double>(sucker->radius_m) *
-                                                 std::sqrt(static_cast<double>(sucker->suction)) /
-                                                 world_per_model_};
+    if (suction_tube != nullptr && suction_tube->suction > 0.0F)
+        suction = {vec(suction_tube->pos_model_m),
+                   kSuctionReach * static_cast<double>(suction_tube->radius_m) *
+                       std::sqrt(static_cast<double>(suction_tube->suction)) / world_per_model_};
     const int steps = std::clamp(static_cast<int>(std::lround(dt_s / kStep_s)), 1, kStepsMost);
-    figures_.moves = 0;
-    figures_.cost_s = 0.0;
+    metrics_.moves = 0;
+    metrics_.cost_s = 0.0;
     for (int i = 0; i < steps; ++i) {
         const ParticleStep done =
             particles_.step(dt_s / steps, level * kBudgetMost_s / steps, looked_at_m, suction, stir);
-        figures_.moves += done.moved;
-        figures_.cost_s += done.cost_s;
-        figures_.suction_blocked = done.suction_blocked;
+        metrics_.moves += done.moved;
+        metrics_.cost_s += done.cost_s;
+        metrics_.suction_blocked = done.suction_blocked;
     }
-    figures_.alive = static_cast<std::uint32_t>(particles_.all().size());
-    figures_.shown = static_cast<std::uint32_t>(particles_.shown().size());
+    metrics_.alive = static_cast<std::uint32_t>(particles_.all().size());
+    metrics_.shown = static_cast<std::uint32_t>(particles_.shown().size());
     look(dt_s, burr, frame.eye_model_m);
 }
 
@@ -159,8 +159,8 @@ void Site::look(double dt_s, const DrillHand* burr, const Vec3& eye_model_m) noe
         seen_ = share_seen(particles_, vec(burr->pos_model_m),
                            static_cast<double>(burr->radius_m) / world_per_model_, eye_model_m) >= kSeenFrom;
     }
-    figures_.drilling_s += dt_s;
-    if (seen_) figures_.seen_s += dt_s;
+    metrics_.drilling_s += dt_s;
+    if (seen_) metrics_.seen_s += dt_s;
 }
 
 }  // namespace tact

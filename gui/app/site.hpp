@@ -15,12 +15,12 @@
 #include "gui/app/bone_follower.hpp"
 #include "gui/particles/bleeding.hpp"
 #include "gui/particles/particles.hpp"
-#include "ipc/assets/bone_labels.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/topics/drill.hpp"
 
 namespace tact {
 
-struct SiteFigures {
+struct SiteMetrics {
     std::uint32_t alive = 0, shown = 0, moves = 0, most = 0;  // of the last frame; at level 1
     double cost_s = 0.0;                                      // of moving them, this frame
     double drilling_s = 0.0, seen_s = 0.0;  // the burr turned in bone; and of that it was seen
@@ -48,7 +48,7 @@ public:
     void keep(std::uint32_t count) noexcept { scattered_ = count; }
 
     [[nodiscard]] const Particles& particles() const noexcept { return particles_; }
-    [[nodiscard]] const SiteFigures& figures() const noexcept { return figures_; }
+    [[nodiscard]] const SiteMetrics& metrics() const noexcept { return metrics_; }
 
 private:
     void take_changes(const Frame& frame, const DrillHand* burr) noexcept;
@@ -64,7 +64,7 @@ private:
     double water_owed_ = 0.0, looked_s_ = 0.0;
     bool seen_ = true;
     std::uint32_t kept_ = kMost, scattered_ = 0;
-    SiteFigures figures_;
+    SiteMetrics metrics_;
 };
 
 }  // namespace tact

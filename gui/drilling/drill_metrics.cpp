@@ -13,9 +13,9 @@ constexpr double kPathStepM = 3e-4;
 DrillMetrics::DrillMetrics(const BoneBricks& bricks, const BoneLabelsView& labels,
                            std::span<const DistanceField> fields, const SceneMeta& meta)
     : bricks_(bricks), labels_(labels), fields_(fields), meta_(meta) {
-    figures_.structure.resize(labels.structure.size() + 1);
-    injured_s_.assign(figures_.structure.size(), -1e9);
-    figures_.level_m3 = std::pow(meta.world_per_model * bricks.voxel_m, 3) / 255.0;
+    metrics_.structure.resize(labels.structure.size() + 1);
+    injured_s_.assign(metrics_.structure.size(), -1e9);
+    metrics_.level_m3 = std::pow(meta.world_per_model * bricks.voxel_m, 3) / 255.0;
 }
 
 void DrillMetrics::tools(const DrillTopic& drill) {
@@ -42,7 +42,7 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     strokes_.step(t_s, at_m, cuts);
     if (!goes_on || !turns) path_at_m_ = at_m;
     if (!goes_on) return;
-    DrillFigures& f = figures_;
+    DrillMetricsRow& f = metrics_;
     f.seen_s += dt_s;
     if (!turns) return;
     f.drilling_s += dt_s;
@@ -62,7 +62,7 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     for (const DistanceField& field : fields_) {
         if (!labels_.critical(static_cast<std::uint8_t>(field.label))) continue;
         const double away_m = distance_m(field, head, meta_.world_per_model);
-        StructureFigures& s = f.structure[field.label];
+        StructureMetrics& s = f.structure[field.label];
         s.nearest_m = std::min(s.nearest_m, away_m);
         least_m = std::min(least_m, away_m);
         for (std::size_t i = 0; i < kDrillNearM.size(); ++i)
@@ -101,19 +101,19 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
         if (after[i] >= before[i]) continue;
         const auto levels = static_cast<std::uint64_t>(before[i] - after[i]);
         const std::uint8_t label = labels_.label.empty() ? std::uint8_t{0} : labels_.label[first + i];
-        figures_.removed_levels += levels;
-        StructureFigures& s = figures_.structure[label < figures_.structure.size() ? label : 0];
+        metrics_.removed_levels += levels;
+        StructureMetrics& s = metrics_.structure[label < metrics_.structure.size() ? label : 0];
         s.removed_levels += levels;
         if (near) {
             const Vec3 at = corner + Vec3(i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge);
             const double away_m = nearest_critical_m(bricks_.to_model(at));
             for (std::size_t k = 0; k < kDrillNearM.size(); ++k)
-                if (away_m < kDrillNearM[k]) figures_.near_levels[k] += levels;
+                if (away_m < kDrillNearM[k]) metrics_.near_levels[k] += levels;
         }
         if (!cut_now || !labels_.critical(label)) continue;
         if (cycle_s_ - injured_s_[label] > kInjuryPauseS) {
             ++s.injuries;
-            ++figures_.injuries;
+            ++metrics_.injuries;
             injured = label;
         }
         injured_s_[label] = cycle_s_;
@@ -121,9 +121,9 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
     return injured;
 }
 
-DrillFigures DrillMetrics::figures() const {
-    DrillFigures all = figures_;
-    all.strokes = strokes_.figures();
+DrillMetricsRow DrillMetrics::metrics() const {
+    DrillMetricsRow all = metrics_;
+    all.strokes = strokes_.metrics();
     return all;
 }
 

@@ -17,7 +17,7 @@
 
 #include "gui/drilling/strokes.hpp"
 #include "gui/drilling/structure_watch.hpp"
-#include "ipc/assets/bone_labels.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/topics/event.hpp"
 
 namespace tact {
@@ -26,24 +26,24 @@ inline constexpr std::array kDrillNearM{1e-3, 2e-3};  // red and amber
 inline constexpr double kForceExcessN = 2.0, kInjuryPauseS = 1.0, kDrillGapS = 0.05;
 
 // Of one labelled structure, or of bone that is none.
-struct StructureFigures {
+struct StructureMetrics {
     std::uint64_t removed_levels = 0;
     std::uint64_t injuries = 0;
     double nearest_m = 1e9;                           // while the burr turned; critical ones alone
     std::array<double, kDrillNearM.size()> near_s{};  // drilling within; likewise
 };
 
-struct DrillFigures {
+struct DrillMetricsRow {
     double seen_s = 0.0, drilling_s = 0.0, cutting_s = 0.0;
     std::uint64_t unseen_cycles = 0;
     double force_cutting_n_s = 0.0, force_n_most = 0.0, excess_s = 0.0;  // impulse while cutting
     double path_m = 0.0;  // of the burr's centre while drilling
-    StrokeFigures strokes;
+    StrokeMetrics strokes;
     std::uint64_t removed_levels = 0;
     std::array<std::uint64_t, kDrillNearM.size()> near_levels{};
     std::array<double, kDrillNearM.size()> near_s{};  // drilling within, of any critical structure
     std::uint64_t injuries = 0;
-    std::vector<StructureFigures> structure;  // by label; the first is bone without one
+    std::vector<StructureMetrics> structure;  // by label; the first is bone without one
     double level_m3 = 0.0;
 
     [[nodiscard]] double force_cutting_n() const {
@@ -59,13 +59,13 @@ public:
 
     void tools(const DrillTopic& drill);
     void cycle(const TraceTopic& trace);
-    void unseen(std::uint64_t cycles) { figures_.unseen_cycles += cycles; }
+    void unseen(std::uint64_t cycles) { metrics_.unseen_cycles += cycles; }
     // cut_now: at the time of the newest cycle; else it had gone when the controller was found. Returns the label of
     // the critical structure that is injured by it anew, or 0.
     std::uint8_t brick(std::uint32_t brick, std::span<const std::uint8_t> before,
                        std::span<const std::uint8_t> after, bool cut_now);
 
-    [[nodiscard]] DrillFigures figures() const;
+    [[nodiscard]] DrillMetricsRow metrics() const;
 
 private:
     [[nodiscard]] double nearest_critical_m(const Vec3& model_m) const;
@@ -74,7 +74,7 @@ private:
     const BoneLabelsView& labels_;
     std::span<const DistanceField> fields_;
     SceneMeta meta_;
-    DrillFigures figures_;
+    DrillMetricsRow metrics_;
     Strokes strokes_;
     HeadBalls head_;  // of the burr, when tools() was last called
     Vec3 head_at_m_ = Vec3::Zero();

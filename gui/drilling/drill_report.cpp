@@ -12,14 +12,14 @@ namespace tact {
 
 using nlohmann::json;
 
-json drill_report(const DrillFigures& f, const BoneLabelsView& labels,
+json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
                   const std::optional<BurrVisibility>& visibility) {
     const auto mm3 = [&f](std::uint64_t levels) { return 1e9 * f.level_m3 * static_cast<double>(levels); };
     const auto share = [](double part, double of) { return of > 0.0 ? json(part / of) : json(nullptr); };
     bool critical = false;
     json structures = json::array();
     for (std::size_t label = 1; label < f.structure.size(); ++label) {
-        const StructureFigures& s = f.structure[label];
+        const StructureMetrics& s = f.structure[label];
         const BoneStructure& what = labels.structure[label - 1];
         critical = critical || what.critical;
         json row = {{"name", what.name}, {"critical", what.critical}, {"removed_mm3", mm3(s.removed_levels)}};

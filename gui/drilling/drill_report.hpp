@@ -16,7 +16,7 @@ struct BurrVisibility {
     double drilling_s = 0.0, seen_s = 0.0;
 };
 
-[[nodiscard]] nlohmann::json drill_report(const DrillFigures& figures, const BoneLabelsView& labels,
+[[nodiscard]] nlohmann::json drill_report(const DrillMetricsRow& metrics, const BoneLabelsView& labels,
                                           const std::optional<BurrVisibility>& visibility);
 // Whole or not at all.
 void write_drill_report(const std::string& path, const nlohmann::json& report);

@@ -2,12 +2,12 @@
 
 namespace tact {
 
-void Strokes::end_at(const Point& to, StrokeFigures& figures) const {
+void Strokes::end_at(const Point& to, StrokeMetrics& metrics) const {
     const double length_m = (to.at_m - from_.at_m).norm();
     if (length_m < kLeastM) return;
-    ++figures.count;
-    figures.length_m += length_m;
-    figures.time_s += to.t_s - from_.t_s;
+    ++metrics.count;
+    metrics.length_m += length_m;
+    metrics.time_s += to.t_s - from_.t_s;
 }
 
 void Strokes::step(double t_s, const Vec3& at_m, bool cuts) {
@@ -34,8 +34,8 @@ void Strokes::step(double t_s, const Vec3& at_m, bool cuts) {
     under_way_ = !pause;
 }
 
-StrokeFigures Strokes::figures() const {
-    StrokeFigures all = done_;
+StrokeMetrics Strokes::metrics() const {
+    StrokeMetrics all = done_;
     if (under_way_) end_at(farthest_, all);
     return all;
 }

@@ -12,7 +12,7 @@
 
 namespace tact {
 
-struct StrokeFigures {
+struct StrokeMetrics {
     std::uint64_t count = 0;
     double length_m = 0.0, time_s = 0.0;  // of all together; straight from turning point to turning point
     [[nodiscard]] double mean_length_m() const {
@@ -28,16 +28,16 @@ public:
     // Where the burr is, every cycle; cuts: bone went.
     void step(double t_s, const Vec3& at_m, bool cuts);
     // The stroke under way counts as well.
-    [[nodiscard]] StrokeFigures figures() const;
+    [[nodiscard]] StrokeMetrics metrics() const;
 
 private:
     struct Point {
         double t_s = 0.0;
         Vec3 at_m = Vec3::Zero();
     };
-    void end_at(const Point& to, StrokeFigures& figures) const;
+    void end_at(const Point& to, StrokeMetrics& metrics) const;
 
-    StrokeFigures done_;
+    StrokeMetrics done_;
     bool under_way_ = false;
     Point from_, farthest_;
     double far_m_ = 0.0, cut_s_ = 0.0;

@@ -14,7 +14,7 @@ HeadBalls head_balls(const DrillHand& h, double world_per_model) {
     const auto radius = static_cast<double>(h.radius_m), length = static_cast<double>(h.length_m),
                tip = h.shape == DrillShape::cone ? static_cast<double>(h.tip_radius_m) : radius;
     const double low = tip - 0.5 * length, high = 0.5 * length - radius;
-    const bool ball = h.kind == DrillKind::sucker || h.shape == DrillShape::sphere || high <= low;
+    const bool ball = h.kind == DrillKind::suction_tube || h.shape == DrillShape::sphere || high <= low;
     head.count = ball ? 1 : HeadBalls::kMax;
     for (std::size_t i = 0; i < head.count; ++i) {
         const double s = static_cast<double>(i) / (HeadBalls::kMax - 1);

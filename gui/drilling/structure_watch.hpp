@@ -1,7 +1,7 @@
 // How far a tool's surface is from each labelled structure, and how soon it would be there.
 //
-// Distance   from the head of the tool (of a sucker: its tip) to the structure's surface; below zero the head is in it.
-//            Right within the field's error (ipc/assets/distance_field.hpp). Metres of the hand's space.
+// Distance   from the head of the tool (of a suction tube: its tip) to the structure's surface; below zero the head is in it.
+//            Right within the field's error (ipc/scene/bone/distance_field.hpp). Metres of the hand's space.
 // Closing    how fast it becomes less, over the last 0.2 s
 // Thread     one
 #pragma once
@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/distance_field.hpp"
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/topics/drill.hpp"
 
 namespace tact {

@@ -9,7 +9,7 @@ namespace {
 void list(const Theme& theme, DashboardState& state) {
     const bool live = state.attached;
     const float right = ImGui::GetContentRegionAvail().x;
-    for (const BodyFacts& b : state.fitting.bodies) {
+    for (const BodyState& b : state.fitting.bodies) {
         ImGui::PushID(static_cast<int>(b.id));
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float h = ImGui::GetTextLineHeight(), r = theme.px(4.5F);
@@ -19,7 +19,7 @@ void list(const Theme& theme, DashboardState& state) {
         ImGui::PushStyleColor(ImGuiCol_Text, b.in_hand ? colour::kAccent : colour::kText);
         const std::string name = format("%u  %s%s", b.id, b.name.c_str(), b.in_hand ? " (held)" : "");
         if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {right - theme.px(128.0F), 0.0F}))
-            state.wishes.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
+            state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s: %s atoms. Click: take it into the hand, or let go.", b.name.c_str(),
@@ -27,23 +27,23 @@ void list(const Theme& theme, DashboardState& state) {
         ImGui::SameLine(right - theme.px(106.0F));
         bool fixed = b.fixed, shown = !b.hidden;
         if (ImGui::Checkbox("fixed", &fixed))
-            state.wishes.push_back({CommandKind::fix_body, fixed ? 1.0 : 0.0, {}, b.id});
+            state.requests.push_back({CommandKind::fix_body, fixed ? 1.0 : 0.0, {}, b.id});
         ImGui::EndDisabled();
         ImGui::SameLine(right - theme.px(46.0F));
-        if (ImGui::Checkbox("show", &shown)) state.hide_wishes.emplace_back(b.id, !shown);
+        if (ImGui::Checkbox("show", &shown)) state.hide_requests.emplace_back(b.id, !shown);
         ImGui::PopID();
     }
 }
 
-const BodyFacts* in_hand(const FittingFacts& f) {
-    for (const BodyFacts& b : f.bodies)
+const BodyState* in_hand(const FittingState& f) {
+    for (const BodyState& b : f.bodies)
         if (b.in_hand) return &b;
     return nullptr;
 }
 
 void acts(const Theme& theme, DashboardState& state) {
-    FittingFacts& f = state.fitting;
-    const BodyFacts* const held = in_hand(f);
+    FittingState& f = state.fitting;
+    const BodyState* const held = in_hand(f);
     const std::uint32_t id = held != nullptr ? held->id : 0;
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const float width = (ImGui::GetContentRegionAvail().x - 3.0F * gap) / 4.0F;
@@ -56,31 +56,31 @@ void acts(const Theme& theme, DashboardState& state) {
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
         return pressed;
     };
-    const auto wish = [&](FitAct act, const std::string& text = {}) {
-        state.fit_wishes.push_back({act, id, text});
+    const auto request = [&](FitAct act, const std::string& text = {}) {
+        state.fit_requests.push_back({act, id, text});
     };
-    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) wish(FitAct::undo);
-    if (button("Redo", f.can_redo, "(Ctrl+Y)")) wish(FitAct::redo);
-    if (button("Accept", f.can_undo, "from here on, Revert leads here (Enter)")) wish(FitAct::accept);
-    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) wish(FitAct::revert);
+    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAct::undo);
+    if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAct::redo);
+    if (button("Accept", f.can_undo, "from here on, Revert leads here (Enter)")) request(FitAct::accept);
+    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAct::revert);
     if (button("Refine", held != nullptr && !f.refining, "steepest ascent of the fit from here (R)"))
-        wish(FitAct::refine);
+        request(FitAct::refine);
     if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax,
                "another one of the body in the hand"))
-        wish(FitAct::copy);
+        request(FitAct::copy);
     if (button("Remove", held != nullptr && f.bodies.size() > 1,
                "takes the body in the hand out of the scene"))
-        state.wishes.push_back({CommandKind::remove_body, 0.0, {}, id});
+        state.requests.push_back({CommandKind::remove_body, 0.0, {}, id});
     if (button("Save", !f.saving, "PDB or mmCIF, matrix and CSV of every body, in a new folder"))
-        wish(FitAct::save);
+        request(FitAct::save);
     ImGui::BeginDisabled(!state.attached);
     if (ImGui::Button("Snapshot", {width, 0.0F}))
-        wish(FitAct::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
+        request(FitAct::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(3.0F * width + 2.0F * gap);
     if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "go back to ...")) {
         for (const std::string& name : f.snapshots)
-            if (ImGui::Selectable(name.c_str())) wish(FitAct::restore, name);
+            if (ImGui::Selectable(name.c_str())) request(FitAct::restore, name);
         ImGui::EndCombo();
     }
     ImGui::EndDisabled();
@@ -88,11 +88,11 @@ void acts(const Theme& theme, DashboardState& state) {
 }
 
 void options(const Theme& theme, DashboardState& state) {
-    const FittingFacts& f = state.fitting;
+    const FittingState& f = state.fitting;
     ImGui::BeginDisabled(!state.attached || f.building);
     const auto box = [&](const char* name, std::uint32_t bit, CommandKind kind, const char* help) {
         bool on = (f.options & bit) != 0;
-        if (ImGui::Checkbox(name, &on)) state.wishes.push_back({kind, on ? 1.0 : 0.0, {}});
+        if (ImGui::Checkbox(name, &on)) state.requests.push_back({kind, on ? 1.0 : 0.0, {}});
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
     };
     box("Clash", kDockingClash, CommandKind::set_clash, "bodies push each other apart");
@@ -113,7 +113,7 @@ void draw_bodies_tab(const Theme& theme, DashboardState& state) {
     ImGui::Spacing();
     options(theme, state);
     acts(theme, state);
-    const FittingFacts& f = state.fitting;
+    const FittingState& f = state.fitting;
     if (f.refining) text_small(theme, colour::kDim, "refining ...");
     if (f.saving) text_small(theme, colour::kDim, "saving ...");
     if (!f.said.empty()) text_small(theme, grade_colour(f.said_grade), f.said);

@@ -22,7 +22,7 @@ void tick_box(const Theme& theme, ImVec2 at, bool ticked) {
 
 // What is pressed: name and kind, then size and time; beneath, where it lies or what is wrong with it. Raw data are shown
 // in their folder alone, whose path stands above.
-void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserFacts& browser) {
+void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserState& browser) {
     const bool usable = row.trouble.empty();
     const float height = theme.px(row.folder || (row.raw && usable) ? 22.0F : 40.0F);
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -66,12 +66,12 @@ void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserFact
          width - 2.0F * pad);
 }
 
-void rows(const Theme& theme, const std::vector<SceneRow>& list, BrowserFacts& browser) {
+void rows(const Theme& theme, const std::vector<SceneRow>& list, BrowserState& browser) {
     const float width = ImGui::GetContentRegionAvail().x;
     for (const SceneRow& row : list) scene_row(theme, row, width, browser);
 }
 
-void import_line(const Theme& theme, BrowserFacts& browser) {
+void import_line(const Theme& theme, BrowserState& browser) {
     if (ImGui::SmallButton("Cancel")) browser.cancel_wanted = true;
     if (!browser.import_share) return;
     ImGui::SameLine();
@@ -82,14 +82,14 @@ void import_line(const Theme& theme, BrowserFacts& browser) {
 
 // What would be made of the rows that are marked, and the way to it; as high as marks_height() says.
 constexpr float kMarksButtons = 130.0F;
-float marks_height(const Theme& theme, const BrowserFacts& browser) {
+float marks_height(const Theme& theme, const BrowserState& browser) {
     if (browser.marks_say.empty()) return 0.0F;
     const float room = ImGui::GetContentRegionAvail().x - theme.px(kMarksButtons);
     return std::max(ImGui::CalcTextSize(browser.marks_say.c_str(), nullptr, false, room).y,
                     ImGui::GetFrameHeight()) +
            2.0F * ImGui::GetStyle().ItemSpacing.y;
 }
-void marks_line(const Theme& theme, BrowserFacts& browser) {
+void marks_line(const Theme& theme, BrowserState& browser) {
     ImGui::Separator();
     ImGui::BeginDisabled(!browser.marks_import || browser.importing);
     if (ImGui::Button("Import")) browser.import_wanted = true;
@@ -105,7 +105,7 @@ void marks_line(const Theme& theme, BrowserFacts& browser) {
 
 }  // namespace
 
-void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& view) {
+void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view) {
     // Below what is written into the view's upper corners, which would be drawn over it.
     const float above = theme.px(66.0F);
     const float width = std::min(theme.px(660.0F), 0.94F * view.width),
@@ -149,7 +149,7 @@ void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& vi
     end_card();
 }
 
-void draw_browser_button(const Theme& theme, BrowserFacts& browser, const PixelRect& view) {
+void draw_browser_button(const Theme& theme, BrowserState& browser, const PixelRect& view) {
     const float width = theme.px(96.0F);
     ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(10.0F), view.y + theme.px(70.0F)});
     ImGui::SetNextWindowSize({width, theme.px(30.0F)});

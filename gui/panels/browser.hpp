@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gui/panels/status_text.hpp"
 #include "gui/panels/theme.hpp"
-#include "gui/panels/verdict.hpp"
 
 namespace tact {
 
@@ -22,7 +22,7 @@ struct SceneRow {
     bool raw = false, marked = false;  // raw data: pressed to be marked, not opened
 };
 
-struct BrowserFacts {
+struct BrowserState {
     bool open = false;
     int tab = 0;  // recently used, a folder
     std::vector<SceneRow> recent, here;
@@ -41,8 +41,8 @@ struct BrowserFacts {
 };
 
 // Over the middle of the view.
-void draw_browser(const Theme& theme, BrowserFacts& browser, const PixelRect& view);
+void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view);
 // What opens it, in the corner of the view.
-void draw_browser_button(const Theme& theme, BrowserFacts& browser, const PixelRect& view);
+void draw_browser_button(const Theme& theme, BrowserState& browser, const PixelRect& view);
 
 }  // namespace tact

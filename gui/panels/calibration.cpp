@@ -8,16 +8,18 @@
 namespace tact {
 namespace {
 
-using Typed = CalibrationFacts::Typed;
+using Typed = CalibrationCardState::Typed;
 
 struct Form {
     const Theme& theme;
-    CalibrationFacts& facts;
+    CalibrationCardState& state;
 
-    void wish(CalibrationAct act, std::size_t number = 0) const { facts.wishes.emplace_back(act, number); }
+    void request(CalibrationAct act, std::size_t number = 0) const {
+        state.requests.emplace_back(act, number);
+    }
     void button(const char* name, float width, CalibrationAct act, bool possible = true) const {
         ImGui::BeginDisabled(!possible);
-        if (ImGui::Button(name, {width, 0.0F})) wish(act);
+        if (ImGui::Button(name, {width, 0.0F})) request(act);
         ImGui::EndDisabled();
     }
     // Numbers in a row, behind a word.
@@ -35,8 +37,8 @@ struct Form {
             ImGui::PushID(static_cast<int>(i));
             ImGui::SetNextItemWidth(width);
             ImGui::InputDouble("##mm", &values[i], 0.0, 0.0, "%.1f");
-            facts.editing = facts.editing || ImGui::IsItemActive();
-            if (ImGui::IsItemDeactivatedAfterEdit()) facts.edited = typed;
+            state.editing = state.editing || ImGui::IsItemActive();
+            if (ImGui::IsItemDeactivatedAfterEdit()) state.edited = typed;
             ImGui::PopID();
         }
         ImGui::PopID();
@@ -47,7 +49,7 @@ struct Form {
         ImGui::SameLine(theme.px(92.0F));
         const int before = chosen;
         choose(theme, words, chosen);
-        if (chosen != before) facts.edited = typed;
+        if (chosen != before) state.edited = typed;
         ImGui::PopID();
     }
 };
@@ -80,7 +82,7 @@ void one_line(const std::string& text, ImU32 ink) {
 }
 
 void steps(const Form& form) {
-    const CalibrationFacts& f = form.facts;
+    const CalibrationCardState& f = form.state;
     for (std::size_t i = 0; i < f.steps.size(); ++i) {
         const bool here = i == f.step;
         ImGui::PushID(static_cast<int>(i));
@@ -89,7 +91,7 @@ void steps(const Form& form) {
         ImGui::PushStyleColor(ImGuiCol_Text, here ? colour::kAccent : colour::kText);
         if (here) ImGui::PushFont(form.theme.bold);
         if (ImGui::Selectable(name.c_str(), false, 0, ImGui::CalcTextSize(name.c_str())))
-            form.wish(CalibrationAct::go, i);
+            form.request(CalibrationAct::go, i);
         if (here) ImGui::PopFont();
         ImGui::PopStyleColor();
         ImGui::SameLine(form.theme.px(112.0F));
@@ -102,15 +104,15 @@ void steps(const Form& form) {
 }
 
 void points(const Form& form) {
-    const CalibrationFacts& f = form.facts;
+    const CalibrationCardState& f = form.state;
     for (std::size_t i = 0; i < f.points.size(); ++i) {
-        const CalibrationFacts::Point& p = f.points[i];
+        const CalibrationCardState::Point& p = f.points[i];
         ImGui::PushID(static_cast<int>(i) + 100);
         dot(form.theme, p.grade);
         const ImU32 ink = p.current ? colour::kWatch : p.taken ? colour::kText : colour::kDim;
         ImGui::PushStyleColor(ImGuiCol_Text, ink);
         if (ImGui::Selectable(format("%zu   %s", i + 1, p.words.c_str()).c_str()))
-            form.wish(CalibrationAct::redo, i);
+            form.request(CalibrationAct::redo, i);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip(p.taken ? "take it again" : "take this one next");
         ImGui::PopStyleColor();
         ImGui::PopID();
@@ -125,7 +127,7 @@ void points(const Form& form) {
 }
 
 void screen_step(const Form& form) {
-    CalibrationFacts& f = form.facts;
+    CalibrationCardState& f = form.state;
     points(form);
     if (f.size_offered) form.button("Take the size by the marks", -1.0F, CalibrationAct::measured_size);
     ImGui::Separator();
@@ -135,7 +137,7 @@ void screen_step(const Form& form) {
 }
 
 void eyes_step(const Form& form) {
-    CalibrationFacts& f = form.facts;
+    CalibrationCardState& f = form.state;
     form.numbers("Apart, mm", f.apart_mm, Typed::eyes);
     form.numbers("From sensor", f.middle_mm, Typed::eyes);
     text_small(form.theme, colour::kDim,
@@ -160,7 +162,7 @@ void eyes_step(const Form& form) {
 }
 
 void of_step(const Form& form) {
-    CalibrationFacts& f = form.facts;
+    CalibrationCardState& f = form.state;
     static constexpr std::array<const char*, 2> kTouched{"marks", "the wand"};
     switch (f.step) {
         case 0:
@@ -188,7 +190,7 @@ void of_step(const Form& form) {
 }
 
 void ending(const Form& form) {
-    CalibrationFacts& f = form.facts;
+    CalibrationCardState& f = form.state;
     ImGui::Separator();
     const float gap = form.theme.px(6.0F), width = (ImGui::GetContentRegionAvail().x - gap) / 2.0F;
     form.button("Back", width, CalibrationAct::back, f.step > 0);
@@ -206,7 +208,7 @@ void ending(const Form& form) {
 }  // namespace
 
 void draw_calibration(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    CalibrationFacts& f = state.calibration;
+    CalibrationCardState& f = state.calibration;
     const Form form{theme, f};
     f.editing = false;
     begin_card(theme, "Calibration", card, true);
@@ -216,9 +218,9 @@ void draw_calibration(const Theme& theme, DashboardState& state, const PixelRect
     ImGui::TextUnformatted(f.instruction.c_str());
     ImGui::PopTextWrapPos();
     of_step(form);
-    if (!f.verdict.words.empty() && f.step < 4)
-        text_small(theme, f.verdict.grade == Grade::unknown ? colour::kDim : grade_colour(f.verdict.grade),
-                   f.verdict.words);
+    if (!f.status.words.empty() && f.step < 4)
+        text_small(theme, f.status.grade == Grade::unknown ? colour::kDim : grade_colour(f.status.grade),
+                   f.status.words);
     if (!f.live.empty()) text_small(theme, colour::kAccent, f.live);
     if (!f.said.empty()) text_small(theme, colour::kWatch, f.said);
     ending(form);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gui/panels/verdict.hpp"
+#include "gui/panels/status_text.hpp"
 
 namespace tact {
 
@@ -24,7 +24,7 @@ enum class CalibrationAct : std::uint8_t {
     leave,
 };
 
-struct CalibrationFacts {
+struct CalibrationCardState {
     struct Step {
         std::string title, words;
         Grade grade = Grade::unknown;
@@ -38,7 +38,7 @@ struct CalibrationFacts {
     std::vector<Step> steps;
     std::size_t step = 0;
     std::string instruction, live, said;
-    Verdict verdict;
+    StatusText status;
     std::vector<Point> points;
     bool measuring = false, can_take = true, size_offered = false;
     float progress = 0.0F;
@@ -57,7 +57,7 @@ struct CalibrationFacts {
     bool editing = false;
     std::vector<const char*> modes;  // of a stereo picture, without "off"
     // Emptied by the application.
-    std::vector<std::pair<CalibrationAct, std::size_t>> wishes;
+    std::vector<std::pair<CalibrationAct, std::size_t>> requests;
 };
 
 }  // namespace tact

@@ -17,49 +17,49 @@ ImU32 colour_of(const ContourRow& c) {
 }
 
 // Counts on a logarithmic scale; a drag moves the nearest level.
-void histogram(const Theme& theme, ContourFacts& facts) {
+void histogram(const Theme& theme, ContourRowState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size{ImGui::GetContentRegionAvail().x, theme.px(54.0F)};
     ImGui::InvisibleButton("##histogram", {std::max(size.x, 1.0F), size.y});
-    const double span = facts.greatest - facts.least;
-    if (!(span > 0.0) || facts.histogram.empty()) return;
+    const double span = state.greatest - state.least;
+    if (!(span > 0.0) || state.histogram.empty()) return;
     const auto x_of = [&](double level) {
-        return at.x + size.x * static_cast<float>((level - facts.least) / span);
+        return at.x + size.x * static_cast<float>((level - state.least) / span);
     };
     if (ImGui::IsItemActive()) {
         const double level =
-            facts.least + span * static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / size.x);
+            state.least + span * static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / size.x);
         if (ImGui::IsItemActivated()) {
             const auto nearest = std::min_element(
-                facts.row.begin(), facts.row.end(), [&](const ContourRow& a, const ContourRow& b) {
+                state.row.begin(), state.row.end(), [&](const ContourRow& a, const ContourRow& b) {
                     return std::abs(a.level - level) < std::abs(b.level - level);
                 });
-            facts.dragged = static_cast<std::size_t>(nearest - facts.row.begin());
+            state.dragged = static_cast<std::size_t>(nearest - state.row.begin());
         }
-        if (facts.dragged < facts.row.size()) {
-            facts.row[facts.dragged].level = std::clamp(level, facts.least, facts.greatest);
-            facts.changed = true;
+        if (state.dragged < state.row.size()) {
+            state.row[state.dragged].level = std::clamp(level, state.least, state.greatest);
+            state.changed = true;
         }
     }
     ImDrawList* const draw = ImGui::GetWindowDrawList();
-    const std::uint64_t most = *std::max_element(facts.histogram.begin(), facts.histogram.end());
+    const std::uint64_t most = *std::max_element(state.histogram.begin(), state.histogram.end());
     const float top = std::log1p(static_cast<float>(most));
-    const float width = size.x / static_cast<float>(facts.histogram.size());
-    for (std::size_t i = 0; i < facts.histogram.size(); ++i) {
-        const float h = size.y * std::log1p(static_cast<float>(facts.histogram[i])) / std::max(top, 1e-6F);
+    const float width = size.x / static_cast<float>(state.histogram.size());
+    for (std::size_t i = 0; i < state.histogram.size(); ++i) {
+        const float h = size.y * std::log1p(static_cast<float>(state.histogram[i])) / std::max(top, 1e-6F);
         const float x = at.x + width * static_cast<float>(i);
         draw->AddRectFilled({x, at.y + size.y - h}, {x + std::max(width - 1.0F, 1.0F), at.y + size.y},
                             colour::kGrid);
     }
-    for (const ContourRow& c : facts.row)
+    for (const ContourRow& c : state.row)
         draw->AddRectFilled({x_of(c.level) - 1.0F, at.y}, {x_of(c.level) + 1.0F, at.y + size.y},
                             colour_of(c));
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("voxels at each density, counts logarithmic; drag a level");
 }
 
-void one(const Theme& theme, ContourFacts& facts, std::size_t i) {
+void one(const Theme& theme, ContourRowState& state, std::size_t i) {
     static constexpr std::array<const char*, 4> kStyles{"as view", "glass", "solid", "wire"};
-    ContourRow& c = facts.row[i];
+    ContourRow& c = state.row[i];
     ImGui::PushID(static_cast<int>(i));
     bool changed = ImGui::Checkbox("##shown", &c.shown);
     ImGui::SameLine();
@@ -68,9 +68,9 @@ void one(const Theme& theme, ContourFacts& facts, std::size_t i) {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(theme.px(92.0F));
     auto level = static_cast<float>(c.level);
-    const auto step = static_cast<float>((facts.greatest - facts.least) / 400.0);
-    if (ImGui::DragFloat("##level", &level, step, static_cast<float>(facts.least),
-                         static_cast<float>(facts.greatest), "%.4g")) {
+    const auto step = static_cast<float>((state.greatest - state.least) / 400.0);
+    if (ImGui::DragFloat("##level", &level, step, static_cast<float>(state.least),
+                         static_cast<float>(state.greatest), "%.4g")) {
         c.level = static_cast<double>(level);
         changed = true;
     }
@@ -83,30 +83,30 @@ void one(const Theme& theme, ContourFacts& facts, std::size_t i) {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(theme.px(92.0F));
     changed |= ImGui::SliderFloat("##opacity", &c.opacity, 0.1F, 1.0F, "opacity %.1f");
-    if (facts.row.size() > 1) {
+    if (state.row.size() > 1) {
         ImGui::SameLine();
-        if (ImGui::SmallButton("remove")) facts.removed = i;
+        if (ImGui::SmallButton("remove")) state.removed = i;
     }
     if (!c.error.empty()) text_small(theme, colour::kWatch, c.error);
-    facts.changed |= changed;
+    state.changed |= changed;
     ImGui::PopID();
 }
 
 }  // namespace
 
-void draw_contours_tab(const Theme& theme, DashboardState& state) {
-    ContourFacts& facts = state.contours;
-    histogram(theme, facts);
-    for (std::size_t i = 0; i < facts.row.size(); ++i) one(theme, facts, i);
-    if (facts.removed < facts.row.size()) {
-        facts.row.erase(facts.row.begin() + static_cast<std::ptrdiff_t>(facts.removed));
-        facts.changed = true;
+void draw_contours_tab(const Theme& theme, DashboardState& dashboard) {
+    ContourRowState& state = dashboard.contours;
+    histogram(theme, state);
+    for (std::size_t i = 0; i < state.row.size(); ++i) one(theme, state, i);
+    if (state.removed < state.row.size()) {
+        state.row.erase(state.row.begin() + static_cast<std::ptrdiff_t>(state.removed));
+        state.changed = true;
     }
-    facts.removed = ContourFacts::kNone;
-    ImGui::BeginDisabled(facts.row.size() >= facts.rows_max);
-    if (ImGui::Button("Add a contour")) facts.add = true;
+    state.removed = ContourRowState::kNone;
+    ImGui::BeginDisabled(state.row.size() >= state.rows_max);
+    if (ImGui::Button("Add a contour")) state.add = true;
     ImGui::EndDisabled();
-    const auto moving = std::any_of(facts.row.begin(), facts.row.end(),
+    const auto moving = std::any_of(state.row.begin(), state.row.end(),
                                     [](const ContourRow& c) { return c.shown && !c.final; });
     if (moving) text_small(theme, colour::kDim, "coarse while it moves; the full surface follows");
 }

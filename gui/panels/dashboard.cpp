@@ -9,7 +9,7 @@ namespace tact {
 
 MiddleCard middle_card(const DashboardState& state) {
     if (state.calibration.open) return MiddleCard::calibration;
-    const SceneFacts& scene = state.scene;
+    const SceneState& scene = state.scene;
     return scene.bone ? MiddleCard::drilling : scene.placed() ? MiddleCard::fit : MiddleCard::none;
 }
 

@@ -21,7 +21,7 @@
 #include "gui/panels/scene_toggles.hpp"
 #include "gui/panels/theme.hpp"
 #include "gui/panels/traces.hpp"
-#include "ipc/assets/fit_metrics.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/device.hpp"
@@ -34,7 +34,7 @@
 namespace tact {
 
 // What a person clicked; the application turns it into a command of the controller.
-struct Wish {
+struct Request {
     CommandKind kind = CommandKind::none;
     double value = 0.0;
     std::string text;
@@ -44,13 +44,13 @@ struct Wish {
 
 // What a person asked to be done with the bodies that takes more than one command.
 enum class FitAct : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
-struct FitWish {
+struct FitRequest {
     FitAct act = FitAct::undo;
     std::uint32_t body = 0;  // id: copy, refine, revert
     std::string text;        // name of a snapshot
 };
 
-struct BodyFacts {
+struct BodyState {
     std::uint32_t id = 0;
     std::string name;
     std::size_t atoms = 0;
@@ -58,8 +58,8 @@ struct BodyFacts {
     ImU32 colour = colour::kText;
 };
 
-struct FittingFacts {
-    std::vector<BodyFacts> bodies;
+struct FittingState {
+    std::vector<BodyState> bodies;
     std::uint32_t options = 0;  // DockingOption, as felt now
     bool building = false;      // the controller prepares another density
     bool refining = false, saving = false;
@@ -70,7 +70,7 @@ struct FittingFacts {
     Grade said_grade = Grade::unknown;
 };
 
-struct SceneFacts {
+struct SceneState {
     bool loaded = false;
     std::string status;  // "loading ...", or why there is none
     std::string title, file;
@@ -88,7 +88,7 @@ struct SceneFacts {
 };
 
 // The surface as it is kept fine around the tool.
-struct DetailFacts {
+struct DetailState {
     bool possible = false;  // the scene has a forest
     bool felt = false;      // the controller keeps one (mode chr); else the window alone
     bool full = false;      // felt: within the radius all is as in the full mesh
@@ -106,8 +106,8 @@ struct DetailFacts {
     std::array<ImU32, 32> colours{};  // from the finest to the coarsest
 };
 
-// What the metrics of a fit mean: ipc/assets/fit_metrics.hpp.
-struct FitFacts {
+// What the metrics of a fit mean: ipc/scene/fit/fit_metrics.hpp.
+struct FitState {
     bool known = false;
     std::string status;  // "computing", or why there is none
     FitMetrics all;      // of all bodies together
@@ -121,7 +121,7 @@ struct FitFacts {
 };
 
 // A tool that drills or sucks, in the hand's space.
-struct ToolFacts {
+struct ToolDescription {
     bool there = false;
     int shape = 0;  // ball, cylinder, cone
     double diameter_m = 0.0, length_m = 0.0;
@@ -130,15 +130,15 @@ struct ToolFacts {
     double depth = 0.0;  // of its radius, in bone
 };
 
-struct DrillingFacts {
+struct DrillingState {
     struct Structure {
         std::string name;
         ImU32 colour = colour::kText;
         double burr_m = 0.0, closing_m_s = 0.0;  // below zero: in it
-        double sucker_m = 1e9;
+        double suction_tube_m = 1e9;
     };
     bool known = false, labelled = false;
-    ToolFacts burr, sucker;
+    ToolDescription burr, suction_tube;
     double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
     std::uint64_t strokes = 0, injuries = 0;
     double stroke_m = 0.0, stroke_m_s = 0.0;
@@ -158,7 +158,7 @@ struct ContourRow {
     std::string error;
 };
 
-struct ContourFacts {
+struct ContourRowState {
     static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
     std::vector<ContourRow> row;
     std::size_t rows_max = 1;
@@ -201,18 +201,18 @@ struct DashboardState {
     CounterRate tracker_rate;
     LatenessWindow lateness;
     LoadTopic load{};
-    FrameFigures frames{};  // twice a second
+    FrameMetrics frames{};  // twice a second
     std::uint64_t refused_records = 0;
     std::string command_text;  // what became of the last command
     Grade command_grade = Grade::unknown;
-    SceneFacts scene;
-    FitFacts fit;
-    FittingFacts fitting;
-    ContourFacts contours;
-    DetailFacts detail;
-    DrillingFacts drilling;
-    CalibrationFacts calibration;
-    BrowserFacts browser;
+    SceneState scene;
+    FitState fit;
+    FittingState fitting;
+    ContourRowState contours;
+    DetailState detail;
+    DrillingState drilling;
+    CalibrationCardState calibration;
+    BrowserState browser;
     History history;
     TracesState traces;
     std::deque<EventLine> events;  // newest first
@@ -237,9 +237,9 @@ struct DashboardState {
     KeySituation situation;   // of the keys; its sheet is what a person opened
     int tab = 0;              // of the scene card
     // Emptied by the application.
-    std::vector<Wish> wishes;
-    std::vector<FitWish> fit_wishes;
-    std::vector<std::pair<std::uint32_t, bool>> hide_wishes;  // id, hidden
+    std::vector<Request> requests;
+    std::vector<FitRequest> fit_requests;
+    std::vector<std::pair<std::uint32_t, bool>> hide_requests;  // id, hidden
 };
 
 struct PixelRect {

@@ -10,7 +10,7 @@ namespace tact {
 namespace {
 
 // How much is allowed by the distance from the tool, as the filter's form says; both in radii.
-double allowed(const DetailFacts& d, double distance) {
+double allowed(const DetailState& d, double distance) {
     const double x = (distance - 1.0) / static_cast<double>(d.width);
     if (x <= 0.0) return 0.0;
     if (d.shape == 0) return 1.0 - std::exp(-x * x);
@@ -23,7 +23,7 @@ double allowed(const DetailFacts& d, double distance) {
     return 1.0;
 }
 
-void curve(const Theme& theme, const DetailFacts& d) {
+void curve(const Theme& theme, const DetailState& d) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size{ImGui::GetContentRegionAvail().x, theme.px(58.0F)};
     ImGui::InvisibleButton("##filter", {std::max(size.x, 1.0F), size.y});
@@ -50,7 +50,7 @@ void curve(const Theme& theme, const DetailFacts& d) {
         colour::kDim, end.c_str());
 }
 
-bool number(const Theme& theme, const char* what, const char* id, float& value, DetailFacts& d) {
+bool number(const Theme& theme, const char* what, const char* id, float& value, DetailState& d) {
     text_coloured(colour::kDim, what);
     ImGui::SameLine(theme.px(104.0F));
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
@@ -62,7 +62,7 @@ bool number(const Theme& theme, const char* what, const char* id, float& value, 
     return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-void form(const Theme& theme, DetailFacts& d) {
+void form(const Theme& theme, DetailState& d) {
     static constexpr std::array<const char*, 2> kShapes{"bell", "multiple frustum"};
     text_coloured(colour::kDim, "Filter");
     ImGui::SameLine(theme.px(104.0F));
@@ -78,7 +78,7 @@ void form(const Theme& theme, DetailFacts& d) {
     curve(theme, d);
 }
 
-void facts(const Theme& theme, const DetailFacts& d) {
+void detail_rows(const Theme& theme, const DetailState& d) {
     row(theme, "Full detail", length_text(d.radius_m), "about the tool");
     row(theme, "Active", grouped(d.triangles), format("triangles, %s vertices", grouped(d.vertices).c_str()));
     row(theme, "Beyond it", "≤ " + length_text(d.deviation_m), "off the full mesh");
@@ -97,13 +97,13 @@ void facts(const Theme& theme, const DetailFacts& d) {
 }  // namespace
 
 void draw_detail(const Theme& theme, DashboardState& state) {
-    DetailFacts& d = state.detail;
+    DetailState& d = state.detail;
     if (!d.possible) return;
     ImGui::Checkbox("Detail as colour", &state.toggles.detail);
     if (!d.error.empty()) text_small(theme, colour::kWatch, d.error);
     if (!state.toggles.detail) return;
     form(theme, d);
-    facts(theme, d);
+    detail_rows(theme, d);
 }
 
 }  // namespace tact

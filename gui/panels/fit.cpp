@@ -26,7 +26,7 @@ void metrics(const Theme& theme, const FitMetrics& m) {
 
 void draw_fit(const Theme& theme, const DashboardState& state, const PixelRect& card) {
     begin_card(theme, "Fit", card);
-    const FitFacts& f = state.fit;
+    const FitState& f = state.fit;
     if (f.known) {
         ImGui::SameLine(0.0F, theme.px(10.0F));
         text_coloured(colour::kText, f.body_id != 0 ? format("body %u, in the hand", f.body_id)

@@ -21,7 +21,7 @@ struct Table {
         ImGui::GetBackgroundDrawList()->AddText(font, font->FontSize, {x + theme.px(at) - width, y}, c,
                                                 text.c_str());
     }
-    void row(const char* what, const PassFigures& p, ImU32 c) {
+    void row(const char* what, const PassMetrics& p, ImU32 c) {
         cell(0.0F, c, what, false);
         cell(144.0F, c, ms(p.work_p50_s));
         cell(188.0F, c, ms(p.work_p99_s));
@@ -33,17 +33,17 @@ struct Table {
 
 }  // namespace
 
-std::string frame_line(const FrameFigures& f) {
+std::string frame_line(const FrameMetrics& f) {
     if (f.window == 0) return {};
     return format("p50 %s ms   p99 %s ms   %s late", ms(f.p50_s).c_str(), ms(f.p99_s).c_str(),
                   grouped(f.late).c_str());
 }
 
-void draw_frame_times(const Theme& theme, const FrameFigures& f, const PixelRect& view) {
+void draw_frame_times(const Theme& theme, const FrameMetrics& f, const PixelRect& view) {
     constexpr float kWide = 320.0F;
     const float line = theme.px(17.0F), pad = theme.px(12.0F);
     std::size_t rows = 0;
-    for (const PassFigures& p : f.pass) rows += p.work_p99_s > kNeverRan_s ? 1 : 0;
+    for (const PassMetrics& p : f.pass) rows += p.work_p99_s > kNeverRan_s ? 1 : 0;
     const float height = line * static_cast<float>(rows + kVisualPaths + 4) + 2.0F * pad;
     const ImVec2 at{view.x + theme.px(16.0F), view.y + theme.px(60.0F)};
     ImDrawList* const draw = ImGui::GetBackgroundDrawList();

@@ -21,7 +21,7 @@ void buttons(const Theme& theme, DashboardState& state) {
             ImGui::PushStyleColor(ImGuiCol_Button, (c & 0x00FFFFFFU) | (0x48U << 24U));
             ImGui::PushStyleColor(ImGuiCol_ButtonHovered, (c & 0x00FFFFFFU) | (0x80U << 24U));
         }
-        if (ImGui::Button(name, {width, 0.0F})) state.wishes.push_back({kind, 0.0, {}});
+        if (ImGui::Button(name, {width, 0.0F})) state.requests.push_back({kind, 0.0, {}});
         if (enabled) ImGui::PopStyleColor(2);
         ImGui::EndDisabled();
     };
@@ -58,7 +58,7 @@ void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
 }
 
 // What a device says comes in place of the state's own words: it knows more.
-void words(const Theme& theme, const HealthTopic& h, const Verdict& state) {
+void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
     bool said = false;
     for (const std::uint8_t code : h.device_notice) {
         const auto notice = static_cast<DeviceNotice>(code);
@@ -90,7 +90,7 @@ void recording(const Theme& theme, const DashboardState& state) {
 void hero(const Theme& theme, const DashboardState& state) {
     const HealthTopic& h = state.health;
     const auto run_state = static_cast<RunState>(h.state);
-    const Verdict v = state_verdict(run_state, static_cast<RunReason>(h.reason));
+    const StatusText v = state_status(run_state, static_cast<RunReason>(h.reason));
     const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
     badge(theme, upper(run_state_text(run_state)), grade_colour(v.grade), theme.large);
     ImGui::SameLine();
@@ -104,7 +104,7 @@ void hero(const Theme& theme, const DashboardState& state) {
         text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
                    std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
     }
-    const Verdict rate = rate_verdict(h.force_rate_hz, h.goal_hz);
+    const StatusText rate = rate_status(h.force_rate_hz, h.goal_hz);
     ImGui::PushFont(theme.large);
     text_coloured(grade_colour(rate.grade), rate_text(h.force_rate_hz));
     const float beside = ImGui::GetItemRectSize().x;
@@ -125,16 +125,17 @@ void hero(const Theme& theme, const DashboardState& state) {
 void timing(const Theme& theme, const DashboardState& state) {
     const HealthTopic& h = state.health;
     row(theme, "Lateness p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)),
-        lateness_verdict(h.lateness_p99_ns, h.period_ns));
-    row(theme, "Overruns", grouped(h.overruns), overrun_verdict(h, state.now_ns));
+        lateness_status(h.lateness_p99_ns, h.period_ns));
+    row(theme, "Overruns", grouped(h.overruns), overrun_status(h, state.now_ns));
 }
 
 // A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
 // step's work it still does anew.
 void free_running(const Theme& theme, const HealthTopic& h) {
-    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_mean)),
-        fresh_verdict(h.fresh_mean));
-    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.fresh_least)), "in the last 0.1 s");
+    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_mean)),
+        recomputed_status(h.recomputed_fraction_mean));
+    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_least)),
+        "in the last 0.1 s");
     row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
 }
 
@@ -155,7 +156,7 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
     if (ImGui::BeginCombo("##law", law.c_str())) {
         for (const char* name : {"elastic", "sensitus", "fixed"})
             if (ImGui::Selectable(name, law == name))
-                state.wishes.push_back({CommandKind::set_law, 0.0, name});
+                state.requests.push_back({CommandKind::set_law, 0.0, name});
         ImGui::EndCombo();
     }
     ImGui::SameLine();
@@ -165,7 +166,7 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
     if (!editing) edited = state.levels.goal_hz;
     ImGui::InputDouble("##goal", &edited, 0.0, 0.0, "%.0f");
     editing = ImGui::IsItemActive();
-    if (ImGui::IsItemDeactivatedAfterEdit()) state.wishes.push_back({CommandKind::set_goal_hz, edited, {}});
+    if (ImGui::IsItemDeactivatedAfterEdit()) state.requests.push_back({CommandKind::set_goal_hz, edited, {}});
     ImGui::SameLine(0.0F, theme.px(4.0F));
     text_coloured(colour::kDim, "Hz");
     ImGui::EndDisabled();
@@ -202,16 +203,16 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         }
         draw_device_rows(theme, state);
         delay(theme, h);
-        Verdict picture = picture_verdict(
-            state.load.fps, state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0);
+        StatusText picture = display_status(
+            state.load.fps, state.have_levels ? static_cast<double>(state.levels.display_goal_hz) : 0.0);
         if (state.frames.late > 0) picture.words += ", " + grouped(state.frames.late) + " late";
         row(theme, "Picture", format("%.0f /s", state.load.fps), picture);
-        const Verdict memory = memory_verdict(h);
+        const StatusText memory = memory_status(h);
         if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
         law_and_goal(theme, state);
     }
     if (known && state.attached) {
-        const bool clean = memory_verdict(h).grade == Grade::good;
+        const bool clean = memory_status(h).grade == Grade::good;
         text_small(theme, colour::kDim, schedule_text(h.schedule_flags) + (clean ? "; memory clean" : ""));
         if (h.bad_input + state.refused_records > 0)
             text_small(theme, colour::kWatch,

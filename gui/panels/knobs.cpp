@@ -146,7 +146,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     spec.scale = 1e3;
     spec.lines = frame;
     spec.least_top = 20.0;
-    const double goal_hz = state.have_levels ? static_cast<double>(state.levels.picture_goal_hz) : 0.0;
+    const double goal_hz = state.have_levels ? static_cast<double>(state.levels.display_goal_hz) : 0.0;
     spec.goal = goal_hz > 0.0 ? 1e3 / goal_hz : 0.0;
     draw_plot(theme, spec, sized(1.0F));
     end_card();

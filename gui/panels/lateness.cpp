@@ -28,7 +28,7 @@ struct LatenessFrame {
 };
 
 Grade grade_of(double ns, std::int64_t period_ns) {
-    return lateness_verdict(static_cast<std::int64_t>(ns), period_ns).grade;
+    return lateness_status(static_cast<std::int64_t>(ns), period_ns).grade;
 }
 
 std::string decade_text(double ns) {
@@ -49,8 +49,8 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         return theme.small->CalcTextSizeA(line, 1e9F, 0.0F, text.c_str()).x;
     };
     const LatenessWindow& l = state.lateness;
-    const bool recent = !whole_run && l.recent_figures().cycles > 0;
-    const LatenessFigures& f = recent ? l.recent_figures() : l.whole_figures();
+    const bool recent = !whole_run && l.recent_metrics().cycles > 0;
+    const LatenessMetrics& f = recent ? l.recent_metrics() : l.whole_metrics();
     const std::int64_t period_ns = state.health.period_ns;
     label(at, colour::kText, "Lateness");
     if (!l.empty() && f.cycles > 0)
@@ -65,22 +65,22 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
     }
 
     // What they mean in words, and the figures in two lines of two.
-    const Verdict verdict = lateness_verdict(f.p99_ns, period_ns);
-    const float words_at = size.x - width_of(verdict.words);
+    const StatusText status = lateness_status(f.p99_ns, period_ns);
+    const float words_at = size.x - width_of(status.words);
     if (words_at > width_of("Lateness last 60 s "))
-        label({at.x + words_at, at.y}, grade_colour(verdict.grade), verdict.words);
-    const std::pair<const char*, std::int64_t> figures[] = {
+        label({at.x + words_at, at.y}, grade_colour(status.grade), status.words);
+    const std::pair<const char*, std::int64_t> metrics[] = {
         {"p50", f.p50_ns}, {"p99", f.p99_ns}, {"p99.9", f.p999_ns}, {"max", f.max_ns}};
     // In two columns where there is room for them.
     const bool one = 0.5F * size.x < width_of("p99.9  99.9 µs ");
     const std::size_t columns = one ? 1 : 2;
     const float rows = one ? 4.0F : 2.0F;
-    for (std::size_t i = 0; i < std::size(figures); ++i) {
+    for (std::size_t i = 0; i < std::size(metrics); ++i) {
         const ImVec2 where{at.x + 0.5F * size.x * static_cast<float>(i % columns),
                            at.y + (1.08F + 1.02F * static_cast<float>(i / columns)) * line};
-        label(where, colour::kDim, figures[i].first);
+        label(where, colour::kDim, metrics[i].first);
         label({where.x + width_of("p99.9  "), where.y}, colour::kText,
-              duration_text(1e-9 * static_cast<double>(figures[i].second)));
+              duration_text(1e-9 * static_cast<double>(metrics[i].second)));
     }
 
     const LatenessBars whole(l.whole()), last(recent ? l.recent() : l.whole());
@@ -128,16 +128,16 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         free_from = left + width_of(text) + theme.px(6.0F);
     }
     if (ImGui::IsMouseHoveringRect(at, {at.x + size.x, at.y + size.y})) {
-        const auto words = [&](const char* name, const LatenessFigures& g) {
+        const auto words = [&](const char* name, const LatenessMetrics& g) {
             return format("%s: %s cycles, p50 %s, p99 %s, p99.9 %s, max %s", name, grouped(g.cycles).c_str(),
                           duration_text(1e-9 * static_cast<double>(g.p50_ns)).c_str(),
                           duration_text(1e-9 * static_cast<double>(g.p99_ns)).c_str(),
                           duration_text(1e-9 * static_cast<double>(g.p999_ns)).c_str(),
                           duration_text(1e-9 * static_cast<double>(g.max_ns)).c_str());
         };
-        std::string text = words("whole run", l.whole_figures());
-        if (l.recent_figures().cycles > 0)
-            text += "\n" + words(format("last %.0f s", l.recent_s()).c_str(), l.recent_figures());
+        std::string text = words("whole run", l.whole_metrics());
+        if (l.recent_metrics().cycles > 0)
+            text += "\n" + words(format("last %.0f s", l.recent_s()).c_str(), l.recent_metrics());
         text +=
             "\nColoured: what is chosen; grey behind it: the whole run. Dashed: one period."
             "\nGreen: less late than a tenth of the period; amber: than half of it; red: later.";

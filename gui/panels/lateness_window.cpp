@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-LatenessFigures lateness_figures(const LatenessWindow::Counts& counts, std::uint64_t total,
+LatenessMetrics lateness_metrics(const LatenessWindow::Counts& counts, std::uint64_t total,
                                  std::uint64_t max_ns) {
     const auto at = [&](double p) {
         return static_cast<std::int64_t>(DurationHistogram::percentile_ns(counts.data(), total, max_ns, p));
@@ -22,7 +22,7 @@ void LatenessWindow::clear() {
     next_ = kept_ = 0;
     recent_.fill(0);
     recent_s_ = 0.0;
-    whole_figures_ = recent_figures_ = {};
+    whole_metrics_ = recent_metrics_ = {};
 }
 
 const LatenessWindow::Record& LatenessWindow::record(std::size_t back) const {
@@ -45,7 +45,7 @@ void LatenessWindow::add(const LatenessTopic& topic) {
     std::copy_n(topic.counts, r.counts.size(), r.counts.begin());
     next_ = (next_ + 1) % kKept;
     kept_ = std::min(kept_ + 1, kKept);
-    whole_figures_ = lateness_figures(r.counts, r.total, r.max_ns);
+    whole_metrics_ = lateness_metrics(r.counts, r.total, r.max_ns);
     if (kept_ == 1) return;
     const Record& first = record(kept_ - 1);
     std::uint64_t last_ns = 0;
@@ -55,7 +55,7 @@ void LatenessWindow::add(const LatenessTopic& topic) {
     }
     recent_s_ = 1e-9 * static_cast<double>(r.taken_at_ns - first.taken_at_ns);
     const std::uint64_t most = r.max_ns > first.max_ns ? r.max_ns : std::min(last_ns, r.max_ns);
-    recent_figures_ = lateness_figures(recent_, r.total - first.total, most);
+    recent_metrics_ = lateness_metrics(recent_, r.total - first.total, most);
 }
 
 double LatenessBars::edge_ns(std::size_t bar) {

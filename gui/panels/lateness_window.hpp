@@ -14,7 +14,7 @@
 
 namespace tact {
 
-struct LatenessFigures {
+struct LatenessMetrics {
     std::uint64_t cycles = 0;
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
 };
@@ -33,9 +33,9 @@ public:
     [[nodiscard]] const Counts& whole() const { return at(0); }
     [[nodiscard]] const Counts& recent() const { return recent_; }
     [[nodiscard]] double recent_s() const { return recent_s_; }  // how long that is
-    [[nodiscard]] const LatenessFigures& whole_figures() const { return whole_figures_; }
+    [[nodiscard]] const LatenessMetrics& whole_metrics() const { return whole_metrics_; }
     // The most late of them to a bucket's upper edge, 6 %, where it is not the most late of the whole run.
-    [[nodiscard]] const LatenessFigures& recent_figures() const { return recent_figures_; }
+    [[nodiscard]] const LatenessMetrics& recent_metrics() const { return recent_metrics_; }
     [[nodiscard]] std::size_t memory_bytes() const { return records_.capacity() * sizeof(Record); }
 
 private:
@@ -51,7 +51,7 @@ private:
     std::size_t next_ = 0, kept_ = 0;
     Counts recent_{};
     double recent_s_ = 0.0;
-    LatenessFigures whole_figures_, recent_figures_;
+    LatenessMetrics whole_metrics_, recent_metrics_;
 };
 
 // Counts of buckets gathered in bars of a quarter of an octave each from the first to beyond the last edge.

@@ -116,7 +116,7 @@ void legend(const Pen& pen, const DashboardState& state, const PixelRect& v) {
 
 // What the colours of the detail stand for: short edges above.
 void detail_scale(const Pen& pen, const DashboardState& state, const PixelRect& v) {
-    const DetailFacts& d = state.detail;
+    const DetailState& d = state.detail;
     if (!state.toggles.detail || !(d.finest_m > 0.0)) return;
     const float w = pen.theme.px(12.0F), h = pen.theme.px(132.0F);
     const float x = v.x + v.width - pen.theme.px(100.0F), y0 = v.y + pen.theme.px(84.0F);
@@ -152,7 +152,7 @@ void stop_banner(const Pen& pen, const DashboardState& state, const PixelRect& v
     const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
     const std::string title = "No force: " + notice.why;
     const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, title.c_str()),
-                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, notice.mend.c_str());
+                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, notice.fix.c_str());
     const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
@@ -160,7 +160,7 @@ void stop_banner(const Pen& pen, const DashboardState& state, const PixelRect& v
     pen.draw->AddText(large, large->FontSize, {at.x + pad, at.y + pad}, IM_COL32(255, 235, 232, 255),
                       title.c_str(), nullptr, most);
     pen.draw->AddText(text, text->FontSize, {at.x + pad, at.y + 1.5F * pad + head.y}, colour::kText,
-                      notice.mend.c_str(), nullptr, most);
+                      notice.fix.c_str(), nullptr, most);
 }
 
 void message(const Pen& pen, const DashboardState& state, const PixelRect& v) {

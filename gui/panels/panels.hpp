@@ -25,9 +25,9 @@ void draw_traces(const Theme& theme, DashboardState& state);
 void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size);
 void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
 // What a frame takes in a line; empty: not known yet.
-[[nodiscard]] std::string frame_line(const FrameFigures& figures);
+[[nodiscard]] std::string frame_line(const FrameMetrics& metrics);
 // And in a table over the 3D view.
-void draw_frame_times(const Theme& theme, const FrameFigures& figures, const PixelRect& view);
+void draw_frame_times(const Theme& theme, const FrameMetrics& metrics, const PixelRect& view);
 // Over the 3D view: legend, scale bar, axes, what is being waited for.
 void draw_overlay(const Theme& theme, DashboardState& state, const PixelRect& view);
 

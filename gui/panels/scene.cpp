@@ -10,8 +10,8 @@ namespace tact {
 
 namespace {
 
-void facts(const Theme& theme, const DashboardState& state) {
-    const SceneFacts& s = state.scene;
+void scene_rows(const Theme& theme, const DashboardState& state) {
+    const SceneState& s = state.scene;
     row(theme, "Contour", format("%.4g", s.contour), format("map units, %.2f σ", s.contour_sigma));
     row(theme, "Map", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
         s.resolution_m > 0.0 ? format("%.1f Å", s.resolution_m / kAngstromM)
@@ -44,7 +44,7 @@ void surface_card(const Theme& theme, DashboardState& state) {
 }
 
 void bone_card(const Theme& theme, DashboardState& state) {
-    const SceneFacts& s = state.scene;
+    const SceneState& s = state.scene;
     row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
         format("of %.3g mm", 1e3 * s.voxel_m));
     row(theme, "File", s.file, "");
@@ -89,7 +89,7 @@ void toggles(const Theme& theme, SceneToggles& t) {
 
 void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card) {
     begin_card(theme, "Scene", card, true);
-    SceneFacts& s = state.scene;
+    SceneState& s = state.scene;
     if (!s.status.empty()) {
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(s.loaded ? colour::kDim : colour::kWatch, s.status);
@@ -109,7 +109,7 @@ void draw_scene(const Theme& theme, DashboardState& state, const PixelRect& card
         } else if (state.tab == 1) {
             draw_contours_tab(theme, state);
         } else {
-            facts(theme, state);
+            scene_rows(theme, state);
             toggles(theme, state.toggles);
         }
         ImGui::PopStyleVar();

@@ -78,14 +78,14 @@ ImU32 grade_colour(Grade grade) noexcept {
     return colour::kDim;
 }
 
-float theme_scale(int width_px, int height_px, float density, float wished) {
+float theme_scale(int width_px, int height_px, float density, float requested) {
     const float fit =
         std::min(static_cast<float>(width_px) / 1280.0F, static_cast<float>(height_px) / 720.0F);
     // Slower than the window: a larger screen shows larger text and also more of it.
     const float by_size = std::pow(std::max(fit, 0.1F), 0.75F);
     const float by_density = std::isfinite(density) ? std::min(density, fit) : 1.0F;
     const float scale = std::clamp(std::round(4.0F * std::max(by_size, by_density)) / 4.0F, 0.75F, 3.0F);
-    return std::clamp(scale * (std::isfinite(wished) ? wished : 1.0F), 0.5F, 6.0F);
+    return std::clamp(scale * (std::isfinite(requested) ? requested : 1.0F), 0.5F, 6.0F);
 }
 
 void build_theme(Theme& theme, float scale) {

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "gui/panels/verdict.hpp"
+#include "gui/panels/status_text.hpp"
 
 namespace tact {
 
@@ -48,7 +48,7 @@ struct Theme {
 // density  of the display, 1 at 96 points an inch: what is small and dense has larger letters, as far as 1280x720 of
 //          their size still fit
 // wished   times that, by a person who sees it
-[[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float wished = 1.0F);
+[[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
 // Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
 void build_theme(Theme& theme, float scale);
 

@@ -5,8 +5,8 @@
 #include <bitset>
 #include <string>
 
+#include "gui/panels/status_text.hpp"
 #include "gui/panels/trace_scope.hpp"
-#include "gui/panels/verdict.hpp"
 
 namespace tact {
 

@@ -63,16 +63,16 @@ void row_start(const Theme& theme, const char* what, const std::string& value, I
 }
 }  // namespace
 
-void row(const Theme& theme, const char* what, const std::string& value, const Verdict& verdict) {
+void row(const Theme& theme, const char* what, const std::string& value, const StatusText& status) {
     row_start(theme, what, value, colour::kText);
     ImGui::SameLine(0.0F, theme.px(8.0F));
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float r = theme.px(4.0F), h = ImGui::GetTextLineHeight();
-    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + r, at.y + 0.55F * h}, r, grade_colour(verdict.grade),
+    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + r, at.y + 0.55F * h}, r, grade_colour(status.grade),
                                                 12);
     ImGui::SetCursorScreenPos({at.x + 2.0F * r + theme.px(4.0F), at.y});
     ImGui::PushTextWrapPos(0.0F);
-    text_coloured(grade_colour(verdict.grade), verdict.words);
+    text_coloured(grade_colour(status.grade), status.words);
     ImGui::PopTextWrapPos();
 }
 

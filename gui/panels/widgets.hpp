@@ -17,7 +17,7 @@ void end_card();
 // A filled pill with a word.
 void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font = nullptr);
 // One row: what on the left, the value right of it, words after it in the colour of the grade.
-void row(const Theme& theme, const char* what, const std::string& value, const Verdict& verdict);
+void row(const Theme& theme, const char* what, const std::string& value, const StatusText& status);
 void row(const Theme& theme, const char* what, const std::string& value,
          const std::string& unit_or_note = "");
 // With the first of the notes that fits, else the last.

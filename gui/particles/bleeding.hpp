@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "gui/particles/particles.hpp"
-#include "ipc/assets/bone_labels.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
 
 namespace tact {
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/bone_bricks.hpp"
 #include "ipc/base/prefetch.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 
 namespace tact {
 

@@ -151,7 +151,7 @@ void Particles::move_group(std::size_t group, std::size_t moves, std::size_t bet
     }
 }
 
-// Goes on through all particles, some of them a step, and looks for those near the sucker's tip and in the head that
+// Goes on through all particles, some of them a step, and looks for those near the suction tube's tip and in the head that
 // turns.
 void Particles::pass_by(const Suction& suction, const Stir& stir, Instant deadline,
                         ParticleStep& step) noexcept {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gui/render/bonds.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

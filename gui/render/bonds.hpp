@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

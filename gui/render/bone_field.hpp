@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/bone_volume.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
 
 namespace tact {
 

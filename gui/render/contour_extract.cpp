@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ipc/assets/isosurface.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 
 namespace tact {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -22,16 +22,16 @@ ContourWorker::~ContourWorker() {
     thread_.join();
 }
 
-void ContourWorker::wish(std::size_t contour, std::optional<double> level) {
+void ContourWorker::request(std::size_t contour, std::optional<double> level) {
     if (contour >= kContoursMax) return;
     if (level && !std::isfinite(*level)) level.reset();
     {
         const std::lock_guard lock(mutex_);
         Contour& c = contour_[contour];
-        if (c.wished == level) return;
-        c.wished = level;
-        ++c.wish;
-        c.wished_at = Monotonic::now();
+        if (c.requested == level) return;
+        c.requested = level;
+        ++c.request;
+        c.requested_at = Monotonic::now();
         if (!level) c.news.reset();
     }
     changed_.notify_all();
@@ -54,20 +54,20 @@ void ContourWorker::work() {
     std::unique_lock lock(mutex_);
     while (!stop_) {
         const auto fresh = std::find_if(contour_.begin(), contour_.end(),
-                                        [](const Contour& c) { return c.wished && c.shown != c.wish; });
+                                        [](const Contour& c) { return c.requested && c.shown != c.request; });
         if (fresh != contour_.end()) {
             extract(static_cast<std::size_t>(fresh - contour_.begin()), lock);
             continue;
         }
         const auto plain = std::find_if(contour_.begin(), contour_.end(), [this](const Contour& c) {
-            return refine_ && c.wished && c.refined != c.wish;
+            return refine_ && c.requested && c.refined != c.request;
         });
         if (plain == contour_.end()) {
             changed_.wait(lock);
             continue;
         }
         Instant newest{};
-        for (const Contour& c : contour_) newest = std::max(newest, c.wished_at);
+        for (const Contour& c : contour_) newest = std::max(newest, c.requested_at);
         const Duration left = newest + rest_ - Monotonic::now();
         if (left > Duration::zero())
             changed_.wait_for(lock, left);
@@ -78,8 +78,8 @@ void ContourWorker::work() {
 
 void ContourWorker::extract(std::size_t contour, std::unique_lock<std::mutex>& lock) {
     Contour& c = contour_[contour];
-    const double level = *c.wished;
-    const std::uint64_t wish = c.wish;
+    const double level = *c.requested;
+    const std::uint64_t request = c.request;
     StrideLimits limits;
     limits.vertices_max = vertices_max_;
     const std::uint32_t stride = c.stride > 0 ? c.stride : first_stride(content_->grid, limits);
@@ -105,30 +105,30 @@ void ContourWorker::extract(std::size_t contour, std::unique_lock<std::mutex>& l
         outcome.error = e.what();
     }
     lock.lock();
-    c.shown = wish;
+    c.shown = request;
     if (!outcome.plain) {
-        c.refined = wish;
+        c.refined = request;
     } else {
         const std::size_t vertices = outcome.plain->vertex.size();
         c.stride = next_stride(content_->grid, stride, outcome.extract_s, vertices, limits);
         // One that is too large is not even shown where a coarser one can be had at once.
-        if (vertices > 2 * std::size_t{limits.vertices_max} && c.stride > stride) c.shown = wish - 1;
-        if (outcome.plain->empty()) c.refined = wish;
+        if (vertices > 2 * std::size_t{limits.vertices_max} && c.stride > stride) c.shown = request - 1;
+        if (outcome.plain->empty()) c.refined = request;
     }
-    if (c.wished && c.shown == wish) c.news = std::move(outcome);
+    if (c.requested && c.shown == request) c.news = std::move(outcome);
 }
 
 void ContourWorker::refine(std::size_t contour, std::unique_lock<std::mutex>& lock) {
     Contour& c = contour_[contour];
-    const double level = *c.wished;
-    const std::uint64_t wish = c.wish;
+    const double level = *c.requested;
+    const std::uint64_t request = c.request;
     std::array<std::uint64_t, kContoursMax> before{};
-    for (std::size_t i = 0; i < kContoursMax; ++i) before[i] = contour_[i].wish;
+    for (std::size_t i = 0; i < kContoursMax; ++i) before[i] = contour_[i].request;
     lock.unlock();
     const auto stop = [&] {
         const std::lock_guard inner(mutex_);
         for (std::size_t i = 0; i < kContoursMax; ++i)
-            if (contour_[i].wish != before[i]) return true;
+            if (contour_[i].request != before[i]) return true;
         return stop_;
     };
     ContourOutcome outcome;
@@ -145,8 +145,8 @@ void ContourWorker::refine(std::size_t contour, std::unique_lock<std::mutex>& lo
     }
     outcome.extract_s = to_s(Monotonic::now() - begun);
     lock.lock();
-    if (cancelled || c.wish != wish) return;
-    c.refined = wish;
+    if (cancelled || c.request != request) return;
+    c.refined = request;
     if (c.news && !outcome.mesh)
         c.news->error = std::move(outcome.error);  // the plain one has not been taken yet, and is needed
     else

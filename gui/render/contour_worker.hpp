@@ -56,7 +56,7 @@ public:
     ContourWorker& operator=(const ContourWorker&) = delete;
 
     // A level that is not finite is no wish. Of an unchanged level nothing is done.
-    void wish(std::size_t contour, std::optional<double> level);
+    void request(std::size_t contour, std::optional<double> level);
     // Most vertices of the next plain meshes: the level of the governor while a contour is moved.
     void set_vertices_max(std::uint32_t vertices);
     // What has come since the last call for this contour.
@@ -64,11 +64,11 @@ public:
 
 private:
     struct Contour {
-        std::optional<double> wished;
-        std::uint64_t wish = 0, shown = 0, refined = 0;  // numbers of wishes: asked, extracted, refined
+        std::optional<double> requested;
+        std::uint64_t request = 0, shown = 0, refined = 0;  // numbers of wishes: asked, extracted, refined
         std::optional<ContourOutcome> news;
         std::uint32_t stride = 0;
-        Instant wished_at{};
+        Instant requested_at{};
     };
     void work();
     void extract(std::size_t contour, std::unique_lock<std::mutex>& lock);

@@ -36,7 +36,7 @@ void Contours::set(std::span<const Contour> contours) {
         const bool own = want && content_->mesh && wanted_[i].level == content_->meta.contour;
         std::optional<double> ask;
         if (want && !own && !(slot.surface && slot.state.level == wanted_[i].level)) ask = wanted_[i].level;
-        if (worker_ && ask != slot.asked) worker_->wish(i, ask);
+        if (worker_ && ask != slot.asked) worker_->request(i, ask);
         slot.asked = ask;
         if (own && !(slot.surface && slot.mesh.get() == content_->mesh.get()))
             show_mesh(slot, {content_, content_->mesh.get()}, wanted_[i].level);

@@ -32,13 +32,13 @@ DetailCut::DetailCut(const SceneContent& content)
     index_of_.assign(std::size_t{forest.leaves()} + forest.nodes(), kNoVertex);
 }
 
-DetailMesh DetailCut::step(const DetailWish& wish) {
-    if (wish.radius_m != radius_m_ || wish.form != form_) {
-        radius_m_ = wish.radius_m;
-        form_ = wish.form;
+DetailMesh DetailCut::step(const DetailRequest& request) {
+    if (request.radius_m != radius_m_ || request.form != form_) {
+        radius_m_ = request.radius_m;
+        form_ = request.form;
         refinement_.set_filter(form_.filter(static_cast<float>(radius_m_)));
     }
-    const RefineStep done = refinement_.step(wish.probe_m, Vec3::Zero());
+    const RefineStep done = refinement_.step(request.probe_m, Vec3::Zero());
     DetailMesh out;
     out.settled = done.settled || done.no_room;
     out.vertices = done.vertices;

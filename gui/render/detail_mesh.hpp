@@ -1,6 +1,6 @@
 // The surface as a controller keeps it around the tool: full detail there, coarse elsewhere, the length of edges as colour.
 //
-// Cut       ipc/assets/refinement.hpp, the code that tact-rt runs, with the same form of filter about the same place:
+// Cut       ipc/scene/mesh/refinement.hpp, the code that tact-rt runs, with the same form of filter about the same place:
 //           where both have settled the cut is the same. tact-rt looks ahead along the tool's way, this does not.
 // Colour    viridis by the logarithm of the mean length of the edges at a vertex, from `coarsest_m` (violet) to
 //           `finest_m` (yellow), which are taken from the mesh itself: powers of two that hold nine tenths.
@@ -11,16 +11,16 @@
 
 #include "gui/render/scene_content.hpp"
 #include "gui/render/tube.hpp"
-#include "ipc/assets/refinement.hpp"
+#include "ipc/scene/mesh/refinement.hpp"
 
 namespace tact {
 
-struct DetailWish {
+struct DetailRequest {
     Vec3 probe_m = Vec3::Zero();  // model
     double radius_m = 0.0;        // of full detail
     FilterForm form;
 
-    [[nodiscard]] bool operator==(const DetailWish&) const = default;
+    [[nodiscard]] bool operator==(const DetailRequest&) const = default;
 };
 
 struct DetailMesh {
@@ -35,7 +35,7 @@ class DetailCut {
 public:
     // The content needs a surface and a forest, and outlives this.
     explicit DetailCut(const SceneContent& content);
-    DetailMesh step(const DetailWish& wish);
+    DetailMesh step(const DetailRequest& request);
 
 private:
     [[nodiscard]] TubeMesh build(double& finest_m, double& coarsest_m);

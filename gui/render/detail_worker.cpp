@@ -26,11 +26,11 @@ DetailWorker::~DetailWorker() {
     thread_.join();
 }
 
-void DetailWorker::wish(const std::optional<DetailWish>& wish) {
+void DetailWorker::request(const std::optional<DetailRequest>& request) {
     {
         const std::lock_guard lock(mutex_);
-        if (wish == wish_) return;
-        wish_ = wish;
+        if (request == request_) return;
+        request_ = request;
         fresh_ = true;
     }
     changed_.notify_all();
@@ -52,13 +52,13 @@ void DetailWorker::work() {
         std::unique_ptr<DetailCut> cut;
         std::unique_lock lock(mutex_);
         while (true) {
-            changed_.wait(lock, [this] { return stop_ || (fresh_ && wish_); });
+            changed_.wait(lock, [this] { return stop_ || (fresh_ && request_); });
             if (stop_) return;
-            const DetailWish wish = *wish_;
+            const DetailRequest request = *request_;
             fresh_ = false;
             lock.unlock();
             if (!cut) cut = std::make_unique<DetailCut>(*content_);
-            DetailMesh made = cut->step(wish);
+            DetailMesh made = cut->step(request);
             lock.lock();
             fresh_ = fresh_ || !made.settled;  // on with it
             news_ = std::move(made);

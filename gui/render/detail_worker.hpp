@@ -24,7 +24,7 @@ public:
     DetailWorker& operator=(const DetailWorker&) = delete;
 
     // The newest counts; none: rest.
-    void wish(const std::optional<DetailWish>& wish);
+    void request(const std::optional<DetailRequest>& request);
     // What has come since the last call.
     [[nodiscard]] std::optional<DetailMesh> take();
     [[nodiscard]] std::string error();
@@ -35,7 +35,7 @@ private:
     const std::shared_ptr<const SceneContent> content_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::optional<DetailWish> wish_;
+    std::optional<DetailRequest> request_;
     std::optional<DetailMesh> news_;
     std::string error_;
     bool fresh_ = false, stop_ = false;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gui/render/tube.hpp"
-#include "ipc/assets/touch_tool.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
 
 namespace tact {
 

@@ -1,4 +1,4 @@
-// The instruments of drilling as solid bodies: a fluted burr, a smooth one where it is small, and the tube of a sucker.
+// The instruments of drilling as solid bodies: a fluted burr, a smooth one where it is small, and the tube of a suction tube.
 //
 // Frame   tool (its head's centre is the origin, the shaft leaves along +z), ångström of the scene. Pure.
 #pragma once

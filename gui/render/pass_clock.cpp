@@ -20,8 +20,8 @@ void add_paths(const std::array<double, kPasses>& of_pass_s, std::vector<RecentT
     }
 }
 
-PassFigures figures_of(const RecentTimes& work, const RecentTimes& drawn, bool known) {
-    PassFigures f{work.percentile_s(0.5), work.percentile_s(0.99), -1.0F, -1.0F};
+PassMetrics metrics_of(const RecentTimes& work, const RecentTimes& drawn, bool known) {
+    PassMetrics f{work.percentile_s(0.5), work.percentile_s(0.99), -1.0F, -1.0F};
     if (known && drawn.size() > 0) {
         f.drawn_p50_s = drawn.percentile_s(0.5);
         f.drawn_p99_s = drawn.percentile_s(0.99);
@@ -114,14 +114,14 @@ void PassClock::add_drawn(const Times& drawn_s) {
     add_paths(drawn_s, path_drawn_);
 }
 
-void PassClock::fill(FrameFigures& f) const {
+void PassClock::fill(FrameMetrics& f) const {
     for (std::size_t i = 0; i < kPasses; ++i) {
         const bool known =
             how_ == Drawn::finished || (how_ == Drawn::stamped && stamps(static_cast<Pass>(i)));
-        f.pass[i] = figures_of(work_[i], drawn_[i], known);
+        f.pass[i] = metrics_of(work_[i], drawn_[i], known);
     }
     for (std::size_t i = 0; i < kVisualPaths; ++i)
-        f.path[i] = figures_of(path_work_[i], path_drawn_[i], how_ != Drawn::unknown);
+        f.path[i] = metrics_of(path_work_[i], path_drawn_[i], how_ != Drawn::unknown);
 }
 
 }  // namespace tact

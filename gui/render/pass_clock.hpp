@@ -35,7 +35,7 @@ public:
 
     void begin_frame();
     void end_frame();
-    void fill(FrameFigures& figures) const;
+    void fill(FrameMetrics& metrics) const;
     [[nodiscard]] Drawn drawn() const { return how_; }
     [[nodiscard]] std::uint64_t lost() const { return lost_; }
 

@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "gui/render/bonds.hpp"
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/bone_volume.hpp"
-#include "ipc/assets/contour_scale.hpp"
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/distance_field.hpp"
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/touch_tool.hpp"
-#include "ipc/assets/vertex_forest.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/density/contour_scale.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 
 namespace tact {
 

@@ -45,10 +45,10 @@ struct SceneView::Pass {
     Haze haze;
 };
 
-std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt) {
+std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_summed) {
     std::size_t best = 0;
     for (std::size_t l = 0; l < codebook.levels.size(); ++l)
-        if (codebook.levels[l].size() <= std::min(points_felt, kCodebookShownMax)) best = l;
+        if (codebook.levels[l].size() <= std::min(points_summed, kCodebookShownMax)) best = l;
     return best;
 }
 
@@ -172,7 +172,7 @@ void SceneView::draw_codebook(const Pass& pass) {
     for (const DrawnBody& body : pass.frame.bodies) {
         const std::size_t s = body.structure;
         if (body.hidden || s >= codebooks_.size() || codebooks_[s].empty()) continue;
-        Points& points = codebooks_[s][codebook_level(content_->codebooks[s], pass.frame.points_felt)];
+        Points& points = codebooks_[s][codebook_level(content_->codebooks[s], pass.frame.points_summed)];
         const Eigen::Matrix4f eye =
             pass.eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m);
         glBindVertexArray(points.array.get());

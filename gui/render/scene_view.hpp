@@ -43,8 +43,8 @@ struct ViewOptions {
 struct ViewFrame {
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport, y from below as OpenGL counts
     std::span<const DrawnBody> bodies;
-    std::size_t active = 0;         // the body in the hand; none where it is not one of them
-    std::uint32_t points_felt = 0;  // picks the level of the codebook that is shown
+    std::size_t active = 0;           // the body in the hand; none where it is not one of them
+    std::uint32_t points_summed = 0;  // picks the level of the codebook that is shown
     Vec3 force_world_n = Vec3::Zero();
     std::optional<DrawnHand> second_hand;
     std::optional<DrawnTouch> touch;
@@ -135,6 +135,6 @@ private:
 
 // Which level of a codebook is drawn where this many points are felt: the largest not above it that is still
 // legible (400 vectors), at least the first.
-[[nodiscard]] std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_felt);
+[[nodiscard]] std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_summed);
 
 }  // namespace tact

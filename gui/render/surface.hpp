@@ -10,8 +10,8 @@
 #include "gui/render/contour_extract.hpp"
 #include "gui/render/gl.hpp"
 #include "gui/render/mesh_pace.hpp"
-#include "ipc/assets/mesh_cut.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/scene/mesh/mesh_cut.hpp"
 
 namespace tact {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gui/render/elements.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

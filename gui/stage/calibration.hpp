@@ -58,7 +58,7 @@ public:
         [[nodiscard]] std::optional<double> residual_m(std::size_t of_mark) const;
         [[nodiscard]] std::optional<std::size_t> outlier() const;
     };
-    struct Verdict {
+    struct StatusText {
         FitGrade grade = FitGrade::none;
         std::string words;
     };
@@ -111,8 +111,8 @@ public:
     [[nodiscard]] std::string instruction() const;
     [[nodiscard]] std::string glass_words() const;  // the same in capitals, for who stands before the picture
     [[nodiscard]] std::string live() const;         // what is measured now
-    [[nodiscard]] Verdict verdict() const;          // of this step
-    [[nodiscard]] Verdict verdict(CalibrationStep step) const;
+    [[nodiscard]] StatusText status() const;        // of this step
+    [[nodiscard]] StatusText status(CalibrationStep step) const;
     [[nodiscard]] const std::string& said() const { return said_; }  // what became of the last act
     [[nodiscard]] std::vector<std::string> remarks() const;          // of what was measured, for the file
 

@@ -20,7 +20,7 @@ std::string fit_words(const Registration& fit) {
                    1e3 * fit.residual_m_max);
 }
 
-Calibration::Verdict verdict_of(const Calibration::Marks& marks, bool taken_before, const char* what) {
+Calibration::StatusText status_of(const Calibration::Marks& marks, bool taken_before, const char* what) {
     if (marks.taken() == 0)
         return {FitGrade::none,
                 taken_before ? std::string("as the file says") : std::string("not measured yet")};
@@ -141,9 +141,9 @@ std::string Calibration::live() const {
     return words;
 }
 
-Calibration::Verdict Calibration::verdict() const { return verdict(step_); }
+Calibration::StatusText Calibration::status() const { return status(step_); }
 
-Calibration::Verdict Calibration::verdict(CalibrationStep step) const {
+Calibration::StatusText Calibration::status(CalibrationStep step) const {
     switch (step) {
         case CalibrationStep::picture:
             if (!draft_.screen_measured) return {FitGrade::none, "not typed yet"};
@@ -158,7 +158,7 @@ Calibration::Verdict Calibration::verdict(CalibrationStep step) const {
         }
         case CalibrationStep::screen: {
             if (typed_screen_) return {FitGrade::none, "as typed"};
-            Verdict v = verdict_of(screen_, draft_.screen_measured, "The screen");
+            StatusText v = status_of(screen_, draft_.screen_measured, "The screen");
             const Eigen::Vector2d by = measured_size_m_;
             if (by.x() > 0.0 && !screen_.outlier()) {
                 const double w = by.x() / draft_.screen.width_m() - 1.0,
@@ -175,7 +175,7 @@ Calibration::Verdict Calibration::verdict(CalibrationStep step) const {
             return v;
         }
         case CalibrationStep::workspace: {
-            Verdict v = verdict_of(workspace_, true, "The workspace");
+            StatusText v = status_of(workspace_, true, "The workspace");
             if (workspace_.fit.good && std::abs(workspace_.fit.stretch - 1.0) > 2.0 * kStretchTold) {
                 v.words +=
                     text_of(". The hand's lengths are %+.1f %% off the tracker's: is the arm calibrated?",
@@ -198,7 +198,7 @@ std::vector<std::string> Calibration::remarks() const {
     std::vector<std::string> lines;
     for (const CalibrationStep step : {CalibrationStep::picture, CalibrationStep::wand,
                                        CalibrationStep::screen, CalibrationStep::workspace})
-        lines.push_back(std::string(calibration_step_title(step)) + ": " + verdict(step).words);
+        lines.push_back(std::string(calibration_step_title(step)) + ": " + status(step).words);
     const auto add = [&](const char* what, const Marks& marks) {
         for (std::size_t i = 0; i < kMarks; ++i)
             if (const auto left = marks.residual_m(i))

@@ -40,7 +40,7 @@ const Pose& HeadView::follow(const HeadTopic* head, std::int64_t now_ns, std::in
     const double passed_s =
         now_ns_ == 0 ? 0.0 : 1e-9 * static_cast<double>(std::max(now_ns - now_ns_, std::int64_t{0}));
     now_ns_ = now_ns;
-    const double left = std::exp(-passed_s / kGlideS);
+    const double left = std::exp(-passed_s / kSmoothS);
     off_.p_m *= left;
     off_.q = Quat::Identity().slerp(left, off_.q).normalized();
     shown_ = {aim_.p_m + off_.p_m, (off_.q * aim_.q).normalized()};

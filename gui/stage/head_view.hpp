@@ -19,7 +19,7 @@ enum class HeadSight : std::uint8_t { none, lost, seen };
 class HeadView {
 public:
     static constexpr std::int64_t kHorizonNs = 50'000'000;
-    static constexpr double kGlideS = 0.12;  // after which a third of the way is left
+    static constexpr double kSmoothS = 0.12;  // after which a third of the way is left
 
     explicit HeadView(const Pose& rest) : shown_(rest), aim_(rest) {}
     // head: null without a controller; times of the monotonic clock. The picture is seen at display_ns.

@@ -5,12 +5,12 @@
 #include <iterator>
 #include <span>
 
-#include "gui/desk/toml_keys.hpp"
+#include "gui/window/toml_keys.hpp"
 
 namespace tact {
 namespace {
 
-constexpr const char* kStageMend = "gui/stage/README.md shows the keys and their form";
+constexpr const char* kStageFix = "gui/stage/README.md shows the keys and their form";
 
 }  // namespace
 
@@ -22,7 +22,7 @@ bool read_stereo_mode(const std::string& text, StereoMode& mode) {
 }
 
 StageSettings read_stage_text(std::string_view text, const std::string& name) {
-    const TomlKeys reader(name, kStageMend);
+    const TomlKeys reader(name, kStageFix);
     StageSettings s;
     const auto place = [](Vec3& v) { return std::span<double>(v.data(), 3); };
     std::string mode = "off", scene = "orbit";
@@ -73,7 +73,7 @@ StageSettings read_stage_text(std::string_view text, const std::string& name) {
 }
 
 StageSettings read_stage_file(const std::filesystem::path& path) {
-    return read_stage_text(read_typed_file(path, kStageMend), path.string());
+    return read_stage_text(read_typed_file(path, kStageFix), path.string());
 }
 
 }  // namespace tact

@@ -183,8 +183,8 @@ Joint6 ArmKinematics::gravity_n_m(const Joint6& q) const noexcept {
     return tau;
 }
 
-ArmPosture ArmKinematics::posture(const Joint6& q) const noexcept {
-    ArmPosture s;
+ArmConfiguration ArmKinematics::configuration(const Joint6& q) const noexcept {
+    ArmConfiguration s;
     s.reach_m = p_.thigh_m * std::cos(q[1]) + p_.shin_m * std::sin(q[2]);
     s.elbow_cos = std::cos(q[2] - q[1]);
     s.wrist_cos = std::cos(q[4]);

@@ -23,7 +23,7 @@ using Jacobian3 = Eigen::Matrix3d;
 using Jacobian6 = Eigen::Matrix<double, 6, 6>;  // rows: linear, angular
 
 // How a posture stands to what the arm cannot do.
-struct ArmPosture {
+struct ArmConfiguration {
     double reach_m = 0.0;        // A, from the turret's axis: 0 is singular, no force along x can be shown
     double elbow_cos = 0.0;      // cos(shin - thigh): 0 is singular, stretched or folded, none along the arm
     double wrist_cos = 0.0;      // cos(pitch): 0 is singular, yaw and roll turn about the same axis
@@ -59,7 +59,7 @@ public:
     // What the joints push to hold the arm's own weight.
     [[nodiscard]] Joint6 gravity_n_m(const Joint6& q) const noexcept TACT_RT;
 
-    [[nodiscard]] ArmPosture posture(const Joint6& q) const noexcept TACT_RT;
+    [[nodiscard]] ArmConfiguration configuration(const Joint6& q) const noexcept TACT_RT;
     // Way and turn of the tip for one count of the joint that moves it most.
     [[nodiscard]] double position_step_m(const Joint6& q) const noexcept TACT_RT;
     [[nodiscard]] double turn_step_rad(const Joint6& q) const noexcept TACT_RT;

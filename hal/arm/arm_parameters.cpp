@@ -13,10 +13,10 @@ namespace {
 
 // In SI units; 0 where a figure is not known.
 template <std::size_t N>
-Eigen::Matrix<double, static_cast<int>(N), 1> in_si(const std::array<Figure, N>& figures, double unit) {
+Eigen::Matrix<double, static_cast<int>(N), 1> in_si(const std::array<Figure, N>& metrics, double unit) {
     Eigen::Matrix<double, static_cast<int>(N), 1> v = Eigen::Matrix<double, static_cast<int>(N), 1>::Zero();
     for (std::size_t i = 0; i < N; ++i) {
-        if (figures[i].known()) v[static_cast<Eigen::Index>(i)] = figures[i].value * unit;
+        if (metrics[i].known()) v[static_cast<Eigen::Index>(i)] = metrics[i].value * unit;
     }
     return v;
 }
@@ -26,8 +26,8 @@ double or_zero(const Figure& f) { return f.known() ? f.value : 0.0; }
 // Keys of what has to be there and is not.
 class Missing {
 public:
-    void need(const char* key, std::span<const Figure> figures) {
-        for (const Figure& f : figures) {
+    void need(const char* key, std::span<const Figure> metrics) {
+        for (const Figure& f : metrics) {
             if (f.known()) continue;
             text_ += (text_.empty() ? "" : ", ") + std::string(key);
             return;
@@ -39,7 +39,7 @@ private:
     std::string text_;
 };
 
-void require_complete(const ArmFigures& f) {
+void require_complete(const ArmParameterSet& f) {
     Missing m;
     const std::size_t sensed = f.wrist == Wrist::none ? 3 : 6, driven = f.wrist == Wrist::driven ? 6 : 3;
     const auto joints = [](const std::array<Figure, 6>& all, std::size_t n) {
@@ -73,7 +73,7 @@ void require_complete(const ArmFigures& f) {
     }
 }
 
-void require_sense(const ArmFigures& f, const ArmParameters& p) {
+void require_sense(const ArmParameterSet& f, const ArmParameters& p) {
     const auto wrong = [&f](const std::string& what) {
         throw StartupError("arm \"" + f.model + "\"", what, "correct it under [arm] in the configuration");
     };
@@ -99,7 +99,7 @@ void require_sense(const ArmFigures& f, const ArmParameters& p) {
 
 }  // namespace
 
-ArmParameters arm_parameters(const ArmFigures& f) {
+ArmParameters arm_parameters(const ArmParameterSet& f) {
     require_complete(f);
     ArmParameters p;
     p.model = f.model;

@@ -28,13 +28,13 @@ struct ArmParameters {
     Joint6 joint_n_m_per_a = Joint6::Zero();  // torque constant times drive ratio; 0: no motor there
     Joint6 current_a_max = Joint6::Zero(), current_a_continuous = Joint6::Zero();
     bool heat_known = false;  // false: the continuous current is all that may flow
-    MotorHeatFigures heat;
+    MotorHeatParameters heat;
     double gravity_thigh_n_m = 0.0, gravity_shin_n_m = 0.0;  // 0 where nobody knows: no compensation
     double tip_mass_kg = 0.0;
     double viscous_n_m_s = 0.0, coulomb_n_m = 0.0, apparent_mass_kg = 0.0;
 };
 
 // Complete and consistent, or StartupError naming every figure that is missing and the keys to set.
-[[nodiscard]] ArmParameters arm_parameters(const ArmFigures& figures);
+[[nodiscard]] ArmParameters arm_parameters(const ArmParameterSet& metrics);
 
 }  // namespace tact

@@ -35,10 +35,10 @@ void fill(std::array<Figure, N>& to, FigureSource source, std::initializer_list<
 constexpr FigureSource V = FigureSource::verified, D = FigureSource::derived, M = FigureSource::remembered;
 
 // Calibrated where every joint is at 0.
-void calibrated_at_zero(ArmFigures& f) { fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}); }
+void calibrated_at_zero(ArmParameterSet& f) { fill(f.calibration_deg, D, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}); }
 
-ArmFigures omni() {
-    ArmFigures f;
+ArmParameterSet omni() {
+    ArmParameterSet f;
     f.name = "Phantom Omni / Touch";
     f.wrist = Wrist::sensed;
     f.calibration = CalibrationStyle::inkwell;
@@ -59,8 +59,8 @@ ArmFigures omni() {
     return f;
 }
 
-ArmFigures desktop() {
-    ArmFigures f;
+ArmParameterSet desktop() {
+    ArmParameterSet f;
     f.name = "Phantom Desktop / Touch X";
     f.wrist = Wrist::sensed;
     f.calibration = CalibrationStyle::automatic;
@@ -73,8 +73,8 @@ ArmFigures desktop() {
 }
 
 // What both sizes have in common.
-ArmFigures premium() {
-    ArmFigures f;
+ArmParameterSet premium() {
+    ArmParameterSet f;
     calibrated_at_zero(f);
     f.force_n_max = remembered(8.5);
     f.force_n_continuous = remembered(1.4);
@@ -82,8 +82,8 @@ ArmFigures premium() {
     return f;
 }
 
-ArmFigures premium_10() {
-    ArmFigures f = premium();
+ArmParameterSet premium_10() {
+    ArmParameterSet f = premium();
     f.name = "Phantom Premium 1.0";
     f.thigh_mm = f.shin_mm = remembered(139.7);
     fill(f.origin_mm, D, {0.0, 140.0, 10.0});
@@ -94,8 +94,8 @@ ArmFigures premium_10() {
     return f;
 }
 
-ArmFigures premium_15() {
-    ArmFigures f = premium();
+ArmParameterSet premium_15() {
+    ArmParameterSet f = premium();
     f.name = "Phantom Premium 1.5";
     f.thigh_mm = verified(209.55);
     f.shin_mm = verified(169.545);
@@ -121,8 +121,8 @@ ArmFigures premium_15() {
     return f;
 }
 
-ArmFigures premium_15_6dof() {
-    ArmFigures f = premium_15();
+ArmParameterSet premium_15_6dof() {
+    ArmParameterSet f = premium_15();
     f.name = "Phantom Premium 1.5/6DOF";
     f.wrist = Wrist::driven;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -141,7 +141,7 @@ ArmFigures premium_15_6dof() {
 
 struct Model {
     const char* name;
-    ArmFigures (*make)();
+    ArmParameterSet (*make)();
 };
 constexpr std::array kModels{Model{"omni", &omni}, Model{"desktop", &desktop},
                              Model{"premium-1.0", &premium_10}, Model{"premium-1.5", &premium_15},
@@ -155,11 +155,11 @@ std::vector<std::string> arm_models() {
     return names;
 }
 
-ArmFigures arm_figures(const std::string& model) {
+ArmParameterSet arm_parameter_set(const std::string& model) {
     std::string known;
     for (const Model& m : kModels) {
         if (model == m.name) {
-            ArmFigures f = m.make();
+            ArmParameterSet f = m.make();
             f.model = model;
             return f;
         }
@@ -169,7 +169,7 @@ ArmFigures arm_figures(const std::string& model) {
                        "set arm.model to one of: " + known);
 }
 
-std::vector<ArmKey> arm_keys(ArmFigures& f) {
+std::vector<ArmKey> arm_keys(ArmParameterSet& f) {
     const auto one = [](Figure& figure) { return std::span<Figure>(&figure, 1); };
     return {
         {"thigh_mm", one(f.thigh_mm), 10, 2000, "length from shoulder to elbow"},

@@ -27,7 +27,7 @@ struct Figure {
 enum class Wrist : std::uint8_t { none, sensed, driven };
 enum class CalibrationStyle : std::uint8_t { reset_pose, inkwell, automatic };
 
-struct ArmFigures {
+struct ArmParameterSet {
     std::string model, name;
     Wrist wrist = Wrist::none;
     CalibrationStyle calibration = CalibrationStyle::reset_pose;
@@ -52,15 +52,15 @@ struct ArmFigures {
 
 // The models there are, and their figures. Throws StartupError with the names there are.
 [[nodiscard]] std::vector<std::string> arm_models();
-[[nodiscard]] ArmFigures arm_figures(const std::string& model);
+[[nodiscard]] ArmParameterSet arm_parameter_set(const std::string& model);
 
 // One key of [arm]. A key of joints takes three numbers (the arm's joints) or six.
 struct ArmKey {
     const char* name;
-    std::span<Figure> figures;
+    std::span<Figure> metrics;
     double low, high;  // what is possible
     const char* what;
 };
-[[nodiscard]] std::vector<ArmKey> arm_keys(ArmFigures& figures);
+[[nodiscard]] std::vector<ArmKey> arm_keys(ArmParameterSet& metrics);
 
 }  // namespace tact

@@ -41,16 +41,16 @@ const char* boot_fault_text(BootFault fault) noexcept {
 
 std::vector<std::byte> read_firmware(const std::string& path) {
     const std::string what = "reading the Falcon's firmware " + path;
-    const std::string mend = "device.firmware has to name the file that came with the device's own software";
+    const std::string fix = "device.firmware has to name the file that came with the device's own software";
     errno = 0;
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw StartupError(what, std::strerror(errno != 0 ? errno : ENOENT), mend);
+    if (!file) throw StartupError(what, std::strerror(errno != 0 ? errno : ENOENT), fix);
     std::vector<char> bytes(kFirmwareBytesMax + 1);
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (file.bad() || file.gcount() == 0) throw StartupError(what, "there is nothing in it", mend);
+    if (file.bad() || file.gcount() == 0) throw StartupError(what, "there is nothing in it", fix);
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     if (bytes.size() > kFirmwareBytesMax)
-        throw StartupError(what, "it has more than " + std::to_string(kFirmwareBytesMax) + " bytes", mend);
+        throw StartupError(what, "it has more than " + std::to_string(kFirmwareBytesMax) + " bytes", fix);
     std::vector<std::byte> out(bytes.size());
     std::transform(bytes.begin(), bytes.end(), out.begin(), [](char c) { return static_cast<std::byte>(c); });
     return out;

@@ -27,7 +27,7 @@ void Falcon::latch(DeviceNotice fault) noexcept {
 
 void Falcon::forget_position() noexcept {
     located_ = false;
-    posture_ = {};
+    configuration_ = {};
     for (VelocityWindow& v : velocity_) v.reset();
     sample_.T_dev_tool = {};
     sample_.twist_dev = {};
@@ -53,13 +53,13 @@ void Falcon::locate() noexcept {
     }
     located_ = true;
     sample_.T_dev_tool.p_m = grip_m;
-    posture_ = legs_.posture(grip_m);
+    configuration_ = legs_.configuration(grip_m);
     Vec3 rad_s;
     for (std::size_t i = 0; i < 3; ++i) {
         rad_s[static_cast<Eigen::Index>(i)] =
             legs_.rad_per_count() * velocity_[i].push(news_.reply.counts[i], sample_.taken_at);
     }
-    sample_.twist_dev.linear_m_s = posture_.jacobian * rad_s;
+    sample_.twist_dev.linear_m_s = configuration_.jacobian * rad_s;
 }
 
 // A reply that was not seen before.
@@ -132,7 +132,7 @@ IoStatus Falcon::write(const DeviceCommand& command, Instant now) noexcept {
     order.written_at_ns = to_ns(now);
     order.enable = command.enable && gate_ && fault_ == DeviceNotice::none && located_;
     if (order.enable && command.wrench_dev.finite())
-        order.torque = legs_.drive(posture_, command.wrench_dev.force_n).torque;
+        order.torque = legs_.drive(configuration_, command.wrench_dev.force_n).torque;
     pump_->write(order);
     if (sample_.state == DeviceState::closed) return IoStatus::lost;
     return sample_.state == DeviceState::fault ? IoStatus::fault : IoStatus::ok;

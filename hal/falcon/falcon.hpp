@@ -85,7 +85,7 @@ private:
     // Of the servo's thread.
     falcon::PumpNews news_;
     DeviceSample sample_;
-    falcon::Posture posture_;
+    falcon::ArmConfiguration configuration_;
     std::array<VelocityWindow, 3> velocity_;
     std::uint64_t replies_ = 0;
     std::uint32_t generation_ = 0, jumps_ = 0;

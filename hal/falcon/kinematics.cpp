@@ -123,8 +123,8 @@ bool Kinematics::forward(const Vec3& leg_rad, const Vec3& near_m, Vec3& grip_m) 
     return false;
 }
 
-Posture Kinematics::posture(const Vec3& grip_m) const noexcept {
-    Posture out;
+ArmConfiguration Kinematics::configuration(const Vec3& grip_m) const noexcept {
+    ArmConfiguration out;
     if (!grip_m.allFinite() || !inverse(grip_m, out.leg_rad)) return out;
     Eigen::Matrix3d m, directions;
     Vec3 turn;
@@ -138,18 +138,18 @@ Posture Kinematics::posture(const Vec3& grip_m) const noexcept {
         out.leverage = std::min(out.leverage, std::abs(l.turn) / (size * g_.thigh_m));
     }
     out.spread = std::abs(directions.determinant());
-    out.good = out.spread >= Posture::kPoorest && out.leverage >= Posture::kPoorest;
+    out.good = out.spread >= ArmConfiguration::kPoorest && out.leverage >= ArmConfiguration::kPoorest;
     if (out.good) out.jacobian = -m.inverse() * turn.asDiagonal();
     return out;
 }
 
 // The motors' way is against the encoders': both sources above have the sign.
-Drive Kinematics::drive(const Posture& posture, const Vec3& force_n) const noexcept {
+Drive Kinematics::drive(const ArmConfiguration& configuration, const Vec3& force_n) const noexcept {
     Drive out;
-    if (!posture.good || !force_n.allFinite()) return out;
+    if (!configuration.good || !force_n.allFinite()) return out;
     const double size = force_n.norm();
     out.share = size > kForceMaxN ? kForceMaxN / size : 1.0;
-    Vec3 steps = posture.jacobian.transpose() * (force_n * (-out.share / torque_per_step_));
+    Vec3 steps = configuration.jacobian.transpose() * (force_n * (-out.share / torque_per_step_));
     const double most = steps.cwiseAbs().maxCoeff();
     if (!std::isfinite(most)) return {};
     if (most > kTorqueMax) {
@@ -164,14 +164,14 @@ Drive Kinematics::drive(const Posture& posture, const Vec3& force_n) const noexc
     return out;
 }
 
-Vec3 Kinematics::force_n(const Posture& posture, const Torque3& torque) const noexcept {
-    if (!posture.good) return Vec3::Zero();
+Vec3 Kinematics::force_n(const ArmConfiguration& configuration, const Torque3& torque) const noexcept {
+    if (!configuration.good) return Vec3::Zero();
     const Vec3 thigh_n_m = Vec3(torque[0], torque[1], torque[2]) * -torque_per_step_;
-    return posture.jacobian.transpose().inverse() * thigh_n_m;
+    return configuration.jacobian.transpose().inverse() * thigh_n_m;
 }
 
 double Kinematics::position_step_m() const noexcept {
-    return posture(Vec3::Zero()).jacobian.colwise().norm().maxCoeff() * rad_per_count_;
+    return configuration(Vec3::Zero()).jacobian.colwise().norm().maxCoeff() * rad_per_count_;
 }
 
 }  // namespace tact::falcon

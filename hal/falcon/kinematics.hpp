@@ -50,7 +50,7 @@ inline constexpr double kWorkspaceHalfM = 0.035;  // box about the origin, withi
 inline constexpr double kReachM = 0.10;           // from the origin: no grip goes that far
 inline constexpr double kForceMaxN = 8.9;         // its maker's two pounds
 
-struct Posture {
+struct ArmConfiguration {
     Vec3 leg_rad = Vec3::Zero();
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();  // of the grip's position by the legs' angles, m
     double spread = 0.0;    // volume spanned by the shins' directions, 0 to 1; 0: the grip gives way
@@ -82,13 +82,15 @@ public:
     // Where these angles have the grip. near_m: where it is looked for first, as the last position; from the
     // origin it is found as well, in more steps. False: no such place within reach; grip_m is left as it was.
     [[nodiscard]] bool forward(const Vec3& leg_rad, const Vec3& near_m, Vec3& grip_m) const noexcept TACT_RT;
-    [[nodiscard]] Posture posture(const Vec3& grip_m) const noexcept TACT_RT;
+    [[nodiscard]] ArmConfiguration configuration(const Vec3& grip_m) const noexcept TACT_RT;
 
     // Steps of the command for a force at the grip. Beyond kForceMaxN or kTorqueMax the force is shortened as
     // a whole and keeps its direction. Nothing for what is not a number, and where the posture is not good.
-    [[nodiscard]] Drive drive(const Posture& posture, const Vec3& force_n) const noexcept TACT_RT;
+    [[nodiscard]] Drive drive(const ArmConfiguration& configuration,
+                              const Vec3& force_n) const noexcept TACT_RT;
     // And back: the force that these steps push with.
-    [[nodiscard]] Vec3 force_n(const Posture& posture, const Torque3& torque) const noexcept TACT_RT;
+    [[nodiscard]] Vec3 force_n(const ArmConfiguration& configuration,
+                               const Torque3& torque) const noexcept TACT_RT;
     // The farthest that the grip goes for one count, at the origin.
     [[nodiscard]] double position_step_m() const noexcept;
 

@@ -117,7 +117,7 @@ void Pump::follow_boot(Instant now) noexcept {
     news_.delay_ns = answers_ns_ = sent_answers_ns_ = last_answers_ns_ = 0;
 }
 
-void Pump::obey(bool enable, std::uint32_t heartbeat, const Torque3& torque) noexcept {
+void Pump::apply(bool enable, std::uint32_t heartbeat, const Torque3& torque) noexcept {
     phantom::Command c;
     c.sequence = ++sequence_;
     c.heartbeat = heartbeat;
@@ -129,18 +129,18 @@ void Pump::obey(bool enable, std::uint32_t heartbeat, const Torque3& torque) noe
 void Pump::take_order(Instant now) noexcept {
     if (const std::uint32_t relaxed = this->relaxed(); relaxed != relaxed_seen_) {
         relaxed_seen_ = relaxed;
-        obey(false, 0, {});
+        apply(false, 0, {});
         due_ = true;
     }
     PumpOrder order;
-    const std::uint64_t written = mail_->order.count();
-    if (written == orders_seen_ || !mail_->order.read(order)) return;
+    const std::uint64_t written = mailbox_->order.count();
+    if (written == orders_seen_ || !mailbox_->order.read(order)) return;
     orders_seen_ = written;
     const std::int64_t passed = order.written_at_ns - to_ns(ordered_at_);
     if (passed > 0) interval_ns_ = std::clamp<std::int64_t>(passed, 50'000, 2'000'000);
     ordered_at_ = std::min(instant_from_ns(order.written_at_ns), now);
     if (order.generation != news_.generation || order.relaxed != relaxed_seen_) return;
-    obey(order.enable, order.heartbeat, order.torque);
+    apply(order.enable, order.heartbeat, order.torque);
     answers_ns_ = order.answers_ns;
     due_ = true;
 }
@@ -277,7 +277,7 @@ void Pump::count_second(Instant now) noexcept {
     second_taken_ = news_.counts.taken;
 }
 
-void Pump::publish() noexcept { mail_->news.publish(news_); }
+void Pump::publish() noexcept { mailbox_->news.publish(news_); }
 
 void Pump::round(Duration patience) noexcept {
     const Instant now = bus_.now();

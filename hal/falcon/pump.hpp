@@ -86,8 +86,8 @@ public:
     [[nodiscard]] bool quiet() const noexcept;
     void close() noexcept { bus_.close(); }
 
-    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mail_->news.read(news); }
-    void write(const PumpOrder& order) noexcept TACT_RT { mail_->order.publish(order); }
+    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mailbox_->news.read(news); }
+    void write(const PumpOrder& order) noexcept TACT_RT { mailbox_->order.publish(order); }
     void relax() noexcept TACT_RT { relaxed_.fetch_add(1, std::memory_order_acq_rel); }
     [[nodiscard]] std::uint32_t relaxed() const noexcept TACT_RT {
         return relaxed_.load(std::memory_order_acquire);
@@ -105,7 +105,7 @@ private:
     void lose(Instant now) noexcept;
     void follow_boot(Instant now) noexcept;
     void look_at_replies(Instant now) noexcept;
-    void obey(bool enable, std::uint32_t heartbeat, const Torque3& torque) noexcept;
+    void apply(bool enable, std::uint32_t heartbeat, const Torque3& torque) noexcept;
     void take_order(Instant now) noexcept;
     void send_due(Instant now) noexcept;
     [[nodiscard]] Torque3 torque() const noexcept;
@@ -120,7 +120,7 @@ private:
     std::string serial_;
     Boot boot_;
     double counts_per_s_;  // the most that a leg makes
-    std::unique_ptr<Mail> mail_ = std::make_unique<Mail>();
+    std::unique_ptr<Mail> mailbox_ = std::make_unique<Mail>();
     std::atomic<std::uint32_t> relaxed_{0};
 
     PumpNews news_;

@@ -51,14 +51,14 @@ GpioAccess::GpioAccess(const std::string& path, std::span<const GpioLine> lines)
     Library& l = *library_;
     l.chip.reset(gpiod_chip_open(path.c_str()));
     if (!l.chip) throw GpioRefusal{.error = errno, .detail = path};
-    for (const GpioLine& wish : lines.first(std::min(lines.size(), kLinesMax))) {
-        gpiod_line* const line = find_line(l.chip.get(), wish.line);
-        if (line == nullptr) throw GpioRefusal{.line = wish.line};
-        const int flags = flags_of(wish);
+    for (const GpioLine& request : lines.first(std::min(lines.size(), kLinesMax))) {
+        gpiod_line* const line = find_line(l.chip.get(), request.line);
+        if (line == nullptr) throw GpioRefusal{.line = request.line};
+        const int flags = flags_of(request);
         int refused = 0;
-        if (wish.output) {
+        if (request.output) {
             refused = gpiod_line_request_output_flags(line, kConsumer, flags, 0);
-        } else if (wish.edges) {
+        } else if (request.edges) {
             refused = gpiod_line_request_both_edges_events_flags(line, kConsumer, flags);
         } else {
             refused = gpiod_line_request_input_flags(line, kConsumer, flags);
@@ -66,9 +66,9 @@ GpioAccess::GpioAccess(const std::string& path, std::span<const GpioLine> lines)
         if (refused != 0) {
             const int error = errno;
             const char* const owner = gpiod_line_consumer(line);
-            throw GpioRefusal{.line = wish.line, .error = error, .detail = owner == nullptr ? "" : owner};
+            throw GpioRefusal{.line = request.line, .error = error, .detail = owner == nullptr ? "" : owner};
         }
-        l.rows.push_back({.line = line, .output = wish.output, .edges = wish.edges && !wish.output});
+        l.rows.push_back({.line = line, .output = request.output, .edges = request.edges && !request.output});
         if (l.rows.back().edges) {
             l.fds[l.fd_count++] = {.fd = gpiod_line_event_get_fd(line), .events = POLLIN, .revents = 0};
         }

@@ -42,17 +42,18 @@ std::string owner_of(gpiod_chip* chip, unsigned offset) {
     return owner == nullptr ? "" : owner;
 }
 
-void set_up(gpiod_line_settings* s, const GpioLine& wish) {
+void set_up(gpiod_line_settings* s, const GpioLine& request) {
     bool ok = gpiod_line_settings_set_direction(
-                  s, wish.output ? GPIOD_LINE_DIRECTION_OUTPUT : GPIOD_LINE_DIRECTION_INPUT) == 0;
-    gpiod_line_settings_set_active_low(s, wish.active_low);
-    if (wish.output) ok = ok && gpiod_line_settings_set_output_value(s, GPIOD_LINE_VALUE_INACTIVE) == 0;
-    if (wish.edges && !wish.output)
+                  s, request.output ? GPIOD_LINE_DIRECTION_OUTPUT : GPIOD_LINE_DIRECTION_INPUT) == 0;
+    gpiod_line_settings_set_active_low(s, request.active_low);
+    if (request.output) ok = ok && gpiod_line_settings_set_output_value(s, GPIOD_LINE_VALUE_INACTIVE) == 0;
+    if (request.edges && !request.output)
         ok = ok && gpiod_line_settings_set_edge_detection(s, GPIOD_LINE_EDGE_BOTH) == 0;
-    if (wish.bias == GpioBias::up) ok = ok && gpiod_line_settings_set_bias(s, GPIOD_LINE_BIAS_PULL_UP) == 0;
-    if (wish.bias == GpioBias::down)
+    if (request.bias == GpioBias::up)
+        ok = ok && gpiod_line_settings_set_bias(s, GPIOD_LINE_BIAS_PULL_UP) == 0;
+    if (request.bias == GpioBias::down)
         ok = ok && gpiod_line_settings_set_bias(s, GPIOD_LINE_BIAS_PULL_DOWN) == 0;
-    if (!ok) throw GpioRefusal{.line = wish.line, .error = errno, .detail = "its settings"};
+    if (!ok) throw GpioRefusal{.line = request.line, .error = errno, .detail = "its settings"};
 }
 
 }  // namespace
@@ -80,16 +81,16 @@ GpioAccess::GpioAccess(const std::string& path, std::span<const GpioLine> lines)
     l.events.reset(gpiod_edge_event_buffer_new(kEvents));
     if (!config || !request || !settings || !l.events) throw GpioRefusal{.error = ENOMEM, .detail = path};
     gpiod_request_config_set_consumer(request.get(), kConsumer);
-    for (const GpioLine& wish : lines.first(std::min(lines.size(), kLinesMax))) {
-        const int found = find_line(l.chip.get(), wish.line);
-        if (found < 0) throw GpioRefusal{.line = wish.line};
+    for (const GpioLine& request : lines.first(std::min(lines.size(), kLinesMax))) {
+        const int found = find_line(l.chip.get(), request.line);
+        if (found < 0) throw GpioRefusal{.line = request.line};
         const auto offset = static_cast<unsigned>(found);
         gpiod_line_settings_reset(settings.get());
-        set_up(settings.get(), wish);
+        set_up(settings.get(), request);
         if (gpiod_line_config_add_line_settings(config.get(), &offset, 1, settings.get()) != 0)
-            throw GpioRefusal{.line = wish.line, .error = errno, .detail = "its settings"};
-        l.rows.push_back({.offset = offset, .output = wish.output});
-        l.edges = l.edges || (wish.edges && !wish.output);
+            throw GpioRefusal{.line = request.line, .error = errno, .detail = "its settings"};
+        l.rows.push_back({.offset = offset, .output = request.output});
+        l.edges = l.edges || (request.edges && !request.output);
     }
     l.request.reset(gpiod_chip_request_lines(l.chip.get(), request.get(), config.get()));
     if (l.request) return;

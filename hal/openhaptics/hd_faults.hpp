@@ -28,7 +28,7 @@ struct FaultMeaning {
     bool ends;            // nothing comes any more: lost until opened again
     DeviceNotice notice;  // the nearest that every device can say
     const char* says;     // for people
-    const char* mends;    // what a person does about it
+    const char* fixes;    // what a person does about it
 };
 
 [[nodiscard]] const FaultMeaning& meaning(unsigned code) noexcept TACT_RT;

@@ -9,7 +9,7 @@ namespace tact::hd {
 
 namespace {
 
-constexpr const char* kMend =
+constexpr const char* kFix =
     "install the maker's OpenHaptics and device driver for Linux, or name the file (device.hd_library)";
 
 void* load(const char* path, std::string& why) {
@@ -46,7 +46,7 @@ Library::Library(const std::string& path) : path_(path) {
     }
     if (handle_ == nullptr)
         throw StartupError("loading the haptic library libHD.so" + (path.empty() ? "" : " from " + path), why,
-                           kMend);
+                           kFix);
     try {
 #define TACT_HD_FIND(type, name, arguments) find(handle_, path_, #name, api_.name);
         TACT_HD_FUNCTIONS(TACT_HD_FIND)

@@ -27,7 +27,7 @@ Vec3 shortened(const Vec3& v, double most) noexcept {
 
 }  // namespace
 
-Pump::Pump(const Api& api, Handle device) : api_(&api), device_(device), mail_(std::make_unique<Mail>()) {}
+Pump::Pump(const Api& api, Handle device) : api_(&api), device_(device), mailbox_(std::make_unique<Mail>()) {}
 
 Enum Pump::tick(Instant now) noexcept {
     if (ended_) return kCallbackDone;
@@ -36,7 +36,7 @@ Enum Pump::tick(Instant now) noexcept {
     take_sample(now);
     calibrate(now);
     take_errors(now);  // of this frame so far: its force is zero then
-    obey(now);
+    apply(now);
     show();
     api_->hdEndFrame(device_);
     take_errors(now);
@@ -140,9 +140,9 @@ void Pump::fail(FaultKind kind, bool ends, Instant now) noexcept {
     output_on_ = false;
 }
 
-void Pump::obey(Instant now) noexcept {
-    if (!mail_->command.read(command_)) {
-        if (mail_->command.count() == 0) return;  // lapped: the last one stands, and its watchdog runs
+void Pump::apply(Instant now) noexcept {
+    if (!mailbox_->command.read(command_)) {
+        if (mailbox_->command.count() == 0) return;  // lapped: the last one stands, and its watchdog runs
     }
     if (command_.heartbeat != heartbeat_) {
         heartbeat_ = command_.heartbeat;
@@ -217,14 +217,14 @@ void Pump::publish() noexcept {
     sample_.bus.refused = saturated(counts_.refused_samples);
     sample_.bus.transfers_failed = saturated(failed(FaultKind::link) + failed(FaultKind::frame));
     sample_.bus.commands_refused = saturated(failed(FaultKind::refused));
-    if (sample_.sequence > 0) mail_->sample.publish(sample_);
-    mail_->counts.publish(counts_);
+    if (sample_.sequence > 0) mailbox_->sample.publish(sample_);
+    mailbox_->counts.publish(counts_);
 }
 
 IoStatus Pump::read(DeviceSample& newest, Instant now) noexcept {
     SampleWords w;
-    if (!mail_->sample.read(w))
-        return status_ = mail_->sample.count() == 0 ? IoStatus::lost : IoStatus::stale;
+    if (!mailbox_->sample.read(w))
+        return status_ = mailbox_->sample.count() == 0 ? IoStatus::lost : IoStatus::stale;
     taken_at_ns_ = w.taken_at_ns;
     newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
     newest.delay = Duration(w.delay_ns);
@@ -260,7 +260,7 @@ IoStatus Pump::write(const DeviceCommand& command) noexcept {
     w.relaxed = relaxed_sent_;
     w.heartbeat = heartbeat_sent_ = command.heartbeat;
     w.answers_ns = taken_at_ns_;
-    mail_->command.publish(w);
+    mailbox_->command.publish(w);
     return status_ == IoStatus::lost || status_ == IoStatus::fault ? status_ : IoStatus::ok;
 }
 
@@ -272,12 +272,12 @@ void Pump::relax() noexcept {
     w.heartbeat = ++heartbeat_sent_ | 1ULL << 63U;
     w.edge = edges_sent_;
     w.relaxed = relaxed_sent_;
-    mail_->command.publish(w);
+    mailbox_->command.publish(w);
 }
 
 Counts Pump::counts() const noexcept {
     Counts c;
-    static_cast<void>(mail_->counts.read(c));
+    static_cast<void>(mailbox_->counts.read(c));
     return c;
 }
 

@@ -91,14 +91,14 @@ private:
     [[nodiscard]] DeviceNotice asked() const noexcept;
     void take_errors(Instant now) noexcept;
     void fail(FaultKind kind, bool ends, Instant now) noexcept;
-    void obey(Instant now) noexcept;
+    void apply(Instant now) noexcept;
     void show() noexcept;
     void publish() noexcept;
 
     const Api* api_;
     Handle device_;
     PumpSettings settings_;
-    std::unique_ptr<Mail> mail_;
+    std::unique_ptr<Mail> mailbox_;
 
     // On the vendor's thread.
     SampleWords sample_{};

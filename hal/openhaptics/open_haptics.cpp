@@ -78,7 +78,7 @@ void OpenHaptics::check(const std::string& attempt) {
     throw StartupError(attempt,
                        plain(api.hdGetErrorString(error.code), "an error without a name") + " (" +
                            hex(error.code) + ", " + std::to_string(error.internal) + " inside)",
-                       std::string(hd::meaning(error.code).mends) +
+                       std::string(hd::meaning(error.code).fixes) +
                            "; the maker's set-up program must know the device (device.hd_device)");
 }
 
@@ -137,7 +137,7 @@ void OpenHaptics::wait_for_first_sample() {
         const bool sampled = pump_->read(sample, clock_->now()) != IoStatus::lost;
         if (c.last_kind != hd::FaultKind::none && hd::meaning(c.last_kind).ends)
             throw StartupError("starting the haptic device", hd::meaning(c.last_kind).says,
-                               hd::meaning(c.last_kind).mends);
+                               hd::meaning(c.last_kind).fixes);
         if (sampled) return;
         const Duration waited = clock_->now() - begin;
         if (waited > settings_.first_sample_max) {

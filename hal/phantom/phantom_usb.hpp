@@ -30,7 +30,7 @@ namespace tact {
 
 struct PhantomUsbSettings {
     std::string serial;  // empty: the only board there is
-    ArmFigures arm = arm_figures("premium-1.5");
+    ArmParameterSet arm = arm_parameter_set("premium-1.5");
     Duration hold_max = std::chrono::milliseconds(3);        // the newest state is good for so long
     Duration watchdog_max = phantom::UsbPump::kWatchdogMax;  // of the board; a longer one is refused
     int pump_priority = kPumpPriority;                       // FIFO; 0: ordinary scheduling

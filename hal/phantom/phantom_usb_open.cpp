@@ -137,13 +137,13 @@ void PhantomUsb::wait_for_first_state() {
                                        std::to_string(phantom::kVersion),
                                    "bring firmware and program to a common version");
             }
-            const std::string mend = "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send";
+            const std::string fix = "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send";
             if (news_.refusal == LinkRefusal::serial)
-                throw StartupError(what, "it gives another serial than its USB descriptor", mend);
+                throw StartupError(what, "it gives another serial than its USB descriptor", fix);
             throw StartupError(what,
                                "it may not have a rate of " + std::to_string(news_.info.rate_hz) +
                                    " Hz with a watchdog of " + std::to_string(news_.info.watchdog_ms) + " ms",
-                               mend + "; device.watchdog_us allows a watchdog of more than 100 ms");
+                               fix + "; device.watchdog_us allows a watchdog of more than 100 ms");
         }
         if (news_.link == Link::open && news_.states > 0) return;
     }

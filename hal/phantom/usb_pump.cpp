@@ -100,8 +100,8 @@ void UsbPump::send_due(Instant now) noexcept {
         return;
     }
     PumpOrder order;
-    const std::uint64_t written = mail_->order.count();
-    if (written == orders_seen_ || !mail_->order.read(order)) return;
+    const std::uint64_t written = mailbox_->order.count();
+    if (written == orders_seen_ || !mailbox_->order.read(order)) return;
     orders_seen_ = written;
     const std::int64_t passed = order.written_at_ns - written_at_ns_;
     if (passed > 0) interval_ns_ = std::clamp<std::int64_t>(passed, 50'000, 2'000'000);
@@ -123,7 +123,7 @@ void UsbPump::count_second(Instant now) noexcept {
     second_taken_ = news_.counts.taken;
 }
 
-void UsbPump::publish() noexcept { mail_->news.publish(news_); }
+void UsbPump::publish() noexcept { mailbox_->news.publish(news_); }
 
 void UsbPump::round(Duration patience) noexcept {
     const Instant now = bus_.now();

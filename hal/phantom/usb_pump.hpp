@@ -27,7 +27,7 @@ namespace tact::phantom {
 enum class Link : std::uint8_t { closed, asking, refused, open };
 
 // Why the newest connection was refused.
-enum class LinkRefusal : std::uint8_t { none, version, serial, figures };
+enum class LinkRefusal : std::uint8_t { none, version, serial, metrics };
 
 // From the pump to the servo.
 struct PumpNews {
@@ -83,8 +83,8 @@ public:
     [[nodiscard]] bool quiet() const noexcept;
     void close() noexcept;
 
-    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mail_->news.read(news); }
-    void write(const PumpOrder& order) noexcept TACT_RT { mail_->order.publish(order); }
+    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mailbox_->news.read(news); }
+    void write(const PumpOrder& order) noexcept TACT_RT { mailbox_->order.publish(order); }
     void relax() noexcept TACT_RT { relaxed_.fetch_add(1, std::memory_order_acq_rel); }
     [[nodiscard]] std::uint32_t relaxed() const noexcept TACT_RT {
         return relaxed_.load(std::memory_order_acquire);
@@ -117,7 +117,7 @@ private:
     UsbBus& bus_;
     std::string serial_;
     Duration watchdog_max_, silence_;
-    std::unique_ptr<Mail> mail_ = std::make_unique<Mail>();
+    std::unique_ptr<Mail> mailbox_ = std::make_unique<Mail>();
     std::atomic<std::uint32_t> relaxed_{0};
 
     PumpNews news_;

@@ -23,7 +23,7 @@ void UsbPump::take_info(const Info& info, Instant at) noexcept {
     const bool same_serial = serial_.empty() || text_of(info.serial) == serial_;
     news_.refusal = common_version(Query{}, info) != kVersion ? LinkRefusal::version
                     : !same_serial                            ? LinkRefusal::serial
-                    : !possible(info, watchdog_max_)          ? LinkRefusal::figures
+                    : !possible(info, watchdog_max_)          ? LinkRefusal::metrics
                                                               : LinkRefusal::none;
     const bool anew = !known_ || info.boot != news_.info.boot;
     news_.info = info;

@@ -42,14 +42,14 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
       strokes_(settings.script == "stroke"),
       drills_(settings.script == "drill") {
     wanders_ = strokes_ || drills_ || settings.script == "wander";
-    if (settings.script == "surgeon" || settings.script == "sucker") {
+    if (settings.script == "surgeon" || settings.script == "suction-tube") {
         surgeon_.emplace(SimSurgeonSettings{
-            .sucker = settings.script == "sucker", .seed = settings.seed, .at_m = settings.at_m});
+            .suction_tube = settings.script == "suction-tube", .seed = settings.seed, .at_m = settings.at_m});
         pose_ = surgeon_->begin();
     } else if (settings.script != "passive" && !wanders_) {
-        throw StartupError(
-            "emulated hand", "there is no script \"" + settings.script + "\"",
-            "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or \"sucker\" (device.hand)");
+        throw StartupError("emulated hand", "there is no script \"" + settings.script + "\"",
+                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or \"suction "
+                           "tube\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {

@@ -4,7 +4,7 @@
 // Step      exact for a force that is constant over it, so stable at any step and any servo rate
 // Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about. stroke: the
 //           same, mostly sideways, and down, so that it rests on what is there. drill: the same, away from the user, slowly.
-//           surgeon, sucker: sim_surgeon.hpp.
+//           surgeon, suction tube: sim_surgeon.hpp.
 #pragma once
 
 #include <array>
@@ -19,14 +19,18 @@
 
 namespace tact {
 
-inline constexpr std::array kSimHandNames{"passive", "wander", "stroke", "drill", "surgeon", "sucker"};
+inline constexpr std::array kSimHandNames{"passive", "wander", "stroke", "drill", "surgeon", "suction-tube"};
+// "sucker" was the name of "suction-tube" before 2026-11-25; recordings hold it.
+inline std::string current_hand_name(const std::string& name) {
+    return name == "sucker" ? "suction-tube" : name;
+}
 
 // A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (maker's figure
 // for a Premium 1.5) and about as much of fingers. Damping: the grip's 3 to 10 N s/m, as measured for pen
 // grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
 // such that 0.05 N m turns it by 150 degrees a second.
 struct SimHandSettings {
-    std::string script = "passive";  // or "wander", "stroke", "drill", "surgeon", "sucker"
+    std::string script = "passive";  // or "wander", "stroke", "drill", "surgeon", "suction-tube"
     std::uint64_t seed = 1;
     double mass_kg = 0.25;
     double damping_n_s_m = 5.0;
@@ -35,7 +39,7 @@ struct SimHandSettings {
     double wander_m = 0.03;  // amplitude
     double wander_rad = 0.3;
     double press_m = 0.03;     // how far down a stroking hand means to be, and away a drilling one
-    Vec3 at_m = Vec3::Zero();  // where surgeon and sucker begin
+    Vec3 at_m = Vec3::Zero();  // where surgeon and suction tube begin
 };
 
 class SimHand {

@@ -15,7 +15,7 @@ extern "C" void on_line_signal(int number) { stop_by_signal.store(number == SIGU
 
 }  // namespace
 
-void SimBoard::obey_signals() {
+void SimBoard::apply_signals() {
     struct sigaction action {};
     action.sa_handler = &on_line_signal;
     action.sa_flags = SA_RESTART;

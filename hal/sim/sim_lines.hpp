@@ -42,7 +42,7 @@ public:
     void press(std::uint8_t pedals) noexcept { pressed_.store(pedals); }
     [[nodiscard]] std::uint8_t driven() const noexcept { return driven_.load(); }  // LineOutput
     // From now on SIGUSR1 presses the emergency stop and SIGUSR2 lets it go. Start-up.
-    void obey_signals();
+    void apply_signals();
 
 private:
     std::atomic<LinesFault> fault_{LinesFault::none};

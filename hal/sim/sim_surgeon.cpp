@@ -13,18 +13,18 @@ constexpr double kWaitS = 0.7;    // until the force has faded in
 constexpr double kForgetS = 0.5;  // switched off
 constexpr double kSeekM_S = 0.04, kMoveM_S = 0.06;
 constexpr double kSeekPressN = 0.8, kFeltN = 0.3, kFeltS = 0.02;
-constexpr double kSuckerFeltN = 0.1, kSuckerPressN = 0.25, kSuckerAboveM = 5e-4;
+constexpr double kSuctionTubeContactN = 0.1, kSuctionTubePressN = 0.25, kSuctionTubeAboveM = 5e-4;
 constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series; then it lifts
 constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes in radii of the bowl
 constexpr double kLiftM = 6e-3;
 constexpr double kFeedM_S = 5e-4, kBowlFirstM = 3e-3, kWidenM_S = 3e-4;
-// How far the sucker is from the middle: at the start, and in radii of the bowl while the burr comes nearer.
+// How far the suction tube is from the middle: at the start, and in radii of the bowl while the burr comes nearer.
 constexpr double kBesideM = 5e-3, kBesideFrom = 0.95, kBesideTo = 1.4, kInTheMiddle = 0.3;
 constexpr double kAsideM = 8e-3;  // after a miss, times the root of how many there were
 constexpr double kStiffnessN_M = 250.0, kDampingN_S_M = 8.0, kSidewaysMostN = 3.0, kUpMostN = 2.0;
 constexpr double kTurnStiffnessN_M = 0.3, kTurnDampingN_M_S = 0.01;
 // How instruments are held: the shaft, along +z of the tool, leans to the side of its hand.
-const Vec3 kBurrLeanRad(0.12, 0.42, 0.0), kSuckerLeanRad(0.15, -0.6, 0.0);
+const Vec3 kBurrLeanRad(0.12, 0.42, 0.0), kSuctionTubeLeanRad(0.15, -0.6, 0.0);
 
 double bowl_m(double worked_s) { return std::min(kBowlFirstM + kWidenM_S * worked_s, SimSurgeon::kBowlM); }
 
@@ -32,13 +32,13 @@ double bowl_m(double worked_s) { return std::min(kBowlFirstM + kWidenM_S * worke
 
 SimSurgeon::SimSurgeon(const SimSurgeonSettings& settings) noexcept : settings_(settings) {
     const Vec3 rim = kBesideM * Vec3(-0.94, -0.34, 0.0);
-    begin_m_ = settings.sucker ? Vec3(settings.at_m + rim) : settings.at_m;
+    begin_m_ = settings.suction_tube ? Vec3(settings.at_m + rim) : settings.at_m;
     spot_m_ = target_m_ = begin_m_;
     series_ = series(0);
 }
 
 Pose SimSurgeon::begin() const noexcept {
-    return {begin_m_, quat_from_rotation_vector(settings_.sucker ? kSuckerLeanRad : kBurrLeanRad)};
+    return {begin_m_, quat_from_rotation_vector(settings_.suction_tube ? kSuctionTubeLeanRad : kBurrLeanRad)};
 }
 
 SimSurgeon::Series SimSurgeon::series(std::uint64_t number) const noexcept {
@@ -57,13 +57,13 @@ void SimSurgeon::towards(const Vec3& goal_m, double h_s) noexcept {
 
 void SimSurgeon::seek(double h_s, const Vec3& at_m) noexcept {
     works_ = false;
-    press_n_ = settings_.sucker ? kSuckerPressN : kSeekPressN;
+    press_n_ = settings_.suction_tube ? kSuctionTubePressN : kSeekPressN;
     if (back_) {
         towards(spot_m_, h_s);
         back_ = (target_m_ - spot_m_).norm() > 1e-4;
         return;
     }
-    if (felt_n_ > (settings_.sucker ? kSuckerFeltN : kFeltN)) {
+    if (felt_n_ > (settings_.suction_tube ? kSuctionTubeContactN : kFeltN)) {
         met_ = true;
         met_m_ = at_m;
         return;
@@ -86,7 +86,7 @@ void SimSurgeon::work(double h_s) noexcept {
     const double bowl = bowl_m(worked_s_), deep_m = std::min(kFeedM_S * worked_s_, kDepthM);
     Vec3 goal_m = Vec3::Zero();  // from where bone was met
     const double s = std::clamp((tau_s - kDownS) / kStrokesS, 0.0, 1.0);
-    if (settings_.sucker) {
+    if (settings_.suction_tube) {
         // The burr comes from the other side.
         const double beside = lifted ? kInTheMiddle : std::lerp(kBesideFrom, kBesideTo, s);
         goal_m = std::max(beside * bowl, lifted ? 0.0 : kBesideM) * series_.across;
@@ -97,15 +97,15 @@ void SimSurgeon::work(double h_s) noexcept {
     }
     const double r = std::min(goal_m.norm() / kBowlM, 1.2);
     goal_m.z() = -deep_m * (1.0 - 0.6 * r * r);
-    works_ = settings_.sucker || !lifted;
-    if (settings_.sucker) {
-        goal_m.z() += kSuckerAboveM;
-        press_n_ = kSuckerPressN;
+    works_ = settings_.suction_tube || !lifted;
+    if (settings_.suction_tube) {
+        goal_m.z() += kSuctionTubeAboveM;
+        press_n_ = kSuctionTubePressN;
     } else {
         press_n_ = series_.press_n;
         if (lifted) goal_m.z() = kLiftM;
     }
-    const Vec3 middle_m = settings_.sucker ? Vec3(met_m_ + (settings_.at_m - begin_m_)) : met_m_;
+    const Vec3 middle_m = settings_.suction_tube ? Vec3(met_m_ + (settings_.at_m - begin_m_)) : met_m_;
     towards(Vec3(middle_m.x(), middle_m.y(), met_m_.z()) + goal_m, h_s);
 }
 

@@ -1,10 +1,10 @@
-// An emulated surgeon's hand: one that leads a burr over bone, or one that follows it with a sucker.
+// An emulated surgeon's hand: one that leads a burr over bone, or one that follows it with a suction tube.
 //
 // Knows    the force that it is shown, where it is, and the time since the device was switched on; nothing of the scene
 // Burr     goes away from the user until something holds it, and there works out a bowl: series of strokes to and fro, each
 //          in another direction, slowly wider and deeper. Between two series it lifts the burr and the pedal. Where nothing
 //          is met it tries again a little beside.
-// Sucker   feels its way in the same manner, keeps to the side of the bowl where the burr of a surgeon of the same
+// SuctionTube   feels its way in the same manner, keeps to the side of the bowl where the burr of a surgeon of the same
 //          seed is not, and goes into its middle while that has lifted it.
 // Pedal    the second button, held while it works
 // Switched off, or not on yet: the hand goes back to where it began.
@@ -21,7 +21,7 @@
 namespace tact {
 
 struct SimSurgeonSettings {
-    bool sucker = false;
+    bool suction_tube = false;
     std::uint64_t seed = 1;
     Vec3 at_m = Vec3::Zero();  // in front of the bone; the bowl is worked out straight behind it
 };

@@ -19,8 +19,8 @@ Duration period(const CanTrackerSettings& s) noexcept {
 }  // namespace
 
 const CanTrackerSettings& checked(const CanTrackerSettings& s) {
-    const auto refuse = [](const std::string& what, const std::string& mend) {
-        throw StartupError("settings of the tracker", what, mend);
+    const auto refuse = [](const std::string& what, const std::string& fix) {
+        throw StartupError("settings of the tracker", what, fix);
     };
     if (s.fix.sensors < 1 || s.fix.sensors > kTrackerSensorsMax)
         refuse(std::to_string(s.fix.sensors) + " sensors", "give 1 to 4 (tracker.sensors)");
@@ -41,11 +41,11 @@ CanReader::CanReader(const CanTrackerSettings& settings, CanSource& source, Cloc
       assembler_(settings.fix),
       clocks_{TrackerClock(period(settings)), TrackerClock(period(settings)), TrackerClock(period(settings)),
               TrackerClock(period(settings))},
-      mail_(std::make_unique<Mail>()) {}
+      mailbox_(std::make_unique<Mail>()) {}
 
 void CanReader::opened() noexcept {
     health_.link = TrackerLink::up;
-    mail_->health.publish(health_);
+    mailbox_->health.publish(health_);
 }
 
 void CanReader::link_is(TrackerLink link) noexcept {
@@ -64,7 +64,7 @@ void CanReader::publish(const TrackerFix& fix, Instant taken_at) noexcept {
     for (int i = 0; i < 4; ++i) w.quat_xyzw[i] = fix.T_tracker_sensor.q.coeffs()[i];
     w.quality = fix.quality;
     w.distortion = fix.distortion;
-    mail_->samples[fix.sensor].publish(w);
+    mailbox_->samples[fix.sensor].publish(w);
     ++health_.samples;
 }
 
@@ -126,7 +126,7 @@ void CanReader::round(Duration patience) noexcept {
     if (flood) ++health_.floods;
     health_.missed = assembler_.missed();
     health_.refused = assembler_.refused().total();
-    mail_->health.publish(health_);
+    mailbox_->health.publish(health_);
     // A flood leaves the processor to others between the rounds.
     if (flood) clock_.wait_until(clock_.now() + kFloodPause);
 }
@@ -135,7 +135,7 @@ TrackerState CanReader::read(unsigned sensor, TrackerSample& newest, Instant now
     SampleWords w;
     if (sensor >= settings_.fix.sensors) return newest.state = TrackerState::lost;
     // Lapped by the writer on every try: the caller keeps its old value, and its age says the rest.
-    if (mail_->samples[sensor].read(w)) {
+    if (mailbox_->samples[sensor].read(w)) {
         newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
         newest.sequence = w.sequence;
         newest.sensor = static_cast<std::uint8_t>(sensor);
@@ -150,7 +150,7 @@ TrackerState CanReader::read(unsigned sensor, TrackerSample& newest, Instant now
 
 TrackerHealth CanReader::health() const noexcept {
     TrackerHealth h;
-    static_cast<void>(mail_->health.read(h));
+    static_cast<void>(mailbox_->health.read(h));
     return h;
 }
 

@@ -78,7 +78,7 @@ private:
     std::array<std::uint64_t, kTrackerSensorsMax> sequence_{};
     std::array<Instant, kTrackerSensorsMax> taken_at_{};  // of the newest sample
     Instant retry_at_{};
-    std::unique_ptr<Mail> mail_;
+    std::unique_ptr<Mail> mailbox_;
 };
 
 }  // namespace tact

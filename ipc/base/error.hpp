@@ -18,8 +18,8 @@ inline std::string last_error() { return std::system_category().message(errno); 
 
 class StartupError : public std::runtime_error {
 public:
-    StartupError(const std::string& attempt, const std::string& why, const std::string& mend)
-        : std::runtime_error(shown(attempt + ": " + why + "\n  mend: " + mend)) {}
+    StartupError(const std::string& attempt, const std::string& why, const std::string& fix)
+        : std::runtime_error(shown(attempt + ": " + why + "\n  mend: " + fix)) {}
 
 private:
     static std::string shown(std::string text) {

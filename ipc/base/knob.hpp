@@ -40,13 +40,14 @@ struct PathLoad {
     Duration cost_predicted{0};
     double error = 0.0;
     std::uint32_t items = 0;  // vertices drawn, points felt, particles moved
-    float fresh = 1.0F;       // of the items, those that this step did anew; the rest is of steps before
+    float recomputed_fraction =
+        1.0F;  // of the items, those that this step did anew; the rest is of steps before
 };
 
-// Of the looks at one deadline: how many there were, and which found it passed. Kept by who gives the deadline and
-// written to a recording; given back in a replay, it makes the same looks find the same.
-struct DeadlineLooks {
-    std::uint32_t looks = 0;
+// Checks of one deadline: their number, and the one that found it passed. Kept by the owner of the deadline and
+// recorded; in a replay the recorded values make the same check find it passed.
+struct DeadlineChecks {
+    std::uint32_t checks = 0;
     std::uint32_t passed_at = 0;  // from 1; 0: none found it passed
     bool replayed = false;        // passed_at decides, and no clock
 };
@@ -55,19 +56,19 @@ struct DeadlineLooks {
 class Deadline {
 public:
     Deadline() = default;
-    Deadline(Instant at, DeadlineLooks* looks = nullptr) noexcept : at_(at), looks_(looks) {}
+    Deadline(Instant at, DeadlineChecks* checks = nullptr) noexcept : at_(at), checks_(checks) {}
 
     [[nodiscard]] bool passed() const noexcept TACT_RT {
-        if (looks_ == nullptr) return at_ != Instant::max() && Monotonic::now() >= at_;
-        ++looks_->looks;
-        if (!looks_->replayed && looks_->passed_at == 0 && at_ != Instant::max() && Monotonic::now() >= at_)
-            looks_->passed_at = looks_->looks;
-        return looks_->passed_at != 0 && looks_->looks >= looks_->passed_at;
+        if (checks_ == nullptr) return at_ != Instant::max() && Monotonic::now() >= at_;
+        ++checks_->checks;
+        if (!checks_->replayed && checks_->passed_at == 0 && at_ != Instant::max() && Monotonic::now() >= at_)
+            checks_->passed_at = checks_->checks;
+        return checks_->passed_at != 0 && checks_->checks >= checks_->passed_at;
     }
 
 private:
     Instant at_ = Instant::max();
-    DeadlineLooks* looks_ = nullptr;
+    DeadlineChecks* checks_ = nullptr;
 };
 
 // What a step may use. The level fixes the work before the step starts, so that runs repeat exactly; the
@@ -77,7 +78,7 @@ struct Budget {
     Deadline deadline = {};
     // In (0, 1]: how much of the level's work may be done anew where a model can keep the rest of steps
     // before. Nothing is left out: for spans too short for a change of the level.
-    float share = 1.0F;
+    float work_fraction = 1.0F;
 };
 
 }  // namespace tact

@@ -17,7 +17,7 @@
 
 namespace tact {
 
-struct MotorHeatFigures {
+struct MotorHeatParameters {
     double resistance_ohm = 0.0;  // of the winding at 25 degrees C
     double winding_k_w = 0.0;     // thermal resistance winding to housing
     double housing_k_w = 0.0;     // thermal resistance housing to ambient
@@ -39,7 +39,7 @@ inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever th
 // x(t) = x0 + t phi(M t) (M x0 + c) with phi(z) = (e^z - 1) / z, taken by Sylvester's formula. Both
 // eigenvalues are real and differ, as the off-diagonal elements are positive. At a current beyond
 // 1 / sqrt(a R (R_wh + R_ha)) one is positive: copper runs away, and the bound above holds it.
-[[nodiscard]] inline MotorHeat heated(const MotorHeatFigures& f, const MotorHeat& before, double current_a,
+[[nodiscard]] inline MotorHeat heated(const MotorHeatParameters& f, const MotorHeat& before, double current_a,
                                       double dt_s) noexcept TACT_RT {
     if (!(dt_s > 0.0) || !std::isfinite(current_a)) return before;
     const double cold_w = std::min(current_a * current_a, 1e6) * f.resistance_ohm;
@@ -65,7 +65,7 @@ inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever th
 }
 
 // The current whose heat ends just at the winding's limit.
-[[nodiscard]] inline double continuous_current_a(const MotorHeatFigures& f) noexcept TACT_RT {
+[[nodiscard]] inline double continuous_current_a(const MotorHeatParameters& f) noexcept TACT_RT {
     const double rise_k = f.winding_c_max - f.ambient_c;
     if (rise_k <= 0.0) return 0.0;
     const double hot_ohm = f.resistance_ohm * (1.0 + kCopperPerK * (f.winding_c_max - 25.0));
@@ -74,7 +74,7 @@ inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever th
 
 // Largest current at that heat: max_a while the winding is cool, from 80 % of its rise on down to the
 // continuous current at the limit, so that a warm motor weakens gradually; to nothing 10 K above it.
-[[nodiscard]] inline double current_limit_a(const MotorHeatFigures& f, const MotorHeat& heat,
+[[nodiscard]] inline double current_limit_a(const MotorHeatParameters& f, const MotorHeat& heat,
                                             double max_a) noexcept TACT_RT {
     const double rise_k = f.winding_c_max - f.ambient_c;
     if (rise_k <= 0.0) return 0.0;

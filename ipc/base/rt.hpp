@@ -3,7 +3,7 @@
 // TACT_RT marks a function as fit for the servo thread: it never allocates, blocks or throws. Where the
 // compiler knows the attribute (clang >= 20) it checks this; elsewhere tests/rt_safe does.
 // RtSection is the mark at run time: while one lives, the calling thread is inside a servo cycle, and the
-// allocation and lock counters of rt/loop/rt_guard.cpp count, or in tests abort.
+// allocation and lock counters of rt/servo/rt_guard.cpp count, or in tests abort.
 #pragma once
 
 #include <cstdint>

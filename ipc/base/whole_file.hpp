@@ -19,12 +19,12 @@ namespace tact {
 
 // Makes the folder where there is none.
 inline void write_whole_file(const std::filesystem::path& path, const std::string& content) {
-    constexpr const char* kMend = "free some space, mend the permissions, or give another path";
+    constexpr const char* kFix = "free some space, mend the permissions, or give another path";
     std::error_code failed;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
     std::string temporary = path.string() + ".XXXXXX";
     const int fd = mkostemp(temporary.data(), O_CLOEXEC);
-    if (fd < 0) throw StartupError("writing " + path.string(), last_error(), kMend);
+    if (fd < 0) throw StartupError("writing " + path.string(), last_error(), kFix);
     std::size_t done = 0;
     bool ok = fchmod(fd, 0644) == 0;
     while (ok && done < content.size()) {
@@ -39,7 +39,7 @@ inline void write_whole_file(const std::filesystem::path& path, const std::strin
     if (ok && std::rename(temporary.c_str(), path.c_str()) == 0) return;
     if (ok) why = errno;
     unlink(temporary.c_str());
-    throw StartupError("writing " + path.string(), std::system_category().message(why), kMend);
+    throw StartupError("writing " + path.string(), std::system_category().message(why), kFix);
 }
 
 }  // namespace tact

@@ -195,7 +195,9 @@ Hdf5Table Hdf5Table::open(Hdf5Id file, const char* group, std::span<const Column
     table.row_bytes_ = row_bytes;
     table.rows_ = ~std::uint64_t{0};
     for (const Column& c : columns) {
-        const std::string name = std::string(group) + "/" + c.name;
+        std::string name = std::string(group) + "/" + c.name;
+        if (*c.former != 0 && H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0)
+            name = std::string(group) + "/" + c.former;
         Hdf5Handle set(checked(H5Dopen2(file, name.c_str(), H5P_DEFAULT), name.c_str()));
         const std::uint64_t length = length_of(set, c, group);
         table.rows_ = std::min(table.rows_, length);

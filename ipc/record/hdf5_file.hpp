@@ -27,7 +27,8 @@ struct Column {
     Number number;
     std::size_t offset;  // in the row's struct
     std::uint32_t width = 1;
-    const char* what = "";  // unit and meaning, as the file says it
+    const char* what = "";    // unit and meaning, as the file states it
+    const char* former = "";  // name in recordings made before it was renamed; empty: it never was
 };
 
 using Hdf5Id = std::int64_t;

@@ -59,7 +59,8 @@ void RecordingReader::read_about(const std::filesystem::path& path) {
         if (hand_[i].rows() != about_.cycles)
             throw RecordError("its hands have not as many rows as its cycles");
     }
-    mail_ = RowStream<MailTopic>(Hdf5Table::open(f, kMailGroup, mail_columns(), sizeof(MailTopic)));
+    mailbox_ = RowStream<MailboxTopic>(
+        Hdf5Table::open(f, mailbox_group(f), mailbox_columns(), sizeof(MailboxTopic)));
     reports_ =
         RowStream<ReportTopic>(Hdf5Table::open(f, kReportsGroup, report_columns(), sizeof(ReportTopic)));
     events_ = RowStream<EventTopic>(Hdf5Table::open(f, kEventsGroup, event_columns(), sizeof(EventTopic)));
@@ -80,10 +81,11 @@ bool RecordingReader::next(RecordedStep& step) {
         step.hand[i] = *hand;
         hand_[i].next();
     }
-    step.mail.clear();
-    for (const MailTopic* m = mail_.peek(); m != nullptr && m->step <= step.cycle.step; m = mail_.peek()) {
-        step.mail.push_back(*m);
-        mail_.next();
+    step.mailbox.clear();
+    for (const MailboxTopic* m = mailbox_.peek(); m != nullptr && m->step <= step.cycle.step;
+         m = mailbox_.peek()) {
+        step.mailbox.push_back(*m);
+        mailbox_.next();
     }
     step.report.reset();
     for (const ReportTopic* r = reports_.peek(); r != nullptr && r->step <= step.cycle.step;

@@ -49,7 +49,7 @@ private:
 struct RecordedStep {
     CycleTopic cycle{};
     HandRow hand[kHandsMax]{};
-    std::vector<MailTopic> mail;
+    std::vector<MailboxTopic> mailbox;
     std::optional<ReportTopic> report;
 };
 
@@ -79,7 +79,7 @@ private:
     About about_;
     RowStream<CycleTopic> cycles_;
     RowStream<HandRow> hand_[kHandsMax];
-    RowStream<MailTopic> mail_;
+    RowStream<MailboxTopic> mailbox_;
     RowStream<ReportTopic> reports_;
     RowStream<EventTopic> events_;
 };

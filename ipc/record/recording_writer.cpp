@@ -117,7 +117,7 @@ void RecordingWriter::make(const RecordingHead& head) {
     cycles_.table = Hdf5Table::create(f, kCyclesGroup, cycle_columns(), sizeof(CycleTopic));
     for (std::uint32_t i = 0; i < hands_; ++i)
         hand_[i].table = Hdf5Table::create(f, kHandGroups[i], hand_columns(), sizeof(HandRow));
-    mail_.table = Hdf5Table::create(f, kMailGroup, mail_columns(), sizeof(MailTopic));
+    mailbox_.table = Hdf5Table::create(f, kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
     reports_.table = Hdf5Table::create(f, kReportsGroup, report_columns(), sizeof(ReportTopic));
     events_.table = Hdf5Table::create(f, kEventsGroup, event_columns(), sizeof(EventTopic));
     levels_.table = Hdf5Table::create(f, kLevelsGroup, levels_columns(), sizeof(LevelsRow));
@@ -201,7 +201,7 @@ void RecordingWriter::add(const BodiesTopic& topic) {
 
 void RecordingWriter::flush() {
     // What a cycle was given before the cycle: a replay never lacks what it needs for the last one.
-    mail_.flush();
+    mailbox_.flush();
     reports_.flush();
     for (std::uint32_t i = 0; i < hands_; ++i) hand_[i].flush();
     cycles_.flush();
@@ -216,7 +216,7 @@ void RecordingWriter::flush() {
 void RecordingWriter::close() {
     flush();
     for (Hdf5Table* const t :
-         {&cycles_.table, &hand_[0].table, &hand_[1].table, &mail_.table, &reports_.table, &events_.table,
+         {&cycles_.table, &hand_[0].table, &hand_[1].table, &mailbox_.table, &reports_.table, &events_.table,
           &levels_.table, &health_.table, &bodies_.table, &drops_.table})
         *t = {};
     file_.reset();
@@ -228,7 +228,7 @@ void RecordingWriter::close() {
 
 void RecordingWriter::abandon() noexcept {
     for (Hdf5Table* const t :
-         {&cycles_.table, &hand_[0].table, &hand_[1].table, &mail_.table, &reports_.table, &events_.table,
+         {&cycles_.table, &hand_[0].table, &hand_[1].table, &mailbox_.table, &reports_.table, &events_.table,
           &levels_.table, &health_.table, &bodies_.table, &drops_.table})
         t->release();
     file_.release();

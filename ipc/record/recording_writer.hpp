@@ -53,7 +53,7 @@ public:
 
     void add(const CycleTopic& row) { cycles_.kept.push_back(row); }
     void add(std::size_t hand, const HandTopic& row);
-    void add(const MailTopic& row) { mail_.kept.push_back(row); }
+    void add(const MailboxTopic& row) { mailbox_.kept.push_back(row); }
     void add(const ReportTopic& row) { reports_.kept.push_back(row); }
     void add(const EventTopic& row) { events_.kept.push_back(row); }
     void add(const LevelsTopic& topic);
@@ -78,7 +78,7 @@ private:
     Pose T_world_dev_;
     RowStore<CycleTopic> cycles_;
     RowStore<HandRow> hand_[kHandsMax];
-    RowStore<MailTopic> mail_;
+    RowStore<MailboxTopic> mailbox_;
     RowStore<ReportTopic> reports_;
     RowStore<EventTopic> events_;
     RowStore<LevelsRow> levels_;

@@ -52,7 +52,7 @@ RepairReport repair_recording(const std::filesystem::path& path) {
         take(kCyclesGroup, cycle_columns(), sizeof(CycleTopic), true);
         for (const char* const group : kHandGroups)
             if (Hdf5Table::exists(f, group)) take(group, hand_columns(), sizeof(HandRow), true);
-        take(kMailGroup, mail_columns(), sizeof(MailTopic));
+        take(mailbox_group(f), mailbox_columns(), sizeof(MailboxTopic));
         take(kReportsGroup, report_columns(), sizeof(ReportTopic));
         take(kEventsGroup, event_columns(), sizeof(EventTopic));
         take(kLevelsGroup, levels_columns(), sizeof(LevelsRow));

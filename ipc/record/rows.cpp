@@ -27,7 +27,7 @@ constexpr Number number_of() {
     }
 
 constexpr std::size_t in_hand(std::size_t offset) { return offsetof(HandRow, t) + offset; }
-constexpr std::size_t in_order(std::size_t offset) { return offsetof(MailTopic, order) + offset; }
+constexpr std::size_t in_order(std::size_t offset) { return offsetof(MailboxTopic, order) + offset; }
 constexpr std::size_t in_said(std::size_t offset) { return offsetof(ReportTopic, said) + offset; }
 
 static_assert(offsetof(HandTopic, quat_dev_tool_xyzw) == offsetof(HandTopic, pos_dev_m) + 24);
@@ -40,15 +40,16 @@ static_assert(offsetof(ServoOrder, quat_model_body_xyzw) == offsetof(ServoOrder,
 
 constexpr std::array kCycle{
     TACT_COLUMN(CycleTopic, step,
-                "cycles so far, dry ones too; from 1; joins /cycles, /hand0, /hand1, /mail, /reports"),
+                "cycles so far, dry ones too; from 1; joins /cycles, /hand0, /hand1, /mailbox, /reports"),
     TACT_COLUMN(CycleTopic, cycle, "of the loop, from 1; dry ones before it count for themselves"),
-    TACT_COLUMN(CycleTopic, clock_ns, "the servo's looks at the monotonic clock"),
-    TACT_COLUMN(CycleTopic, now_ns, "the look that the cycle goes by"),
+    TACT_COLUMN(CycleTopic, clock_ns, "the servo's readings of the monotonic clock"),
+    TACT_COLUMN(CycleTopic, now_ns, "the reading that the cycle uses"),
     TACT_COLUMN(CycleTopic, lateness_ns, "of its beginning"),
     TACT_COLUMN(CycleTopic, cost_ns, "of the whole cycle"),
     TACT_COLUMN(CycleTopic, model_ns, "of the force models' steps"),
     TACT_COLUMN(CycleTopic, level, "of the haptic path, 0 to 1"),
-    TACT_COLUMN(CycleTopic, share, "of the level's work that might be done anew, 0 to 1"),
+    Column{"work_fraction", Number::f32, offsetof(CycleTopic, work_fraction), 1,
+           "of the level's work that could be recomputed, 0 to 1", "share"},
     TACT_COLUMN(CycleTopic, lines_taken_at_ns, "safety lines, where flags has 2"),
     TACT_COLUMN(CycleTopic, lines_sequence, ""),
     TACT_COLUMN(CycleTopic, lines_trips, ""),
@@ -59,7 +60,8 @@ constexpr std::array kCycle{
     TACT_COLUMN(CycleTopic, run_state, "0 off, 1 ready, 2 armed, 3 active, 4 fault"),
     TACT_COLUMN(CycleTopic, run_reason, "of a fault"),
     TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety lines were looked at"),
-    TACT_COLUMN(CycleTopic, looks, "how many of clock_ns there are"),
+    Column{"timestamps", Number::u8, offsetof(CycleTopic, timestamps), 1, "number of values in clock_ns",
+           "looks"},
 };
 
 constexpr std::array kHand{
@@ -82,8 +84,8 @@ constexpr std::array kHand{
            "bound of the force's distance from the exact one"},
     Column{"items", Number::u32, in_hand(offsetof(HandTopic, items)), 1, "points, blocks or moves felt"},
     Column{"buttons", Number::u32, in_hand(offsetof(HandTopic, buttons)), 1, "1: clutch; 2: drives the tool"},
-    Column{"deadline_look", Number::u32, in_hand(offsetof(HandTopic, deadline_look)), 1,
-           "the look at the step's deadline that found it passed; 0: none did"},
+    Column{"deadline_check", Number::u32, in_hand(offsetof(HandTopic, deadline_check)), 1,
+           "number of the check of the step's deadline that found it passed; 0: none did", "deadline_look"},
     Column{"read_status", Number::u8, in_hand(offsetof(HandTopic, read_status)), 1,
            "0 ok, 1 stale, 2 lost, 3 fault"},
     Column{"write_status", Number::u8, in_hand(offsetof(HandTopic, write_status)), 1, "as read_status"},
@@ -97,9 +99,9 @@ constexpr std::array kHand{
            "1: a wall of the workspace pushes back"},
 };
 
-constexpr std::array kMail{
-    TACT_COLUMN(MailTopic, step, "in which the servo took it"),
-    TACT_COLUMN(MailTopic, kind,
+constexpr std::array kMailbox{
+    TACT_COLUMN(MailboxTopic, step, "in which the servo took it"),
+    TACT_COLUMN(MailboxTopic, kind,
                 "1 order, 2 model taken, 3 build refused, 4 stop, 5 drops of the supervisor"),
     Column{"sequence", Number::u64, in_order(offsetof(ServoOrder, sequence)), 1, "of the command"},
     Column{"value", Number::f64, in_order(offsetof(ServoOrder, value)), 1, ""},
@@ -110,9 +112,10 @@ constexpr std::array kMail{
            "of the body: m, quaternion x y z w"},
 };
 
-#define TACT_SAID(member)                                                                                    \
-    Column {                                                                                                 \
-#member, number_of < decltype(HouseReport::member)>(), in_said(offsetof(HouseReport, member)), 1, "" \
+#define TACT_SAID(member)                                             \
+    Column {                                                          \
+#member, number_of < decltype(HousekeepingReport::member)>(), \
+            in_said(offsetof(HousekeepingReport, member)), 1, ""      \
     }
 constexpr std::array kReport{
     TACT_COLUMN(ReportTopic, step, "in which the servo took it"),
@@ -186,7 +189,7 @@ constexpr std::array kBody{
 
 constexpr std::array kDrop{
     TACT_COLUMN(DropRow, noticed_at_ns, "monotonic clock"),
-    TACT_COLUMN(DropRow, ring, "0 cycles, 1 hand 0, 2 hand 1, 3 mail, 4 reports, 5 events"),
+    TACT_COLUMN(DropRow, ring, "0 cycles, 1 hand 0, 2 hand 1, 3 mailbox, 4 reports, 5 events"),
     TACT_COLUMN(DropRow, records, "lost, as the recorder was too slow"),
 };
 #undef TACT_COLUMN
@@ -195,7 +198,7 @@ constexpr std::array kDrop{
 
 std::span<const Column> cycle_columns() { return kCycle; }
 std::span<const Column> hand_columns() { return kHand; }
-std::span<const Column> mail_columns() { return kMail; }
+std::span<const Column> mailbox_columns() { return kMailbox; }
 std::span<const Column> report_columns() { return kReport; }
 std::span<const Column> event_columns() { return kEvent; }
 std::span<const Column> levels_columns() { return kLevels; }

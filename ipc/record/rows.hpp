@@ -51,7 +51,7 @@ struct BodyRow {
     std::uint16_t structure, flags;
 };
 
-enum class RecordRing : std::uint32_t { cycles, hand0, hand1, mail, reports, events };
+enum class RecordRing : std::uint32_t { cycles, hand0, hand1, mailbox, reports, events };
 
 // What the recorder was too slow for: never silently.
 struct DropRow {
@@ -64,7 +64,7 @@ struct DropRow {
 // group: its place in the file; hand: "/hand0" or "/hand1".
 [[nodiscard]] std::span<const Column> cycle_columns();
 [[nodiscard]] std::span<const Column> hand_columns();
-[[nodiscard]] std::span<const Column> mail_columns();
+[[nodiscard]] std::span<const Column> mailbox_columns();
 [[nodiscard]] std::span<const Column> report_columns();
 [[nodiscard]] std::span<const Column> event_columns();
 [[nodiscard]] std::span<const Column> levels_columns();
@@ -74,12 +74,18 @@ struct DropRow {
 
 inline constexpr const char* kCyclesGroup = "/cycles";
 inline constexpr std::array kHandGroups{"/hand0", "/hand1"};
-inline constexpr const char* kMailGroup = "/mail";
+inline constexpr const char* kMailboxGroup = "/mailbox";
+inline constexpr const char* kFormerMailboxGroup = "/mail";  // before 2026-11-25
 inline constexpr const char* kReportsGroup = "/reports";
 inline constexpr const char* kEventsGroup = "/events";
 inline constexpr const char* kLevelsGroup = "/levels";
 inline constexpr const char* kHealthGroup = "/health";
 inline constexpr const char* kBodiesGroup = "/bodies";
 inline constexpr const char* kDropsGroup = "/drops";
+
+// The group of a file that holds the mailbox, under its present or its former name.
+[[nodiscard]] inline const char* mailbox_group(Hdf5Id file) {
+    return Hdf5Table::exists(file, kMailboxGroup) ? kMailboxGroup : kFormerMailboxGroup;
+}
 
 }  // namespace tact

@@ -74,9 +74,9 @@ FileDescriptor take_lock(const std::string& session, const std::string& path) {
 FileDescriptor listen_at(const std::string& session, const std::string& path,
                          std::optional<std::uint32_t> group) {
     const std::string attempt = "open the socket of session " + session;
-    const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own on a local file system";
+    const std::string fix = "set TACT_RUNTIME_DIR to a folder of your own on a local file system";
     if (unlink(path.c_str()) != 0 && errno != ENOENT)  // of a controller that died: the lock says so
-        throw StartupError(attempt, "remove " + path + ": " + last_error(), mend);
+        throw StartupError(attempt, "remove " + path + ": " + last_error(), fix);
     FileDescriptor fd(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -84,7 +84,7 @@ FileDescriptor listen_at(const std::string& session, const std::string& path,
     if (!fd.valid() || bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
         (group && chown(path.c_str(), static_cast<uid_t>(-1), *group) != 0) ||
         chmod(path.c_str(), group ? 0660 : 0600) != 0 || listen(fd.get(), kClientsMax) != 0)
-        throw StartupError(attempt, path + ": " + last_error(), mend);
+        throw StartupError(attempt, path + ": " + last_error(), fix);
     return fd;
 }
 

@@ -57,16 +57,16 @@ FileDescriptor::~FileDescriptor() {
 
 RegionMemory RegionMemory::create(const RegionIdentity& identity) {
     const std::string attempt = std::string("create region ") + identity.name;
-    const std::string mend = "free memory, or raise the limits of this process (ulimit -a)";
+    const std::string fix = "free memory, or raise the limits of this process (ulimit -a)";
     const std::uint64_t bytes = kRegionHeaderBytes + identity.bytes;
     RegionMemory m;
     m.fd_ = FileDescriptor(open_memory(identity.name));
-    if (!m.fd_.valid()) throw StartupError(attempt, "memfd_create: " + last_error(), mend);
+    if (!m.fd_.valid()) throw StartupError(attempt, "memfd_create: " + last_error(), fix);
     if (ftruncate(m.fd_.get(), static_cast<off_t>(bytes)) != 0)
-        throw StartupError(attempt, "no " + std::to_string(bytes) + " bytes: " + last_error(), mend);
+        throw StartupError(attempt, "no " + std::to_string(bytes) + " bytes: " + last_error(), fix);
     void* const base =
         mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, m.fd_.get(), 0);
-    if (base == MAP_FAILED) throw StartupError(attempt, "mmap: " + last_error(), mend);
+    if (base == MAP_FAILED) throw StartupError(attempt, "mmap: " + last_error(), fix);
     m.base_ = base;
     m.bytes_ = bytes;
     if (fcntl(m.fd_.get(), F_ADD_SEALS, kSealsWanted) != 0)

@@ -78,15 +78,15 @@ std::optional<std::uint32_t> session_group() {
 std::string session_socket_path(const std::string& session) { return session_paths(session).socket; }
 
 void make_runtime_folder(const std::string& folder, std::optional<std::uint32_t> group) {
-    const std::string mend = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
+    const std::string fix = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
     const bool made = mkdir(folder.c_str(), 0700) == 0;
-    if (!made && errno != EEXIST) throw StartupError("make folder " + folder, last_error(), mend);
+    if (!made && errno != EEXIST) throw StartupError("make folder " + folder, last_error(), fix);
     if (made && group &&
         (chown(folder.c_str(), static_cast<uid_t>(-1), *group) != 0 || chmod(folder.c_str(), 0750) != 0))
         throw StartupError("give folder " + folder + " to group " + std::to_string(*group), last_error(),
                            "run as a member of that group, or unset TACT_RUNTIME_GROUP");
     const std::string why = distrust_runtime_folder(folder);
-    if (!why.empty()) throw StartupError("use folder " + folder, why, mend);
+    if (!why.empty()) throw StartupError("use folder " + folder, why, fix);
 }
 
 std::string distrust_runtime_folder(const std::string& folder, std::optional<std::uint32_t> group) {

@@ -109,11 +109,11 @@ std::string kernel_identity() {
 StationStatement describe_station_report(const StationReport& report, std::int64_t now_s,
                                          const std::string& machine, const std::string& kernel) {
     StationStatement s;
-    char figures[96];
-    static_cast<void>(std::snprintf(figures, sizeof figures, "lateness p99.9 %.1f us, max %.1f us",
+    char metrics[96];
+    static_cast<void>(std::snprintf(metrics, sizeof metrics, "lateness p99.9 %.1f us, max %.1f us",
                                     report.p999_us, report.max_us));
     s.text =
-        "station report: " + report.status + ", " + age_text(now_s - report.verified_at_s) + ", " + figures;
+        "station report: " + report.status + ", " + age_text(now_s - report.verified_at_s) + ", " + metrics;
     if (report.machine != machine) {
         s.text += "; it is of another machine";
     } else if (report.kernel != kernel) {

@@ -2,7 +2,7 @@
 //
 // Writer    tact-rt, on the servo thread: densities of a brick first, then its revision, one higher (release).
 // Content   BoneRegionHead, one revision a brick, the densities brick by brick; each part at a multiple of 64 bytes.
-//           How voxels lie in bricks: ipc/assets/bone_bricks.
+//           How voxels lie in bricks: ipc/scene/bone/bone_bricks.
 // Reader    looks at the revisions, then copies. A brick that is written meanwhile is copied half old, half new, and its
 //           revision has moved again at the next look: nothing is missed.
 // Hostile   the head is copied once, when mapped, and judged; counts must fit the sealed size. Densities and revisions

@@ -16,9 +16,9 @@ namespace tact {
 inline constexpr std::size_t kDrillHands = 2;  // as kHandsMax
 
 enum class DrillKind : std::uint8_t {
-    none,    // this hand holds no tool, or there is no such hand: the rest of it is zero
-    burr,    // turns, cuts and sprays
-    sucker,  // a tube that is felt: its tip is a ball of its radius, as its shaft
+    none,          // this hand holds no tool, or there is no such hand: the rest of it is zero
+    burr,          // turns, cuts and sprays
+    suction_tube,  // a tube that is felt: its tip is a ball of its radius, as its shaft
 };
 enum class DrillShape : std::uint8_t { sphere, cylinder, cone };  // of a burr's head
 

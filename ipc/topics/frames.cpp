@@ -15,7 +15,7 @@ constexpr const char* kVisualPathText[kVisualPaths] = {kMeshPath, kVolumePath, k
 
 bool time(float s) noexcept { return s >= 0.0F && s < 1e6F; }  // NaN is in no range
 bool rising(float a, float b) noexcept { return time(a) && time(b) && a <= b; }
-bool known(const PassFigures& p) noexcept {
+bool known(const PassMetrics& p) noexcept {
     const bool drawn = p.drawn_p50_s < 0.0F ? p.drawn_p99_s < 0.0F && std::isfinite(p.drawn_p99_s) &&
                                                   std::isfinite(p.drawn_p50_s)
                                             : rising(p.drawn_p50_s, p.drawn_p99_s);
@@ -33,7 +33,7 @@ const char* visual_path_text(std::size_t path) noexcept {
     return path < kVisualPaths ? kVisualPathText[path] : "";
 }
 
-bool plausible(const FrameFigures& f) noexcept {
+bool plausible(const FrameMetrics& f) noexcept {
     constexpr std::uint64_t kMostFrames = 1ULL << 48U, kMostBytes = 1ULL << 48U;
     return f.late <= f.frames && f.frames < kMostFrames && f.due_s >= 0.0 && f.due_s < 1e6 &&
            rising(f.p50_s, f.p99_s) && rising(f.p99_s, f.most_s) && rising(f.run_p50_s, f.run_p99_s) &&

@@ -41,12 +41,12 @@ inline constexpr std::size_t kVisualPaths = 3;
 
 inline constexpr std::uint32_t kFinishEvery = 128;
 
-struct PassFigures {
+struct PassMetrics {
     float work_p50_s, work_p99_s;    // of the last frames
     float drawn_p50_s, drawn_p99_s;  // below 0: not known
 };
 
-struct FrameFigures {
+struct FrameMetrics {
     std::uint64_t frames, late;  // since its start
     double due_s;                // 0: no frame is late
     // Start to start.
@@ -55,28 +55,28 @@ struct FrameFigures {
     std::uint32_t window;                    // how many the last ones are
     std::uint32_t gl_objects;                // that it keeps: buffers, textures, images
     std::uint64_t heap_bytes, resident_bytes;
-    PassFigures pass[kPasses];
-    PassFigures path[kVisualPaths];  // what each path costs, of its passes together
+    PassMetrics pass[kPasses];
+    PassMetrics path[kVisualPaths];  // what each path costs, of its passes together
 };
-static_assert(std::is_trivially_copyable_v<FrameFigures> && sizeof(FrameFigures) == 312);
+static_assert(std::is_trivially_copyable_v<FrameMetrics> && sizeof(FrameMetrics) == 312);
 
 struct alignas(64) FramesTopic {
     static constexpr TopicInfo kInfo{.name = "frames", .version = 2, .writer = Writer::gui};
     std::int64_t taken_at_ns;
-    FrameFigures figures;
+    FrameMetrics metrics;
     std::uint8_t reserved[64];  // zero
 };
 static_assert(std::is_trivially_copyable_v<FramesTopic> && sizeof(FramesTopic) == 384);
 
-struct alignas(64) PictureTopic {
+struct alignas(64) DisplayTopic {
     static constexpr TopicInfo kInfo{.name = "picture", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
-    FrameFigures figures;
+    FrameMetrics metrics;
     std::uint8_t reserved[64];  // zero
 };
-static_assert(std::is_trivially_copyable_v<PictureTopic> && sizeof(PictureTopic) == 384);
+static_assert(std::is_trivially_copyable_v<DisplayTopic> && sizeof(DisplayTopic) == 384);
 
 // Numbers that can be: finite, in order, not beyond any run. Both sides ask before they use them.
-[[nodiscard]] bool plausible(const FrameFigures& figures) noexcept;
+[[nodiscard]] bool plausible(const FrameMetrics& metrics) noexcept;
 
 }  // namespace tact

@@ -7,10 +7,10 @@
 
 namespace tact {
 
-[[nodiscard]] inline nlohmann::json frames_json(const FrameFigures& f) {
+[[nodiscard]] inline nlohmann::json frames_json(const FrameMetrics& f) {
     using nlohmann::json;
     const auto ms = [](double s) { return s >= 0.0 ? json(1e3 * s) : json(nullptr); };
-    const auto pass = [&ms](const PassFigures& p) {
+    const auto pass = [&ms](const PassMetrics& p) {
         return json{{"work_ms", {{"p50", ms(p.work_p50_s)}, {"p99", ms(p.work_p99_s)}}},
                     {"drawn_ms", {{"p50", ms(p.drawn_p50_s)}, {"p99", ms(p.drawn_p99_s)}}}};
     };

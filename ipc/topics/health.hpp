@@ -55,7 +55,7 @@ struct alignas(64) HealthTopic {
     std::uint8_t device_state;  // DeviceState
     // Of the model's work, what the updates did anew: mean and least of the last tenth of a second. Below 1 a
     // freely running loop kept its rate by using older partial sums.
-    float fresh_mean, fresh_least;
+    float recomputed_fraction_mean, recomputed_fraction_least;
     float rested;  // of that time; it left this to others while it was ahead of its goal
     // From the encoders to the motors, of the last second, the slower hand; 0: no device says.
     float stiffness_n_m_max;  // that walls and model may have at this delay

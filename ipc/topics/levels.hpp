@@ -36,14 +36,14 @@ struct alignas(64) LevelsTopic {
     double rate_hz;         // what the law last saw
     char law[kLawNameMax];  // "elastic", "sensitus", "fixed"; ends with 0
     std::uint32_t count;
-    float picture_goal_hz;      // frames a second; 0: none
+    float display_goal_hz;      // frames a second; 0: none
     std::uint32_t reserved[2];  // zero
     PathLevel path[kPathsMax];
 };
 static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);
 
 // Places in LevelsTopic::path that are always theirs.
-inline constexpr std::size_t kPicturePathIndex = 0, kForcePathIndex = 1;
+inline constexpr std::size_t kDisplayPathIndex = 0, kForcePathIndex = 1;
 // And where the scene is of bone.
 inline constexpr std::size_t kParticlesPathIndex = 2;
 

@@ -27,7 +27,7 @@ struct ServoOrder {
 };
 
 // What the servo is told of the visual process and of itself.
-struct HouseReport {
+struct HousekeepingReport {
     std::int64_t gui_heartbeat_ns;  // when the GUI last reported; -1: never
     std::uint64_t gui_generation;
     std::uint64_t bad_input;
@@ -53,22 +53,22 @@ enum CycleFlag : std::uint8_t {
 
 struct CycleTopic {
     static constexpr TopicInfo kInfo{.name = "cycle", .version = 1, .writer = Writer::rt};
-    static constexpr std::size_t kLooksMax = 5;
+    static constexpr std::size_t kTimestampsMax = 5;
     std::uint64_t step;
-    std::uint64_t cycle;               // of the loop, from 1; of a dry one as counted then
-    std::int64_t clock_ns[kLooksMax];  // what the clock said, each time that the servo looked
-    std::int64_t now_ns;               // the one that the cycle goes by
-    std::int64_t lateness_ns;          // of its beginning
-    std::int64_t cost_ns;              // whole cycle
-    std::int64_t model_ns;             // the force models' steps
-    float level;                       // of the haptic path
-    float share;                       // of the level's work that may be done anew
-    std::int64_t lines_taken_at_ns;    // safety lines as read, with kCycleLines
+    std::uint64_t cycle;                    // of the loop, from 1; of a dry one as counted then
+    std::int64_t clock_ns[kTimestampsMax];  // what the clock said, each time that the servo looked
+    std::int64_t now_ns;                    // the one that the cycle goes by
+    std::int64_t lateness_ns;               // of its beginning
+    std::int64_t cost_ns;                   // whole cycle
+    std::int64_t model_ns;                  // the force models' steps
+    float level;                            // of the haptic path
+    float work_fraction;                    // of the level's work that may be done anew
+    std::int64_t lines_taken_at_ns;         // safety lines as read, with kCycleLines
     std::uint64_t lines_sequence, lines_trips;
     std::uint8_t lines_state, lines_cause, lines_inputs, lines_outputs;
     std::uint8_t run_state, run_reason;  // RunState, RunReason, at the end of the cycle
     std::uint8_t flags;                  // CycleFlag
-    std::uint8_t looks;                  // how many of clock_ns there are
+    std::uint8_t timestamps;             // how many of clock_ns there are
 };
 static_assert(std::is_trivially_copyable_v<CycleTopic> && sizeof(CycleTopic) == 128);
 
@@ -93,7 +93,7 @@ struct HandTopic {
     std::uint32_t items;  // felt
     std::uint32_t buttons;
     std::uint32_t
-        deadline_look;  // the model's look at its deadline that found it passed, from 1; 0: none did
+        deadline_check;  // the model's look at its deadline that found it passed, from 1; 0: none did
     std::uint8_t read_status, write_status;  // IoStatus
     std::uint8_t hand_present, device_state, notice;
     std::uint8_t step_status;  // StepStatus
@@ -103,7 +103,7 @@ struct HandTopic {
 static_assert(std::is_trivially_copyable_v<HandTopic> && sizeof(HandTopic) == 256);
 static_assert(offsetof(HandTopic, force_world_n) == 136);
 
-enum class MailKind : std::uint32_t {
+enum class MailboxKind : std::uint32_t {
     none,
     order,
     model_taken,    // a model that was built aside
@@ -113,19 +113,19 @@ enum class MailKind : std::uint32_t {
 };
 
 // What the servo took from others, in the step in which it did.
-struct MailTopic {
+struct MailboxTopic {
     static constexpr TopicInfo kInfo{.name = "mail", .version = 1, .writer = Writer::rt};
     std::uint64_t step;
-    std::uint32_t kind;      // MailKind
+    std::uint32_t kind;      // MailboxKind
     std::uint32_t reserved;  // zero
     ServoOrder order;
 };
-static_assert(std::is_trivially_copyable_v<MailTopic> && sizeof(MailTopic) == 104);
+static_assert(std::is_trivially_copyable_v<MailboxTopic> && sizeof(MailboxTopic) == 104);
 
 struct ReportTopic {
     static constexpr TopicInfo kInfo{.name = "report", .version = 1, .writer = Writer::rt};
     std::uint64_t step;
-    HouseReport said;
+    HousekeepingReport said;
 };
 static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) == 120);
 

@@ -39,7 +39,7 @@ struct RtRegion {
     Latest<HealthTopic> health;
     Latest<LatenessTopic> lateness;
     Latest<LevelsTopic> levels;
-    Latest<PictureTopic> picture;
+    Latest<DisplayTopic> picture;
     Latest<RecordersTopic> recorders;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
@@ -47,7 +47,7 @@ struct RtRegion {
     Latest<StartTopic> start;
     Ring<CycleTopic, 32768> cycles;
     Ring<HandTopic, 32768> hand[kHandsMax];
-    Ring<MailTopic, 1024> mail;
+    Ring<MailboxTopic, 1024> mailbox;
     Ring<ReportTopic, 4096> reports;
     RunText run_text;      // written before ready
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
@@ -55,8 +55,8 @@ struct RtRegion {
     std::uint64_t reserved[7];  // zero
     using Topics =
         TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic, DevicesTopic,
-                  HealthTopic, LatenessTopic, LevelsTopic, PictureTopic, RecordersTopic, EventTopic,
-                  TraceTopic, StartTopic, CycleTopic, HandTopic, MailTopic, ReportTopic, RunText>;
+                  HealthTopic, LatenessTopic, LevelsTopic, DisplayTopic, RecordersTopic, EventTopic,
+                  TraceTopic, StartTopic, CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {

@@ -33,7 +33,7 @@ std::string late_text(double us) {
 }
 
 std::string path_text(double index) {
-    if (index == static_cast<double>(kPicturePathIndex)) return "picture";
+    if (index == static_cast<double>(kDisplayPathIndex)) return "picture";
     if (index == static_cast<double>(kForcePathIndex)) return "force";
     if (index == static_cast<double>(kParticlesPathIndex)) return "particles";
     return "path " + number(index);

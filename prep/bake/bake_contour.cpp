@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <string>
 
-#include "ipc/assets/contour_mesh.hpp"
-#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/density/contour_mesh.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 
 namespace tact {

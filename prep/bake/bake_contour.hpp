@@ -1,10 +1,10 @@
-// The surface of a baked scene's map at another level, as a file of its own (ipc/assets/contour_mesh.hpp).
+// The surface of a baked scene's map at another level, as a file of its own (ipc/scene/density/contour_mesh.hpp).
 //
 // Fails by  StartupError: the scene has no map, or no surface lies at the level. Cancelled from progress.
 #pragma once
 
-#include "ipc/assets/scene_file.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 
 namespace tact {
 

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <cstring>
 
-#include "ipc/assets/docking_gain.hpp"
-#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/docking_gain.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/codebook/best_codebook.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_statistics.hpp"
@@ -76,7 +76,7 @@ void check_input(const DockingInput& input) {
                            "join some of them into one file, or give fewer");
     }
     check_resolution(input.resolution_m, "--resolution-a 10");
-    check_resolution(input.felt_resolution_m, "--felt-resolution-a 12");
+    check_resolution(input.force_map_resolution_m, "--force-map-resolution-a 12");
 }
 
 // The hand reaches the map and some way around it; a structure that starts beyond cannot be fetched.
@@ -233,17 +233,17 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
                     "above the contour",
                     i, body.density_home_sigma, 100.0 * body.inside_home));
     }
-    DensityGrid felt_grid;
+    DensityGrid force_map_grid;
     std::optional<DensityMap> felt;
-    if (input.felt_resolution_m) {
-        felt_grid =
-            low_pass(grid, statistics.background, *input.felt_resolution_m, part(progress, 0.9, 0.92));
+    if (input.force_map_resolution_m) {
+        force_map_grid =
+            low_pass(grid, statistics.background, *input.force_map_resolution_m, part(progress, 0.9, 0.92));
         say(
             printed("felt map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background of "
                     "the map as "
                     "it is",
-                    *input.felt_resolution_m / kAngstromM));
-        felt.emplace(felt_grid, statistics.background, statistics.sigma);
+                    *input.force_map_resolution_m / kAngstromM));
+        felt.emplace(force_map_grid, statistics.background, statistics.sigma);
     } else {
         say("felt map: as it is");
     }
@@ -257,7 +257,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     report(progress, 0.98, "packing the scene");
     write_meta(out, meta, note);
     write_grid(out, grid);
-    if (input.felt_resolution_m) write_grid(out, felt_grid, kFeltGrid);
+    if (input.force_map_resolution_m) write_grid(out, force_map_grid, kForceMapGrid);
     write_mesh(out, 0, mesh);
     for (std::uint32_t i = 0; i < meta.body_count; ++i) {
         write_structure(out, i, input.structures[i]);

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact {
 
@@ -26,7 +26,7 @@ struct DockingInput {
     std::optional<double> contour;       // in the map's unit; chosen where absent
     std::optional<double> resolution_m;  // taken as four voxels where absent
     std::optional<double>
-        felt_resolution_m;  // the hand feels the map smoothed to this; as it is where absent
+        force_map_resolution_m;  // the hand feels the map smoothed to this; as it is where absent
     std::uint32_t vertices_max = 1'000'000;
 };
 

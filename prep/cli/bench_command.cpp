@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "ipc/assets/isosurface.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/relax.hpp"
 #include "prep/synthetic/rough_torus.hpp"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "prep/export/export_bodies.hpp"
 #include "prep/input/read_file.hpp"
 

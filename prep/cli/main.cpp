@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 struct BakeOptions {
     std::string map, scene, source;
     std::vector<std::string> models;
-    std::optional<double> contour, resolution_a, felt_resolution_a;
+    std::optional<double> contour, resolution_a, force_map_resolution_a;
     double level = 0.0;
     std::uint32_t vertices_max = 1'000'000;
     pid_t ends_with = 0;
@@ -118,7 +118,7 @@ void bake(const BakeOptions& o, bool demo) {
                       {"made by: " + program_version("tact-prep"), "made at: " + now_utc()});
     if (o.contour) input.contour = o.contour;
     if (o.resolution_a) input.resolution_m = *o.resolution_a * kAngstromM;
-    if (o.felt_resolution_a) input.felt_resolution_m = *o.felt_resolution_a * kAngstromM;
+    if (o.force_map_resolution_a) input.force_map_resolution_m = *o.force_map_resolution_a * kAngstromM;
     input.vertices_max = o.vertices_max;
     SceneWriter out;
     const BakedDocking baked = bake_docking(input, out, progress);
@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
         sub->add_option("--resolution-a", o.resolution_a,
                         "resolution of the map in ångström; four voxels if absent");
         sub->add_option(
-            "--felt-resolution-a", o.felt_resolution_a,
+            "--force-map-resolution-a", o.force_map_resolution_a,
             "let the hand feel the map smoothed to this resolution in ångström, which draws a structure "
             "from farther away; as it is if absent");
         sub->add_option("--vertices-max", o.vertices_max, "most vertices of the surface; 0: all")

@@ -4,14 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/distance_field.hpp"
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
-#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 
 namespace tact {
 namespace {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "ipc/assets/scene_file.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 
 namespace tact {
 

@@ -9,8 +9,8 @@
 
 #include <cstdint>
 
-#include "ipc/assets/structure.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

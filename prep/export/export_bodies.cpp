@@ -9,9 +9,9 @@
 #include <optional>
 #include <sstream>
 
-#include "ipc/assets/fit_metrics.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
 #include "prep/export/write_structure_file.hpp"
 #include "prep/input/read_file.hpp"
 

@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "ipc/assets/scene_file.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "prep/export/poses_file.hpp"
 
 namespace tact {

@@ -41,9 +41,9 @@ std::uint32_t whole(const json& body, const char* key, std::uint32_t most, const
 
 std::vector<PlacedBody> read_poses(std::string_view text, const std::string& name, std::uint32_t structures) {
     const std::string attempt = "reading the places of bodies from " + name;
-    const char* const mend = "take it from a run: bodies in run.json, or save again";
+    const char* const fix = "take it from a run: bodies in run.json, or save again";
     const json all = json::parse(text.begin(), text.end(), nullptr, false);
-    const auto refuse = [&](const std::string& why) { throw StartupError(attempt, why, mend); };
+    const auto refuse = [&](const std::string& why) { throw StartupError(attempt, why, fix); };
     if (all.is_discarded()) refuse("it is not JSON");
     const auto list = all.is_object() ? all.find("bodies") : all.end();
     if (!all.is_object() || list == all.end() || !list->is_array()) refuse("it has no list \"bodies\"");

@@ -15,8 +15,8 @@ namespace tact {
 
 InputBytes::InputBytes(const std::filesystem::path& path, std::uint64_t bytes_max,
                        std::uint64_t unpacked_max) {
-    const auto fail = [&](const std::string& why, const char* mend) {
-        throw StartupError("read " + path.string(), why, mend);
+    const auto fail = [&](const std::string& why, const char* fix) {
+        throw StartupError("read " + path.string(), why, fix);
     };
     struct Handle {
         int fd;

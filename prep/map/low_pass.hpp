@@ -6,8 +6,8 @@
 // Thread   slow (a second for 512^3); never on the servo thread. Allocates one copy of the map.
 #pragma once
 
-#include "ipc/assets/density_map.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/density/density_map.hpp"
 
 namespace tact {
 

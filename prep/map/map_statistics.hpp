@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "ipc/assets/density_map.hpp"
+#include "ipc/scene/density/density_map.hpp"
 
 namespace tact {
 

@@ -60,8 +60,8 @@ bool makes_sense(const Header& h) {
 
 struct Reader {
     const std::string& name;
-    [[noreturn]] void fail(const std::string& why, const std::string& mend) const {
-        throw StartupError("read map " + name, why, mend);
+    [[noreturn]] void fail(const std::string& why, const std::string& fix) const {
+        throw StartupError("read map " + name, why, fix);
     }
 };
 

@@ -43,8 +43,8 @@ public:
         }
         return value;
     }
-    [[noreturn]] void fail(const std::string& why, const std::string& mend) const {
-        throw StartupError("read map " + name_, "line " + std::to_string(line_) + ": " + why, mend);
+    [[noreturn]] void fail(const std::string& why, const std::string& fix) const {
+        throw StartupError("read map " + name_, "line " + std::to_string(line_) + ": " + why, fix);
     }
 
 private:

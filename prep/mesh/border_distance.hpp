@@ -4,7 +4,7 @@
 // Every edge is compared with every edge: for borders of some thousand edges.
 #pragma once
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

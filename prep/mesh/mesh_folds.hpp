@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

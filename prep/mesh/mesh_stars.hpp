@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

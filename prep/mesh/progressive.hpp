@@ -6,7 +6,7 @@
 // Fails by  StartupError; a mesh without triangles is refused.
 #pragma once
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "prep/mesh/simplify.hpp"
 
 namespace tact {

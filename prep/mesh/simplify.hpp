@@ -20,8 +20,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -19,9 +19,8 @@ struct MeshSource {
     const Progress& progress;
     const AnnounceMesh& announce;
 
-    [[noreturn]] void refuse(const std::string& why,
-                             const std::string& mend = "export the mesh again") const {
-        throw StartupError("read mesh " + name, why, mend);
+    [[noreturn]] void refuse(const std::string& why, const std::string& fix = "export the mesh again") const {
+        throw StartupError("read mesh " + name, why, fix);
     }
     void at(std::size_t place) const {
         report(progress, static_cast<double>(place) / static_cast<double>(bytes.size() + 1),

@@ -18,8 +18,8 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

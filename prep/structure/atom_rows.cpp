@@ -18,7 +18,7 @@ constexpr double kFarthestA = 1e5;
 constexpr std::size_t kRowsMax = 20'000'000;
 constexpr double kMassUnknownU = 12.0;  // an atom of unknown element counts as carbon
 
-constexpr char kMendFile[] = "repair the file, or fetch it again from its source";
+constexpr char kFixFile[] = "repair the file, or fetch it again from its source";
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -49,10 +49,10 @@ double coordinate(std::string_view text, const char* axis, const std::string& na
     const std::optional<double> value = number(trimmed(text));
     const std::string shown = std::string(axis) + " '" + printable(trimmed(text), 16) + "'";
     if (!value || !std::isfinite(*value))
-        throw StartupError("read structure " + name, where + ": " + shown + " is not a number", kMendFile);
+        throw StartupError("read structure " + name, where + ": " + shown + " is not a number", kFixFile);
     if (std::abs(*value) > kFarthestA) {
         throw StartupError("read structure " + name,
-                           where + ": " + shown + " is farther than 100000 ångström away", kMendFile);
+                           where + ": " + shown + " is farther than 100000 ångström away", kFixFile);
     }
     return *value;
 }
@@ -89,9 +89,9 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
         const std::string where = "line " + std::to_string(line_number);
         if (line.size() < 54)
             throw StartupError("read structure " + name,
-                               where + ": the atom ends before its coordinates (column 54)", kMendFile);
+                               where + ": the atom ends before its coordinates (column 54)", kFixFile);
         if (line.find('\0') != std::string_view::npos)
-            throw StartupError("read structure " + name, where + ": it holds zero bytes", kMendFile);
+            throw StartupError("read structure " + name, where + ": it holds zero bytes", kFixFile);
         coordinate(line.substr(30, 8), "x", name, where);
         coordinate(line.substr(38, 8), "y", name, where);
         coordinate(line.substr(46, 8), "z", name, where);
@@ -107,7 +107,7 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
     try {
         structure = gemmi::read_pdb_from_memory(atoms.data(), atoms.size(), name);
     } catch (const std::exception& error) {
-        throw StartupError("read structure " + name, printable(error.what(), 200), kMendFile);
+        throw StartupError("read structure " + name, printable(error.what(), 200), kFixFile);
     }
     if (structure.models.empty()) return rows;
     rows.reserve(rows_seen);
@@ -136,7 +136,7 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
     try {
         document = CifDocument::read(text, name);
     } catch (const std::exception& error) {
-        throw StartupError("read structure " + name, printable(error.what(), 200), kMendFile);
+        throw StartupError("read structure " + name, printable(error.what(), 200), kFixFile);
     }
     std::vector<AtomRow> rows;
     for (std::size_t block = 0; block < document->blocks(); ++block) {
@@ -190,7 +190,7 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
                     throw StartupError(
                         "read structure " + name,
                         where + ": residue number '" + printable(sequence, 16) + "' is not a number",
-                        kMendFile);
+                        kFixFile);
                 row.residue = static_cast<std::int32_t>(*value);
             }
             const std::string icode = text_of(insertion), altloc = text_of(alternate),

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ipc/assets/structure.hpp"
 #include "ipc/base/pose.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

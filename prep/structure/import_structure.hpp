@@ -2,7 +2,7 @@
 //
 // Kept     the first model; heavy atoms of polymers, ligands and ions. Dropped: hydrogens, waters, and of
 //          alternate locations all but the one with the highest occupancy (the first among equals).
-// Frame    see ipc/assets/structure.hpp: body frame about the centre of mass, metres.
+// Frame    see ipc/scene/density/structure.hpp: body frame about the centre of mass, metres.
 // Fails by StartupError naming the file, the line or row, the reason and the mend.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/surface/sample_tool.hpp"
 

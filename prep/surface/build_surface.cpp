@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "ipc/assets/hilbert.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/huge_pages.hpp"
+#include "ipc/scene/mesh/hilbert.hpp"
 
 namespace tact {
 namespace {
@@ -65,21 +65,21 @@ public:
 
 private:
     void check() const {
-        const char* const kMend = "export the mesh again";
-        if (mesh_.triangles() == 0) throw StartupError("build a surface", "it has no triangles", kMend);
+        const char* const kFix = "export the mesh again";
+        if (mesh_.triangles() == 0) throw StartupError("build a surface", "it has no triangles", kFix);
         if (mesh_.triangles() >= SurfaceNode::kFirst || mesh_.vertices() > SurfaceNode::kFirst)
             throw StartupError("build a surface", "it has more than 2^28 triangles or vertices",
                                "cut the mesh into parts");
         for (const float x : mesh_.position_m) {
             if (!(std::abs(x) <= 1e6F))
-                throw StartupError("build a surface", "a coordinate is " + std::to_string(x), kMend);
+                throw StartupError("build a surface", "a coordinate is " + std::to_string(x), kFix);
         }
         for (const std::uint32_t v : mesh_.triangle) {
             if (v >= mesh_.vertices())
                 throw StartupError("build a surface",
                                    "a triangle names vertex " + std::to_string(v) + " of " +
                                        std::to_string(mesh_.vertices()),
-                                   kMend);
+                                   kFix);
         }
     }
     void order() {

@@ -1,4 +1,4 @@
-// A triangle mesh becomes the surface that is touched: order, normals and tree (ipc/assets/surface_mesh.hpp).
+// A triangle mesh becomes the surface that is touched: order, normals and tree (ipc/scene/mesh/surface_mesh.hpp).
 //
 // Order     triangles by the place of their centres on a Hilbert curve, so that four in a row are a patch;
 //           vertices by first use, and those that no triangle uses are left out
@@ -9,9 +9,9 @@
 //           an index or number out of range; Cancelled from progress.
 #pragma once
 
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 
 namespace tact {
 

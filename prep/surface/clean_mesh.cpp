@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint32_t kNoVertex = UINT32_MAX;
 constexpr double kFlatArea = 1e-10;  // floats near 1 tell heights down to 1e-7 of a side
 
-[[noreturn]] void refuse_to_clean(const std::string& why, const char* mend) {
-    throw StartupError("clean a mesh", why, mend);
+[[noreturn]] void refuse_to_clean(const std::string& why, const char* fix) {
+    throw StartupError("clean a mesh", why, fix);
 }
 
 void check_mesh(const TriangleMesh& mesh) {

@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <string>
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 
 namespace tact {
 

@@ -54,11 +54,11 @@ std::span<const std::uint32_t> needs_of(std::uint32_t n, std::span<const ForestN
 // same: what may be split and what may merge follows from whole chains. What a longer look would find stays.
 std::vector<std::uint32_t> without_brought(std::span<ForestNode> node,
                                            const std::vector<std::uint32_t>& need) {
-    constexpr std::size_t kLooksMax = 64;
+    constexpr std::size_t kTimestampsMax = 64;
     std::vector<std::uint32_t> kept, first(node.size()), brought;
     std::uint32_t last = 0;  // number of the needs
     const auto bring = [&](std::uint32_t n) {
-        if (n == kNoForestNode || node[n].number > last || brought.size() == kLooksMax) return;
+        if (n == kNoForestNode || node[n].number > last || brought.size() == kTimestampsMax) return;
         if (std::find(brought.begin(), brought.end(), n) == brought.end()) brought.push_back(n);
     };
     const auto look_past = [&](std::uint32_t n) {

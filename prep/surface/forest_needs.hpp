@@ -1,4 +1,4 @@
-// Which nodes of a forest have to be split before each one is (ipc/assets/vertex_forest.hpp, "Needs").
+// Which nodes of a forest have to be split before each one is (ipc/scene/mesh/vertex_forest.hpp, "Needs").
 //
 // Places    leaf v of the mesh as it came is v, the node that merge s makes is leaves + s: places of nodes rise in the
 //           order of the merges, and lie above all leaves.
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/vertex_forest.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 
 namespace tact {
 

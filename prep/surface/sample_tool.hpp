@@ -13,9 +13,9 @@
 
 #include <cstdint>
 
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/touch_tool.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
 
 namespace tact {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
 
 namespace tact {
 

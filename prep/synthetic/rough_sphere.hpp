@@ -5,8 +5,8 @@
 // Unit       metres
 #pragma once
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/pose.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

@@ -2,7 +2,7 @@
 // speed.
 #pragma once
 
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact {
 

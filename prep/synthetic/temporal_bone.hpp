@@ -13,8 +13,8 @@
 
 #include <cstdint>
 
-#include "ipc/assets/bone_labels.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
 
 namespace tact {
 

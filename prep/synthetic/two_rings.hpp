@@ -2,7 +2,7 @@
 // measured.
 #pragma once
 
-#include "ipc/assets/density_map.hpp"
+#include "ipc/scene/density/density_map.hpp"
 
 namespace tact {
 

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/bone_bricks.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 
 namespace tact {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-#include "ipc/assets/bone_bricks.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 
 namespace tact {
 

@@ -56,9 +56,7 @@ DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::st
 }
 
 void check_pictures(const DicomGroup& g, const std::string& attempt) {
-    const auto fail = [&](const std::string& why, const char* mend) {
-        throw StartupError(attempt, why, mend);
-    };
+    const auto fail = [&](const std::string& why, const char* fix) { throw StartupError(attempt, why, fix); };
     for (const DicomSlice& s : g) {
         const std::string name = s.path.filename().string();
         if (s.frames > 1)

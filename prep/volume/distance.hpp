@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/distance_field.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
 
 namespace tact {
 

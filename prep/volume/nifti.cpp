@@ -59,8 +59,8 @@ double nifti_unit_mm(int code, double otherwise) {
 }  // namespace
 
 RawHeader nifti_header(std::string_view bytes, const std::string& attempt, double unit_mm) {
-    const auto fail = [&](const std::string& why, const char* mend = "export it again as NIfTI-1, one file") {
-        throw StartupError(attempt, why, mend);
+    const auto fail = [&](const std::string& why, const char* fix = "export it again as NIfTI-1, one file") {
+        throw StartupError(attempt, why, fix);
     };
     if (bytes.size() < 352)
         fail("it has " + std::to_string(bytes.size()) + " bytes, fewer than a header (352)");

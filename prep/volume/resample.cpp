@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <map>
 
-#include "ipc/assets/bone_volume.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
 
 namespace tact {
 namespace {
@@ -201,11 +201,11 @@ SamplePlan plan_samples(const Scan& scan, double voxel_mm, BoneFace face) {
     for (std::size_t a = 0; a < 3; ++a) count[a] = std::floor(extent[a] / plan.voxel_mm + 1e-6) + 1.0;
     const double longest = *std::max_element(extent.begin(), extent.end());
     const auto refuse = [&](const std::string& why) {
-        char mend[160];
-        std::snprintf(mend, sizeof mend,
+        char fix[160];
+        std::snprintf(fix, sizeof fix,
                       "give a larger --voxel-mm (%.2g gives 1024 voxels along the longest side), or --crop",
                       longest / 1023.0);
-        throw StartupError("resample the scan", why, mend);
+        throw StartupError("resample the scan", why, fix);
     };
     for (const double n : count)
         if (!(n <= kBoneEdgeMax))

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/bone_bricks.hpp"
 #include "ipc/base/progress.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 #include "prep/volume/scan.hpp"
 
 namespace tact {

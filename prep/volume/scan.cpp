@@ -49,9 +49,7 @@ void crop_scan(Scan& scan, const ScanCrop& crop) {
 }
 
 Scan scan_of(const ScanAxes& axes, const std::string& attempt, std::vector<std::uint32_t>& order) {
-    const auto fail = [&](const std::string& why, const char* mend) {
-        throw StartupError(attempt, why, mend);
-    };
+    const auto fail = [&](const std::string& why, const char* fix) { throw StartupError(attempt, why, fix); };
     std::uint64_t voxels = 1;
     for (std::size_t a = 0; a < 3; ++a) {
         const std::uint64_t n = axes.size[a];

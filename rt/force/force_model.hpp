@@ -125,6 +125,9 @@ struct ModelOrder {
     Pose T_model_body;
 };
 
+// Period of a model's slow update.
+inline constexpr Duration kSlowUpdatePeriod = std::chrono::milliseconds(4);
+
 class ForceModel {  // constructed off the servo thread; construction may throw, steps may not
 public:
     virtual ~ForceModel() = default;
@@ -136,12 +139,12 @@ public:
     // The largest stiffness that the hand can meet in it, N/m; 0: nobody knows.
     [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
     // True: tend() has something to do. Such a model stays until the run ends.
-    [[nodiscard]] virtual bool tended() const noexcept { return false; }
+    [[nodiscard]] virtual bool has_slow_update() const noexcept { return false; }
     // Slow half, own thread, tens of hertz or more: prepares what the next steps will need. When its turns come
     // changes the time of a step and never its force: a replay has none.
-    virtual void tend(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
+    virtual void slow_update(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
-    [[nodiscard]] virtual double tend_s() const noexcept TACT_RT { return 0.0; }
+    [[nodiscard]] virtual double slow_update_s() const noexcept TACT_RT { return 0.0; }
     // Before a step, where the tool is driven; what is not finite or below zero is a tool that stands.
     virtual void drive(const ToolDrive& /*drive*/) noexcept TACT_RT {}
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.

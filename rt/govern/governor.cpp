@@ -51,28 +51,28 @@ Governor::Governor(const GovernorSettings& settings) noexcept : settings_(settin
 
 std::size_t Governor::add(const KnobSpec& knob) noexcept {
     if (count_ == kPathsMax || !possible(knob)) return kPathsMax;
-    paths_[count_] = {.knob = knob, .level = knob.start, .wished = knob.start};
+    paths_[count_] = {.knob = knob, .level = knob.start, .requested = knob.start};
     return count_++;
 }
 
 void Governor::replace(std::size_t path, const KnobSpec& knob) noexcept {
     if (path >= count_ || !possible(knob)) return;
     GovernedPath& p = paths_[path];
-    const bool by_hand = settings_.law == Law::fixed && p.wished != p.knob.start;
+    const bool by_hand = settings_.law == Law::fixed && p.requested != p.knob.start;
     p = {.knob = knob,
          .level = knob.start,
-         .wished = by_hand ? std::max(p.wished, knob.floor) : knob.start,
+         .requested = by_hand ? std::max(p.requested, knob.floor) : knob.start,
          .present = p.present};
     rate_.restart();
 }
 
-bool Governor::follow_wishes(double dt_s) noexcept {
+bool Governor::apply_requests(double dt_s) noexcept {
     bool changed = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
-        if (p.level == p.wished) continue;
+        if (p.level == p.requested) continue;
         const float step = p.knob.slew_per_s * static_cast<float>(dt_s);
-        p.level = p.wished > p.level ? std::min(p.level + step, p.wished) : p.wished;
+        p.level = p.requested > p.level ? std::min(p.level + step, p.requested) : p.requested;
         p.reason = LevelReason::by_command;
         changed = true;
     }
@@ -102,10 +102,10 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
         return {f, f};
     }
     const double e = (rate == RateIs::low ? kDownGain : kUpGain) * rate_.error();
-    const double g = std::clamp(picture_share_, kShareLeast, kShareMost);
-    const double n = picture_cost_.elasticity(visual_level());
+    const double g = std::clamp(display_fraction_, kShareLeast, kShareMost);
+    const double n = display_cost_.elasticity(visual_level());
     double visual = std::clamp(e * (1.0 - g) / (n * g), -kDownMost, kUpMost);
-    if (rate_.error() < -kFarOff && picture_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
+    if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
     return {std::exp(visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
 }
 
@@ -117,31 +117,31 @@ double Governor::visual_level() const noexcept {
 
 // Factor by which visual levels may grow before a frame takes too long; no limit without a goal or a picture.
 double Governor::picture_room() const noexcept {
-    if (settings_.picture_goal_hz <= 0.0) return 1e9;
+    if (settings_.display_goal_hz <= 0.0) return 1e9;
     if (frame_s_ <= 0.0) return 1.0;  // wait for what the present levels cost
-    const double spare = kPictureRoom / (settings_.picture_goal_hz * frame_s_);
+    const double spare = kPictureRoom / (settings_.display_goal_hz * frame_s_);
     if (spare <= 1.0) return 1.0;
-    return std::exp(std::min(kUpGain * std::log(spare) / picture_cost_.elasticity(visual_level()), kUpMost));
+    return std::exp(std::min(kUpGain * std::log(spare) / display_cost_.elasticity(visual_level()), kUpMost));
 }
 
 bool Governor::step(double rate_hz, Duration dt) noexcept {
     const double dt_s = std::max(to_s(dt), 0.0);
-    if (settings_.law == Law::fixed) return follow_wishes(dt_s);
+    if (settings_.law == Law::fixed) return apply_requests(dt_s);
     if (!std::isfinite(rate_hz) || rate_hz < 0.0) return false;
     const RateIs rate = judge(rate_hz, dt_s);
-    if (rate == RateIs::right) return picture_binds_ ? false : say_hold();
+    if (rate == RateIs::right) return display_binds_ ? false : say_hold();
     const Factors by = factors(rate_hz, rate);
     bool moved = false;
     if (rate == RateIs::low) {
         moved = scale(false, by.visual, dt_s, LevelReason::rate_low, LevelReason::at_floor);
-        picture_binds_ = picture_binds_ && !moved;
+        display_binds_ = display_binds_ && !moved;
         if (!moved) moved = scale(true, by.haptic, dt_s, LevelReason::rate_low, LevelReason::at_floor);
         if (moved) since_down_s_ = 0.0;
     } else {
         moved = scale(true, by.haptic, dt_s, LevelReason::rate_high, LevelReason::at_top);
         const double room = picture_room();
         if (!moved && room > 1.0) {
-            const LevelReason up = picture_binds_ ? LevelReason::picture_high : LevelReason::rate_high;
+            const LevelReason up = display_binds_ ? LevelReason::picture_high : LevelReason::rate_high;
             moved = scale(false, std::min(by.visual, room), dt_s, up, LevelReason::at_top);
         }
     }
@@ -149,21 +149,21 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
     return moved;
 }
 
-bool Governor::look(const PictureLook& picture) noexcept {
+bool Governor::update(const DisplaySample& picture) noexcept {
     if (!time_like(picture.work_s) || !time_like(picture.processor_s) || !time_like(picture.period_s))
         return false;
     if (picture.period_s > 0.0) {
         const double share = std::min(picture.processor_s / picture.period_s, 64.0);
-        picture_share_ += (picture_share_ > 0.0 ? 0.2 : 1.0) * (share - picture_share_);
+        display_fraction_ += (display_fraction_ > 0.0 ? 0.2 : 1.0) * (share - display_fraction_);
     }
-    picture_cost_.add(visual_level(), picture.processor_s);
+    display_cost_.add(visual_level(), picture.processor_s);
     const double busy = picture.period_s > 0.0 ? std::min(picture.work_s / picture.period_s, 1.0) : 0.0;
-    picture_busy_ += 0.4 * (busy - picture_busy_);
-    if (settings_.law == Law::fixed || settings_.picture_goal_hz <= 0.0 || picture.work_s <= 0.0)
+    display_busy_ += 0.4 * (busy - display_busy_);
+    if (settings_.law == Law::fixed || settings_.display_goal_hz <= 0.0 || picture.work_s <= 0.0)
         return false;
 
     // A frame that takes very long is believed at once, else the better one of two: hitches are no load.
-    const double goal_s = 1.0 / settings_.picture_goal_hz;
+    const double goal_s = 1.0 / settings_.display_goal_hz;
     const bool first = frame_s_ <= 0.0;
     const double believed = first ? (picture.work_s > 2.0 * goal_s ? picture.work_s : 0.0)
                                   : std::min(picture.work_s, frame_before_s_);
@@ -173,14 +173,14 @@ bool Governor::look(const PictureLook& picture) noexcept {
     double factor = 1.0;
     if (settings_.law == Law::sensitus) {
         factor =
-            sensitus_factor(1.0 / believed, settings_.picture_goal_hz, settings_.gain, settings_.tolerance);
+            sensitus_factor(1.0 / believed, settings_.display_goal_hz, settings_.gain, settings_.tolerance);
     } else {
-        const double n = picture_cost_.elasticity(visual_level());
+        const double n = display_cost_.elasticity(visual_level());
         if (n < kWorthwhile) return false;
         factor = std::exp(std::max(-std::log(believed / goal_s) / n, -kDownMost));
     }
     if (!scale(false, factor, 0.0, LevelReason::picture_low, LevelReason::at_floor)) return false;
-    picture_binds_ = true;
+    display_binds_ = true;
     since_down_s_ = 0.0;
     rate_.restart();
     return true;
@@ -219,14 +219,14 @@ bool Governor::set_level(std::size_t path, double level) noexcept {
     GovernedPath& p = paths_[path];
     if (!(level >= static_cast<double>(p.knob.floor) && level <= 1.0)) return false;
     if (settings_.law != Law::fixed) set_law(Law::fixed);
-    p.wished = static_cast<float>(level);
+    p.requested = static_cast<float>(level);
     return true;
 }
 
 // The law "fixed" starts with the levels as they are, so that nothing jumps.
 void Governor::set_law(Law law) noexcept {
     if (law == Law::fixed && settings_.law != Law::fixed) {
-        for (std::size_t i = 0; i < count_; ++i) paths_[i].wished = paths_[i].level;
+        for (std::size_t i = 0; i < count_; ++i) paths_[i].requested = paths_[i].level;
     }
     settings_.law = law;
     rate_.restart();
@@ -236,8 +236,8 @@ void Governor::set_present(std::size_t path, bool present) noexcept {
     if (path >= count_) return;
     if (!paths_[path].knob.haptic && present != paths_[path].present) {
         rate_.restart();
-        picture_share_ = picture_busy_ = frame_s_ = 0.0;
-        picture_binds_ = false;
+        display_fraction_ = display_busy_ = frame_s_ = 0.0;
+        display_binds_ = false;
     }
     paths_[path].present = present;
 }

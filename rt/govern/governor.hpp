@@ -28,7 +28,7 @@ namespace tact {
 struct GovernorSettings {
     Law law = kDefaultLaw;
     double goal_hz = 1000.0;
-    double picture_goal_hz = 0.0;  // 0: the picture has no goal of its own
+    double display_goal_hz = 0.0;  // 0: the picture has no goal of its own
     double gain = 0.5;             // s of the law "sensitus"
     double tolerance = 0.02;       // epsilon of the law "sensitus"
 };
@@ -36,13 +36,13 @@ struct GovernorSettings {
 struct GovernedPath {
     KnobSpec knob;
     float level = 1.0F;
-    float wished = 1.0F;  // by a person, for the law "fixed"
-    bool present = true;  // an absent path (no GUI attached) keeps its level and takes no part
+    float requested = 1.0F;  // by a person, for the law "fixed"
+    bool present = true;     // an absent path (no GUI attached) keeps its level and takes no part
     LevelReason reason = LevelReason::start;
 };
 
 // A frame that was drawn with the present levels.
-struct PictureLook {
+struct DisplaySample {
     double work_s = 0.0;       // its time, without the pause that keeps to a highest rate of pictures
     double processor_s = 0.0;  // of the visual process, since the frame before
     double period_s = 0.0;     // since the frame before
@@ -63,7 +63,7 @@ public:
     // True: a level or its reason changed. rate_hz of the last interval, dt its length.
     bool step(double rate_hz, Duration dt) noexcept TACT_RT;
     // One frame, once, and only one that obeyed the levels as they are. True as above.
-    bool look(const PictureLook& picture) noexcept TACT_RT;
+    bool update(const DisplaySample& picture) noexcept TACT_RT;
 
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate
     bool set_level(std::size_t path, double level) noexcept TACT_RT;  // turns the law to "fixed"
@@ -78,7 +78,7 @@ private:
     struct Factors {
         double visual, haptic;
     };
-    [[nodiscard]] bool follow_wishes(double dt_s) noexcept;
+    [[nodiscard]] bool apply_requests(double dt_s) noexcept;
     [[nodiscard]] RateIs judge(double rate_hz, double dt_s) noexcept;
     [[nodiscard]] Factors factors(double rate_hz, RateIs rate) const noexcept;
     [[nodiscard]] double picture_room() const noexcept;
@@ -91,13 +91,13 @@ private:
     std::size_t count_ = 0;
 
     RateFilter rate_;
-    CostFit picture_cost_;
-    double picture_share_ = 0.0;  // of a processor, that the visual process has; filtered
-    double frame_s_ = 0.0;        // work of a frame, filtered; 0: none seen since the last change
+    CostFit display_cost_;
+    double display_fraction_ = 0.0;  // of a processor, that the visual process has; filtered
+    double frame_s_ = 0.0;           // work of a frame, filtered; 0: none seen since the last change
     double frame_before_s_ = 0.0;
     double since_down_s_ = 1e9;
-    double picture_busy_ = 0.0;   // share of its time that it draws, filtered; 1: it never pauses
-    bool picture_binds_ = false;  // the last visual level that was given up, was for the picture's own goal
+    double display_busy_ = 0.0;   // share of its time that it draws, filtered; 1: it never pauses
+    bool display_binds_ = false;  // the last visual level that was given up, was for the picture's own goal
 };
 
 }  // namespace tact

@@ -39,7 +39,7 @@ public:
     void restart() noexcept TACT_RT { *this = {}; }
 
     // As an update begins, which is counted: the share of its work. goal_hz > 0.
-    [[nodiscard]] double share(Instant now, double goal_hz) noexcept TACT_RT {
+    [[nodiscard]] double work_fraction(Instant now, double goal_hz) noexcept TACT_RT {
         advance(now, goal_hz);
         const double lacking = most_lacking(goal_hz);
         made_[slot_ % made_.size()] += 1.0;

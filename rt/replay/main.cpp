@@ -31,7 +31,7 @@ using namespace tact;
 volatile sig_atomic_t stop_asked = 0;
 extern "C" void on_stop(int) { stop_asked = 1; }
 
-struct Wishes {
+struct Requests {
     ReplaySettings settings;
     std::string session = "default";
     bool show = false, json = false;
@@ -41,7 +41,7 @@ struct Wishes {
 // A window may watch: the region goes to whoever asks for it, as from a controller.
 class Stage {
 public:
-    Stage(const Wishes& w, Replay& replay)
+    Stage(const Requests& w, Replay& replay)
         : link_(w.session, replay.region().fd(), replay.bone_fd()), speed_(w.speed), from_s_(w.from_s) {
         const Instant begin = Monotonic::now();
         while (!there_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
@@ -86,7 +86,7 @@ private:
     Instant begun_{}, attended_{};
 };
 
-void print_json(const Wishes& w, const Replay& replay) {
+void print_json(const Requests& w, const Replay& replay) {
     const ReplayResult& r = replay.result();
     nlohmann::json j{{"file", w.settings.recording.string()},
                      {"steps", r.steps},
@@ -129,7 +129,7 @@ void print_words(const Replay& replay) {
         d.replayed[2]);
 }
 
-int run(const Wishes& w) {
+int run(const Requests& w) {
     Replay replay(w.settings);
     const RecordingReader::About& about = replay.recording().about();
     if (about.repair.needed) spdlog::warn("{}", repair_text(w.settings.recording, about.repair));
@@ -163,7 +163,7 @@ int run(const Wishes& w) {
 int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("tact-replay"));
     spdlog::set_pattern("%n %^%l%$ %v");
-    Wishes w;
+    Requests w;
     std::string file, scene;
     CLI::App app{
         "tact-replay: does a recorded run again with the controller's own code, and compares every force"};

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <fstream>
 
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
-#include "rt/start_model.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "rt/start/start_model.hpp"
 
 namespace tact {
 namespace {
@@ -199,7 +199,7 @@ void Replay::build_models() {
     servo_.emplace(ServoParts{.clock = clock_,
                               .hands = hands,
                               .region = *region_,
-                              .mail = mail_,
+                              .mailbox = mailbox_,
                               .lines = (about.start.flags & kStartLines) != 0 ? &lines_ : nullptr,
                               .script = &script_},
                    settings);
@@ -208,55 +208,56 @@ void Replay::build_models() {
 }
 
 void Replay::build_model_aside() {
-    if (!mail_.build.take()) {
+    if (!mailbox_.build.take()) {
         if (obstacle_.empty()) obstacle_ = "a model was handed over that nobody had asked for here";
         return;
     }
-    std::unique_ptr<ForceModel> made = mail_.build.like().rebuild(mail_.build.bodies());
-    if (made == nullptr || !mail_.model.offer(made)) mail_.build.refuse();
+    std::unique_ptr<ForceModel> made = mailbox_.build.like().rebuild(mailbox_.build.bodies());
+    if (made == nullptr || !mailbox_.model.offer(made)) mailbox_.build.refuse();
 }
 
-void Replay::give_mail() {
-    for (const MailTopic& m : step_.mail) {
-        switch (static_cast<MailKind>(m.kind)) {
-            case MailKind::order:
-                mail_.orders.push(m.order);
+void Replay::fill_mailbox() {
+    for (const MailboxTopic& m : step_.mailbox) {
+        switch (static_cast<MailboxKind>(m.kind)) {
+            case MailboxKind::order:
+                mailbox_.orders.push(m.order);
                 break;
-            case MailKind::model_taken:
+            case MailboxKind::model_taken:
                 build_model_aside();
                 break;
-            case MailKind::build_refused:
-                if (mail_.build.take()) mail_.build.refuse();
+            case MailboxKind::build_refused:
+                if (mailbox_.build.take()) mailbox_.build.refuse();
                 break;
-            case MailKind::stop:
-                mail_.stop_signal = static_cast<int>(std::clamp(m.order.value, -1.0, 64.0));
+            case MailboxKind::stop:
+                mailbox_.stop_signal = static_cast<int>(std::clamp(m.order.value, -1.0, 64.0));
                 break;
-            case MailKind::drops:
-                mail_.pulse.drops = m.order.sequence;
+            case MailboxKind::drops:
+                mailbox_.pulse.drops = m.order.sequence;
                 break;
-            case MailKind::none:
+            case MailboxKind::none:
                 break;
         }
     }
     if (!step_.report) return;
-    HouseReport said = step_.report->said;
+    HousekeepingReport said = step_.report->said;
     if (said.gui_heartbeat_ns >= 0) said.gui_heartbeat_ns += shift_.count();
     said.gui_taken_at_ns += shift_.count();
-    mail_.house.publish(said);
+    mailbox_.housekeeping.publish(said);
 }
 
 void Replay::give_step() {
     const CycleTopic& c = step_.cycle;
-    clock_.give(std::span(c.clock_ns).first(std::min<std::size_t>(c.looks, CycleTopic::kLooksMax)), shift_);
+    clock_.give(std::span(c.clock_ns).first(std::min<std::size_t>(c.timestamps, CycleTopic::kTimestampsMax)),
+                shift_);
     script_.level = c.level;
     for (std::uint32_t i = 0; i < devices_.size(); ++i) {
         const HandTopic& h = step_.hand[i].t;
         devices_[i]->give(sample_of(h, shift_), static_cast<IoStatus>(h.read_status),
                           static_cast<IoStatus>(h.write_status));
-        script_.deadline_look[i] = h.deadline_look;
+        script_.deadline_check[i] = h.deadline_check;
     }
     lines_.give(lines_of(c, shift_));
-    give_mail();
+    fill_mailbox();
 }
 
 void Replay::do_step() {
@@ -273,17 +274,17 @@ void Replay::do_step() {
                            : instant_from_ns(reader_.about().start.started_at_ns) + shift_);
         // Of a run that is begun in its middle: as near as it can be, the force ramps in.
         if (late && step_.cycle.run_state >= static_cast<std::uint8_t>(RunState::armed))
-            mail_.orders.push({.sequence = 0,
-                               .value = 0.0,
-                               .kind = static_cast<std::uint32_t>(CommandKind::arm),
-                               .index = 0});
+            mailbox_.orders.push({.sequence = 0,
+                                  .value = 0.0,
+                                  .kind = static_cast<std::uint32_t>(CommandKind::arm),
+                                  .index = 0});
     }
     give_step();
     if (dry)
         servo_->dry_cycle();
     else
         servo_->cycle();
-    mail_.model.collect().reset();
+    mailbox_.model.collect().reset();
     compare();
     there_is_ = reader_.next(step_);
 }
@@ -315,10 +316,10 @@ void Replay::compare() {
     }
     const double state_was[3] = {static_cast<double>(step_.cycle.run_state),
                                  static_cast<double>(step_.cycle.run_reason),
-                                 static_cast<double>(step_.cycle.looks)};
+                                 static_cast<double>(step_.cycle.timestamps)};
     note(0, "state, its reason, looks at the clock", state_was,
          Vec3(static_cast<double>(s.run.state), static_cast<double>(s.run.reason),
-              static_cast<double>(s.looks)));
+              static_cast<double>(s.timestamps)));
     if (different_) ++result_.different;
     result_.force_n_most = std::max(result_.force_n_most, s.hand[0].shown_world.force_n.norm());
     result_.removed_levels = 0;

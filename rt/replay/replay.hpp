@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "hal/replay/replay_device.hpp"
-#include "ipc/assets/scene_file.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/record/recording_reader.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "ipc/shm/region.hpp"
-#include "rt/loop/servo.hpp"
-#include "rt/scene_bone.hpp"
-#include "rt/start_options.hpp"
+#include "rt/servo/servo.hpp"
+#include "rt/start/scene_bone.hpp"
+#include "rt/start/start_options.hpp"
 
 namespace tact {
 
@@ -36,7 +36,7 @@ public:
     [[nodiscard]] bool used_up() const noexcept { return at_ == count_; }
 
 private:
-    std::array<Instant, CycleTopic::kLooksMax> looks_{};
+    std::array<Instant, CycleTopic::kTimestampsMax> looks_{};
     std::size_t at_ = 0, count_ = 1;
 };
 
@@ -84,7 +84,7 @@ public:
 private:
     void build_models();
     void give_step();
-    void give_mail();
+    void fill_mailbox();
     void build_model_aside();
     void compare();
     void note(std::uint32_t hand, const char* what, const double (&recorded)[3], const Vec3& replayed);
@@ -98,7 +98,7 @@ private:
     OwnedRegion<RtRegion> region_;
     std::optional<SceneBone> bone_;
     ReplayClock clock_;
-    ServoMail mail_;
+    ServoMailbox mailbox_;
     CycleScript script_;
     std::vector<std::unique_ptr<ReplayDevice>> devices_;
     ReplayLines lines_;

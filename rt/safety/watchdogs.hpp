@@ -47,7 +47,7 @@ class Watchdogs {
 public:
     explicit Watchdogs(const WatchdogSettings& settings = {}) noexcept : settings_(settings) {}
 
-    Trip look(const WatchdogInput& in) noexcept TACT_RT {
+    Trip check(const WatchdogInput& in) noexcept TACT_RT {
         overruns_in_a_row_ = in.overran ? overruns_in_a_row_ + 1 : 0;
         // A pedal that is up is no fault while no force may come, so it must not hide one that is.
         const bool mild = in.lines == RunReason::dead_man || in.lines == RunReason::supervisor;

@@ -16,7 +16,7 @@ endfunction()
 
 # One list per area, so that areas grow without touching each other.
 include(bench/ipc.cmake)
-include(bench/assets.cmake)
+include(bench/scene.cmake)
 include(bench/prep.cmake)
 include(bench/force.cmake)
 include(bench/rt.cmake)

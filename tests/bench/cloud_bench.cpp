@@ -14,8 +14,8 @@
 #include "gui/render/camera.hpp"
 #include "gui/render/particle_cloud.hpp"
 #include "gui/render/scene_view.hpp"
-#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/support/bone_block.hpp"
 

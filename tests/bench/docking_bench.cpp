@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_kernels.hpp"
-#include "ipc/assets/density_map.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/density/density_kernels.hpp"
+#include "ipc/scene/density/density_map.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {

@@ -2,9 +2,9 @@
 // chaperonin has them, with as many atoms as its ring of seven.
 #include <benchmark/benchmark.h>
 
-#include "ipc/assets/fit_metrics.hpp"
-#include "ipc/assets/refine.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
+#include "ipc/scene/fit/refine.hpp"
 
 namespace tact {
 namespace {

@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "ipc/assets/refinement.hpp"
+#include "ipc/scene/mesh/refinement.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/synthetic/rough_torus.hpp"
 

@@ -19,8 +19,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "ipc/assets/isosurface.hpp"
-#include "ipc/assets/mesh_cut.hpp"
+#include "ipc/scene/density/isosurface.hpp"
+#include "ipc/scene/mesh/mesh_cut.hpp"
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/mesh/relax.hpp"

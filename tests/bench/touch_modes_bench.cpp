@@ -23,7 +23,7 @@
 namespace tact {
 namespace {
 
-constexpr int kSteps = 3000, kTendEvery = 4;
+constexpr int kSteps = 3000, kSlowUpdateEvery = 4;
 
 struct Baked {
     double ball_m = 0.05;
@@ -61,7 +61,7 @@ double percentile(std::vector<double> us, double part) {
 void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live) {
     static const Baked baked;
     const double radius_m = 1e-3 * static_cast<double>(state.range(0));
-    std::vector<double> servo_us(kSteps, 1e300), tend_us;
+    std::vector<double> servo_us(kSteps, 1e300), slow_update_us;
     double adaptive = 0.0, predicted = 0.0;
     const int passes = live ? 1 : 2;
     for (auto _ : state) {
@@ -69,17 +69,17 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
             const auto model = load_surface_model(baked.file, {.radius_m = radius_m, .mode = mode});
             const Vec3 middle = model->meta().to_world(Vec3::Zero());
             std::atomic<int> now{0}, stop{0};
-            const auto tend = [&](int i) {
+            const auto slow_update = [&](int i) {
                 const Instant begin = Monotonic::now();
-                model->tend(tool_at(baked, middle, radius_m, speed_m_s, i), {});
-                tend_us.push_back(to_us(Monotonic::now() - begin));
+                model->slow_update(tool_at(baked, middle, radius_m, speed_m_s, i), {});
+                slow_update_us.push_back(to_us(Monotonic::now() - begin));
             };
             std::thread beside;
-            if (live && model->tended()) {
+            if (live && model->has_slow_update()) {
                 beside = std::thread([&] {
                     for (auto next = std::chrono::steady_clock::now(); stop == 0;) {
-                        tend(now);
-                        next = std::max(next + std::chrono::milliseconds(kTendEvery),
+                        slow_update(now);
+                        next = std::max(next + std::chrono::milliseconds(kSlowUpdateEvery),
                                         std::chrono::steady_clock::now());
                         std::this_thread::sleep_until(next);
                     }
@@ -89,7 +89,7 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
             auto next = std::chrono::steady_clock::now();
             for (int i = 0; i < kSteps; ++i) {
                 now = i;
-                if (!live && i % kTendEvery == 0) tend(i);
+                if (!live && i % kSlowUpdateEvery == 0) slow_update(i);
                 const ToolState tool = tool_at(baked, middle, radius_m, speed_m_s, i);
                 const Instant begin = Monotonic::now();
                 (void)model->step(tool, {.fidelity = 1.0F});
@@ -107,8 +107,8 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
     state.counters["servo_us_p50"] = percentile(servo_us, 0.5);
     state.counters["servo_us_p99"] = percentile(servo_us, 0.99);
     state.counters["servo_us_p999"] = percentile(servo_us, 0.999);
-    state.counters["tend_us_p50"] = percentile(tend_us, 0.5);
-    state.counters["tend_us_p99"] = percentile(tend_us, 0.99);
+    state.counters["tend_us_p50"] = percentile(slow_update_us, 0.5);
+    state.counters["tend_us_p99"] = percentile(slow_update_us, 0.99);
     state.counters["adaptive"] = adaptive;
     state.counters["near_predicted"] = predicted;
 }

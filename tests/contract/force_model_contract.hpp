@@ -71,7 +71,7 @@ protected:
     std::unique_ptr<ForceModel> model_;
 };
 
-TEST_P(ForceModelContract, KnobIsNamedAndInRange) {
+TEST_P(ForceModelContract, knob_is_named_and_in_range) {
     const KnobSpec knob = model_->knob();
     EXPECT_NE(std::string(knob.path), "");
     EXPECT_GE(knob.floor, 0.0F);
@@ -82,7 +82,7 @@ TEST_P(ForceModelContract, KnobIsNamedAndInRange) {
 }
 
 // The loop warms up before a hand is there.
-TEST_P(ForceModelContract, AStepBeforeTheFirstResetMovesNoBody) {
+TEST_P(ForceModelContract, a_step_before_the_first_reset_moves_no_body) {
     model_ = GetParam().make();
     const ModelBodies before = model_->bodies();
     for (int i = 0; i < 10; ++i) (void)model_->step(at(GetParam().grip), budget(1.0F));
@@ -93,11 +93,11 @@ TEST_P(ForceModelContract, AStepBeforeTheFirstResetMovesNoBody) {
     }
 }
 
-TEST_P(ForceModelContract, TouchIsFelt) {
+TEST_P(ForceModelContract, touch_is_felt) {
     EXPECT_GE(settle(GetParam().touch).wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
-TEST_P(ForceModelContract, ItemsRiseAndErrorsFallWithTheKnob) {
+TEST_P(ForceModelContract, items_rise_and_errors_fall_with_the_knob) {
     (void)settle(GetParam().touch);
     std::uint32_t items = 0;
     double error = std::numeric_limits<double>::infinity();
@@ -114,7 +114,7 @@ TEST_P(ForceModelContract, ItemsRiseAndErrorsFallWithTheKnob) {
     }
 }
 
-TEST_P(ForceModelContract, TurningTheKnobInContactIsNotFelt) {
+TEST_P(ForceModelContract, turning_the_knob_in_contact_is_not_felt) {
     StepResult before = settle(GetParam().touch, 0.0F);
     // A governor's fastest sweep: slew_per_s at 1 kHz.
     const float step = std::max(1e-4F, std::min(0.004F, model_->knob().slew_per_s * 1e-3F));
@@ -125,7 +125,7 @@ TEST_P(ForceModelContract, TurningTheKnobInContactIsNotFelt) {
     }
 }
 
-TEST_P(ForceModelContract, AFidelityOutsideItsRangeIsTakenAsTheNearest) {
+TEST_P(ForceModelContract, a_fidelity_outside_its_range_is_taken_as_the_nearest) {
     (void)settle(GetParam().touch);
     const auto step = [&](float fidelity) { return model_->step(at(GetParam().touch), budget(fidelity)); };
     EXPECT_EQ(difference_n(step(7.0F), step(1.0F)), 0.0);
@@ -133,14 +133,14 @@ TEST_P(ForceModelContract, AFidelityOutsideItsRangeIsTakenAsTheNearest) {
     EXPECT_TRUE(step(std::numeric_limits<float>::quiet_NaN()).wrench_world.finite());
 }
 
-TEST_P(ForceModelContract, TheSameStepsGiveTheSameForces) {
+TEST_P(ForceModelContract, the_same_steps_give_the_same_forces) {
     const StepResult first = settle(GetParam().touch, 0.6F);
     model_ = GetParam().make();
     model_->reset(at(GetParam().grip));
     EXPECT_EQ(difference_n(settle(GetParam().touch, 0.6F), first), 0.0);
 }
 
-TEST_P(ForceModelContract, WithoutTimeTheForceIsStillUsable) {
+TEST_P(ForceModelContract, without_time_the_force_is_still_usable) {
     const StepResult full = settle(GetParam().touch);
     for (const float fidelity : {0.0F, 0.3F, 0.95F, 1.0F}) {
         const StepResult late = model_->step(at(GetParam().touch), no_time(fidelity));
@@ -151,13 +151,13 @@ TEST_P(ForceModelContract, WithoutTimeTheForceIsStillUsable) {
     EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
 }
 
-TEST_P(ForceModelContract, NoForceRightAfterReset) {
+TEST_P(ForceModelContract, no_force_right_after_reset) {
     (void)settle(GetParam().touch);
     model_->reset(at(GetParam().touch));
     EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(), 1e-3);
 }
 
-TEST_P(ForceModelContract, ForceComesBackAfterResetWithoutAStep) {
+TEST_P(ForceModelContract, force_comes_back_after_reset_without_a_step) {
     StepResult before = settle(GetParam().touch);
     model_->reset(at(GetParam().touch));
     before.wrench_world = Wrench{};
@@ -169,7 +169,7 @@ TEST_P(ForceModelContract, ForceComesBackAfterResetWithoutAStep) {
     EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
-TEST_P(ForceModelContract, PosesThatAreNotPosesGiveNoForceAndAreForgotten) {
+TEST_P(ForceModelContract, poses_that_are_not_poses_give_no_force_and_are_forgotten) {
     (void)settle(GetParam().touch);
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
@@ -200,7 +200,7 @@ TEST_P(ForceModelContract, PosesThatAreNotPosesGiveNoForceAndAreForgotten) {
     EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
 }
 
-TEST_P(ForceModelContract, NoOrderMakesTheForceStepAndWhatComesIntoTheHandEntersAtZero) {
+TEST_P(ForceModelContract, no_order_makes_the_force_step_and_what_comes_into_the_hand_enters_at_zero) {
     const ModelBodies bodies = (settle(GetParam().touch), model_->bodies());
     if (bodies.count == 0) GTEST_SKIP() << "it has no bodies";
     using Kind = ModelOrder::Kind;
@@ -216,7 +216,7 @@ TEST_P(ForceModelContract, NoOrderMakesTheForceStepAndWhatComesIntoTheHandEnters
     add.body = bodies.structure[bodies.active];
     StepResult before = model_->step(at(GetParam().touch), budget(1.0F));
     for (const ModelOrder& order : {place, let_go, take, fix, free, add}) {
-        const bool obeyed = model_->order(order);
+        const bool applied = model_->order(order);
         double least_n = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kSettle; ++i) {
             const StepResult now = model_->step(at(GetParam().touch), budget(1.0F));
@@ -224,17 +224,17 @@ TEST_P(ForceModelContract, NoOrderMakesTheForceStepAndWhatComesIntoTheHandEnters
             least_n = std::min(least_n, now.wrench_world.force_n.norm());
             before = now;
         }
-        if (obeyed && order.kind != Kind::add) {
+        if (applied && order.kind != Kind::add) {
             EXPECT_LT(least_n, 1e-3) << static_cast<int>(order.kind);
         }
         const bool felt = order.kind != Kind::fix ? order.body != ModelBodies::kNone : !order.on;
-        if (obeyed && felt) {
+        if (applied && felt) {
             EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
         }
     }
 }
 
-TEST_P(ForceModelContract, ARefusedOrderChangesNothing) {
+TEST_P(ForceModelContract, a_refused_order_changes_nothing) {
     (void)settle(GetParam().touch);
     const ModelBodies before = model_->bodies();
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -260,7 +260,7 @@ TEST_P(ForceModelContract, ARefusedOrderChangesNothing) {
     EXPECT_FALSE(model_->stale());
 }
 
-TEST_P(ForceModelContract, ARebuiltModelGoesOnWhereTheOldOneWas) {
+TEST_P(ForceModelContract, a_rebuilt_model_goes_on_where_the_old_one_was) {
     StepResult before = settle(GetParam().touch);
     const auto rebuilt = model_->rebuild(model_->bodies());
     if (rebuilt == nullptr) GTEST_SKIP() << "there is nothing to rebuild";
@@ -287,7 +287,7 @@ TEST_P(ForceModelContract, ARebuiltModelGoesOnWhereTheOldOneWas) {
     }
 }
 
-TEST_P(ForceModelContract, BodiesAreCountedAndPlaced) {
+TEST_P(ForceModelContract, bodies_are_counted_and_placed) {
     (void)settle(GetParam().touch);
     const ModelBodies bodies = model_->bodies();
     EXPECT_LE(bodies.count, ModelBodies::kMax);

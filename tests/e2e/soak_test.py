@@ -119,7 +119,7 @@ class Soak:
             o.scene = os.path.join(self.dir, "bone.tact")
             subprocess.run([os.path.join(o.programs, "tact-prep"), "drill", "--synthetic", "--voxels", "64", "-o", o.scene], check=True,
                            env=self.env, stdout=subprocess.DEVNULL)
-            o.more = o.more or ["--hand", "surgeon", "--hand2", "sucker", "--pedal", "always", "--hand-at-mm=-4.5,0"]
+            o.more = o.more or ["--hand", "surgeon", "--hand2", "suction-tube", "--pedal", "always", "--hand-at-mm=-4.5,0"]
         words = [os.path.join(o.programs, "tact"), "run", o.scene, "--headless", "--quiet", "--session", "soak", "--seconds", o.seconds,
                  "--rate", o.rate, "--record", self.recording, *o.more]
         began = time.monotonic()

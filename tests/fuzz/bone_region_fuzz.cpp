@@ -82,13 +82,13 @@ std::int64_t levels(std::span<const std::uint8_t> voxels) {
 bool run(std::span<const std::byte> input) {
     if (input.size() < 2 || input.size() > kBytesMost) return false;
     static const Input right = right_region();
-    const bool mended = input[0] != std::byte{0};
+    const bool fixed = input[0] != std::byte{0};
     // Half of the rest is there at first, half comes between the looks, in pieces of 64 bytes at any place.
     const std::span<const std::byte> rest = input.subspan(1);
-    const std::size_t first = mended ? rest.size() / 2 : std::min(rest.size(), right.size());
-    Input found = mended ? right : Input(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(first));
+    const std::size_t first = fixed ? rest.size() / 2 : std::min(rest.size(), right.size());
+    Input found = fixed ? right : Input(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(first));
     const std::size_t head_bytes = kRegionHeaderBytes + sizeof(BoneRegionHead);
-    if (mended)
+    if (fixed)
         std::copy_n(rest.begin(), std::min(first, found.size() - head_bytes),
                     found.begin() + static_cast<std::ptrdiff_t>(head_bytes));
     const Stranger stranger(found);
@@ -110,7 +110,7 @@ bool run(std::span<const std::byte> input) {
     view.density = baked;
     BoneFollower follower(view, kChecksum);
     if (!follower.attach(region).empty()) {
-        require(!mended && follower.follow(100).empty());
+        require(!fixed && follower.follow(100).empty());
         return false;
     }
     std::int64_t lost = 0;

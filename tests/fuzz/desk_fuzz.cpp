@@ -1,5 +1,5 @@
 // A desk file of any bytes: refused in words, or settings within their bounds that are written and read again as the same.
-#include "gui/desk/desk_file.hpp"
+#include "gui/window/window_state.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -7,20 +7,20 @@ namespace tact::fuzz {
 
 bool run(std::span<const std::byte> input) {
     const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-    DeskSettings s;
+    WindowState s;
     try {
-        s = read_desk_text(text, "file");
+        s = read_window_state_text(text, "file");
     } catch (const StartupError&) {
         return false;
     }
     require(s.width_px >= 240 && s.width_px <= 16384 && s.height_px >= 240 && s.height_px <= 16384);
-    require(s.span_choice >= 0 && s.span_choice < DeskSettings::kSpans);
-    require(s.lateness_choice >= 0 && s.lateness_choice < DeskSettings::kLateness);
+    require(s.span_choice >= 0 && s.span_choice < WindowState::kSpans);
+    require(s.lateness_choice >= 0 && s.lateness_choice < WindowState::kLateness);
     require(s.toggles.style >= 0 && s.toggles.style < 3 && s.toggles.molecule >= 0 && s.toggles.molecule < 4);
     require(s.target_a.allFinite() && std::isfinite(s.distance_a) && s.distance_a >= 0.0);
     require(std::abs(s.q_eye_scene.norm() - 1.0) < 1e-9);
-    const std::string once = desk_text(s);
-    const DeskSettings again = read_desk_text(once, "written");
+    const std::string once = window_state_text(s);
+    const WindowState again = read_window_state_text(once, "written");
     require(again.scene == s.scene && again.width_px == s.width_px && again.span_choice == s.span_choice);
     if (s.scene != 0) require(again.target_a == s.target_a && again.distance_a == s.distance_a);
     return true;
@@ -28,7 +28,7 @@ bool run(std::span<const std::byte> input) {
 
 std::vector<Input> seeds() {
     std::vector<Input> all;
-    DeskSettings full;
+    WindowState full;
     full.traces = true;
     full.scene = 0x0123456789abcdefULL;
     full.target_a = Vec3(1.5, -2e3, 0.25);
@@ -36,7 +36,7 @@ std::vector<Input> seeds() {
     for (const std::string& text :
          {std::string("size_px = [1920, 1080]\ntraces = true\n[show]\nforce = false\n"),
           std::string("[scene]\nchecksum = \"00000000000000ff\"\nmolecule = \"sticks\"\ndistance_a = 3\n"),
-          desk_text(full)})
+          window_state_text(full)})
         all.emplace_back(std::as_bytes(std::span(text)).begin(), std::as_bytes(std::span(text)).end());
     return all;
 }

@@ -1,6 +1,6 @@
 // A fault file of tact-emu, of any bytes.
-#include "hal/emu/script.hpp"
 #include "ipc/base/error.hpp"
+#include "tests/emu/script.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tact::fuzz {
@@ -11,7 +11,7 @@ bool run(std::span<const std::byte> input) {
         const auto orders = emu::parse_script(text, "file");
         require(orders.size() <= emu::kOrdersMax);
         for (const emu::Order& o : orders) {
-            const emu::DeedRow& row = emu::row_of(o.deed);
+            const emu::ActionRow& row = emu::row_of(o.action);
             for (std::size_t i = 0; i < row.numbers.size(); ++i)
                 require(o.numbers.at(i) >= row.numbers[i].low && o.numbers.at(i) <= row.numbers[i].high);
             require(o.arm.empty() || emu::is_serial(o.arm));

@@ -1,4 +1,4 @@
-# tact_fuzz(scene_fuzz SOURCES fuzz/scene_fuzz.cpp USES assets): an entry point of fuzz/fuzz.hpp becomes
+# tact_fuzz(scene_fuzz SOURCES fuzz/scene_fuzz.cpp USES scene): an entry point of fuzz/fuzz.hpp becomes
 #   scene_fuzz           replays its seeds and thousands of seeded mutations of them; in every suite (label replay)
 #   scene_fuzz_libfuzzer with TACT_FUZZ (clang): guided by coverage for TACT_FUZZ_SECONDS (environment; 10), from
 #                        the same seeds
@@ -24,7 +24,7 @@ endfunction()
 
 # One list per area, so that areas grow without touching each other.
 include(fuzz/ipc.cmake)
-include(fuzz/assets.cmake)
+include(fuzz/scene.cmake)
 include(fuzz/prep.cmake)
 include(fuzz/deploy.cmake)
 include(fuzz/hal.cmake)

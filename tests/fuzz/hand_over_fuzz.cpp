@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tact::fuzz {

@@ -10,11 +10,11 @@
 #include <cstring>
 #include <optional>
 
-#include "ipc/assets/scene_layout.hpp"
-#include "ipc/assets/scene_peek.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_layout.hpp"
+#include "ipc/scene/file/scene_peek.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact::fuzz {
 namespace {
@@ -23,7 +23,7 @@ using namespace scene_layout;
 
 constexpr std::size_t kBytesMost = 1 << 18;
 
-void mend(Input& bytes) {
+void fix(Input& bytes) {
     Header header;
     if (bytes.size() < sizeof header) return;
     std::memcpy(&header, bytes.data(), sizeof header);
@@ -68,7 +68,7 @@ SceneMeta peeked(const Input& bytes) {
 bool run(std::span<const std::byte> input) {
     if (input.empty() || input.size() > kBytesMost) return false;
     Input bytes(input.begin() + 1, input.end());
-    if ((input[0] & std::byte{1}) != std::byte{0}) mend(bytes);
+    if ((input[0] & std::byte{1}) != std::byte{0}) fix(bytes);
     const auto look = meta_of([&] { return peeked(bytes); });
     const auto whole = meta_of([&] { return read_meta(SceneFile::from_bytes(bytes, "fuzz.tact")); });
     require(!whole || look);

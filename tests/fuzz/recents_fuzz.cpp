@@ -1,7 +1,7 @@
 // A list of scenes used before, of any bytes: refused in words, or absolute paths that are written and read again as the same.
 #include <cstring>
 
-#include "gui/desk/recent_scenes.hpp"
+#include "gui/window/recent_scenes.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -4,25 +4,25 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/bone_volume.hpp"
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/distance_field.hpp"
-#include "ipc/assets/mesh_cut.hpp"
-#include "ipc/assets/refinement.hpp"
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/touch_tool.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/mesh_cut.hpp"
+#include "ipc/scene/mesh/refinement.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/surface/build_surface.hpp"
 #include "prep/surface/forest_builder.hpp"
 #include "prep/surface/sample_tool.hpp"
 #include "rt/force/surface/tool_model.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact::fuzz {
 namespace {
@@ -148,10 +148,10 @@ void use_surface(const SceneFile& file) {
         (void)mesh.leaves_near(p, 1.0, leaves, count);
         std::array<std::uint32_t, kLooks> first{};
         for (std::size_t i = 0; i < count; ++i) first[i] = SurfaceNode::leaf_first(leaves[i]);
-        LookJob job = mesh.look_job(p);
+        QueryJob job = mesh.query_job(p);
         job.triangle = first.data();
-        TriangleLooks seen;
-        best_look_kernel().look(job, seen);
+        TriangleQueries seen;
+        best_query_kernel().query(job, seen);
     }
 }
 

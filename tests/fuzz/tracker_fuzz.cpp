@@ -9,9 +9,9 @@
 namespace tact::fuzz {
 namespace {
 
-constexpr std::uint8_t kFd = 1, kMend = 2;
+constexpr std::uint8_t kFd = 1, kFix = 2;
 
-void mend(CanFrame& f) {
+void fix(CanFrame& f) {
     if (f.kind == CanKind::classic && f.length == kClassicBytes) {
         f.data[7] = crc_of<Crc8>(can_data_id(f.id), f.payload().first(7));
     } else if (f.kind == CanKind::fd && f.length == kPoseBytes) {
@@ -49,7 +49,7 @@ bool run(std::span<const std::byte> input) {
         at += 4;
         for (std::size_t i = 0; i < f.payload().size() && at < input.size(); ++i, ++at)
             f.data[i] = static_cast<std::uint8_t>(input[at]);
-        if ((how & kMend) != 0) mend(f);
+        if ((how & kFix) != 0) fix(f);
         ++frames;
         TrackerFix fix;
         if (!assembler.take(f, fix)) continue;
@@ -68,9 +68,9 @@ bool run(std::span<const std::byte> input) {
 std::vector<Input> seeds() {
     const Pose T{Vec3(0.1, -0.2, 0.3), quat_from_rotation_vector(Vec3(0.1, 0.2, 0.3))};
     std::vector<Input> all;
-    for (const std::uint8_t mended : {std::uint8_t{0}, kMend}) {
-        Input classic{static_cast<std::byte>(mended | 1U << 2)};
-        Input fd{static_cast<std::byte>(kFd | mended | 1U << 2)};
+    for (const std::uint8_t fixed : {std::uint8_t{0}, kFix}) {
+        Input classic{static_cast<std::byte>(fixed | 1U << 2)};
+        Input fd{static_cast<std::byte>(kFd | fixed | 1U << 2)};
         for (std::uint8_t n = 0; n < 3; ++n) {
             append(classic, encode(SyncFrame{n, n * 4167U, TrackerStatus::ok}));
             for (std::uint8_t sensor = 0; sensor < 2; ++sensor) {

@@ -1,5 +1,5 @@
 # Programs that only tests/hil runs, in its machine.
-tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics assets launch emu_lines)
+tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics scene launch emu_lines)
 target_compile_definitions(hil_lines_story PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
 add_dependencies(hil_lines_story tact-rt)
 tact_program(hil_give_way SOURCES hil/give_way.cpp USES base)

@@ -16,8 +16,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "hal/emu/cp2112.hpp"
 #include "ipc/topics/text.hpp"
+#include "tests/emu/cp2112.hpp"
 #include "tests/scenario/rig.hpp"
 
 namespace tact::scenario {

@@ -6,7 +6,7 @@
 // as skipped. For each row whose name holds `name`, seeded starts 15 A and 30 degrees (and 8 A and 15
 // degrees) away from the known place climb the reduced correlation of all atoms, by steepest ascent. A start
 // has found the place within one voxel and 5 degrees, or an equal place by the structure's own symmetry. Felt
-// maps: the density, its Laplacian (at 20 A or the map's resolution, as rt/force/docking/felt_density.hpp),
+// maps: the density, its Laplacian (at 20 A or the map's resolution, as rt/force/docking/force_map.hpp),
 // and both with the neighbours in the assembly subtracted. Printed beside it: how far the ends are from the
 // place, in the mean.
 #include <Eigen/Geometry>
@@ -21,15 +21,15 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/laplacian_map.hpp"
-#include "ipc/assets/subtracted_map.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/laplacian_map.hpp"
+#include "ipc/scene/density/subtracted_map.hpp"
 #include "prep/map/import_map.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/structure/import_structure.hpp"
-#include "rt/force/docking/felt_density.hpp"
+#include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
 namespace tact {

@@ -7,11 +7,11 @@
 
 #include "hal/sim/sim_device.hpp"
 #include "hal/sim/sim_lines.hpp"
-#include "ipc/assets/scene_file.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "rt/force/docking/docking_model.hpp"
-#include "rt/loop/rt_guard.hpp"
-#include "rt/loop/servo.hpp"
+#include "rt/servo/rt_guard.hpp"
+#include "rt/servo/servo.hpp"
 #include "tests/support/board_bus.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -75,7 +75,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     SimDevice device(sim);
     ManualClock clock;
     clock.advance(std::chrono::seconds(10));
-    ServoMail mail;
+    ServoMailbox mailbox;
     SimLines lines;
     static_cast<void>(lines.open());
     std::unique_ptr<ForceModel> model = make_model(1);
@@ -84,13 +84,13 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     settings.watchdogs.timing_latches = true;
     settings.chain.passivity = true;
     settings.model_deadline = true;  // long past on the machine's clock: the step's shortest way out
-    Servo servo({clock, {&hand, 1}, *region, mail, &lines}, settings);
+    Servo servo({clock, {&hand, 1}, *region, mailbox, &lines}, settings);
 
     rt_guard::abort_on_violation(guarded());
     servo.warm_up();
     std::uint64_t sequence = 0;
     const auto order = [&](CommandKind kind, double value = 0.0, std::uint32_t index = 0) {
-        mail.orders.push({++sequence, value, static_cast<std::uint32_t>(kind), index});
+        mailbox.orders.push({++sequence, value, static_cast<std::uint32_t>(kind), index});
     };
     const auto cycles = [&](int n) {
         for (int i = 0; i < n && !servo.finished(); ++i) servo.cycle();
@@ -145,7 +145,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     const auto order_body = [&](CommandKind kind, std::uint32_t body, double value = 0.0) {
         ServoOrder o{++sequence, value, static_cast<std::uint32_t>(kind), 0, body};
         for (double& p : o.pos_model_m) p = 27e-10;
-        mail.orders.push(o);
+        mailbox.orders.push(o);
         cycles(4);
     };
     for (int i = 0; i < 20; ++i) order_body(CommandKind::add_body, 0);
@@ -157,17 +157,17 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     }
     for (std::uint32_t i = 1; i < 20; ++i) order_body(CommandKind::remove_body, i);
     order_body(CommandKind::select_body, kNoBody);
-    HouseReport gui{};
+    HousekeepingReport gui{};
     gui.gui_attached = 1;
     gui.gui_heartbeat_ns = to_ns(clock.now());
     gui.gui_vertices_max = 5000;
-    mail.house.publish(gui);
+    mailbox.housekeeping.publish(gui);
     cycles(1200);  // it falls silent as well
     std::unique_ptr<ForceModel> fresh = make_model(2);
-    ASSERT_TRUE(mail.model.offer(fresh));
+    ASSERT_TRUE(mailbox.model.offer(fresh));
     cycles(300);
-    mail.model.collect().reset();
-    mail.stop_signal = 15;
+    mailbox.model.collect().reset();
+    mailbox.stop_signal = 15;
     cycles(1000);
     rt_guard::abort_on_violation(false);
     EXPECT_TRUE(servo.finished());
@@ -193,18 +193,18 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     const auto region = std::make_unique<RtRegion>();
     ManualClock clock;
     clock.wait_until(bus.now());
-    ServoMail mail;
+    ServoMailbox mailbox;
     std::unique_ptr<ForceModel> model = load_docking_model(scene, {});
     const HandParts hand{&device, model.release(), info};
     ServoSettings settings;
     settings.watchdogs.timing_latches = false;  // a fault of the device latches all the same
     settings.dry_cycles = 1;
-    Servo servo({clock, {&hand, 1}, *region, mail}, settings);
+    Servo servo({clock, {&hand, 1}, *region, mailbox}, settings);
     rt_guard::abort_on_violation(guarded());
     servo.warm_up();
     std::uint64_t sequence = 0;
     const auto order = [&](CommandKind kind) {
-        mail.orders.push({++sequence, 0.0, static_cast<std::uint32_t>(kind), 0});
+        mailbox.orders.push({++sequence, 0.0, static_cast<std::uint32_t>(kind), 0});
     };
     const auto cycles = [&](int n) {
         for (int i = 0; i < n; ++i) {

@@ -8,13 +8,13 @@
 #include <stdexcept>
 
 #include "hal/sim/sim_device.hpp"
-#include "ipc/assets/scene_file.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/force/docking/docking_model.hpp"
-#include "rt/loop/model_builder.hpp"
-#include "rt/loop/servo.hpp"
+#include "rt/servo/servo.hpp"
+#include "rt/threads/model_builder.hpp"
 #include "tests/support/small_scene.hpp"
 
 namespace tact {
@@ -41,7 +41,7 @@ std::unique_ptr<DockingModel> two_structures() {
     const Codebook book = read_codebook(scene, 0);
     Codebook finer = book;  // 30, 240 and all 2400: it starts in the middle
     finer.levels.push_back({helix.x_m, helix.y_m, helix.z_m, helix.mass_fraction, {}, 0.0});
-    return std::make_unique<DockingModel>(read_meta(scene), read_felt_grid(scene),
+    return std::make_unique<DockingModel>(read_meta(scene), read_force_map_grid(scene),
                                           std::vector<Structure>{helix, big},
                                           std::vector<Codebook>{book, finer}, DockingSettings{});
 }
@@ -55,7 +55,7 @@ public:
         ServoSettings settings;
         settings.model_deadline = false;
         settings.dry_cycles = 20;
-        servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mail_}, settings);
+        servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mailbox_}, settings);
         servo_->warm_up();
         order(CommandKind::arm);
         cycles(1000);
@@ -76,7 +76,7 @@ public:
         ServoOrder o{++sequence_, value, static_cast<std::uint32_t>(kind), 0, body};
         for (int i = 0; i < 3; ++i) o.pos_model_m[i] = pose.p_m[i];
         for (int i = 0; i < 4; ++i) o.quat_model_body_xyzw[i] = pose.q.coeffs()[i];
-        mail_.orders.push(o);
+        mailbox_.orders.push(o);
         least_n = 1e9;
         cycles(1);
         HealthTopic h{};
@@ -103,7 +103,7 @@ public:
     }
 
     double step_n_max = 0.0, least_n = 1e9;
-    ServoMail mail_;
+    ServoMailbox mailbox_;
     std::optional<Servo> servo_;
 
 private:
@@ -274,7 +274,7 @@ private:
 void settle(Loop& loop, ModelBuilder& builder) {
     for (int i = 0; i < 60000; ++i) {
         builder.attend();
-        loop.mail_.model.collect().reset();
+        loop.mailbox_.model.collect().reset();
         loop.cycles(2);
         if (loop.bodies().building == 0) return;
         ::poll(nullptr, 0, 1);
@@ -284,7 +284,7 @@ void settle(Loop& loop, ModelBuilder& builder) {
 
 TEST(BodiesScenario, what_cannot_be_had_in_constant_time_is_built_aside_and_then_goes_on_from_there) {
     Loop loop(std::make_unique<BuiltAside>());
-    ModelBuilder builder(loop.mail_, gettid());
+    ModelBuilder builder(loop.mailbox_, gettid());
     ASSERT_EQ(loop.order(CommandKind::set_subtraction, 1.0), CommandResult::done);
     EXPECT_EQ(loop.bodies().building, 1U);
     EXPECT_EQ(loop.bodies().options, 0U);
@@ -304,7 +304,7 @@ TEST(BodiesScenario, what_cannot_be_had_in_constant_time_is_built_aside_and_then
 
 TEST(BodiesScenario, what_cannot_be_built_is_given_up_and_the_model_in_use_goes_on) {
     Loop loop(std::make_unique<BuiltAside>());
-    ModelBuilder builder(loop.mail_, gettid());
+    ModelBuilder builder(loop.mailbox_, gettid());
     ASSERT_EQ(loop.order(CommandKind::set_laplacian, 1.0), CommandResult::done);
     EXPECT_EQ(loop.bodies().building, 1U);
     settle(loop, builder);
@@ -318,7 +318,7 @@ TEST(BodiesScenario, what_cannot_be_built_is_given_up_and_the_model_in_use_goes_
 TEST(BodiesScenario, a_builder_may_end_at_any_time) {
     for (int cycles = 0; cycles < 4; ++cycles) {
         Loop loop(std::make_unique<BuiltAside>());
-        ModelBuilder builder(loop.mail_, gettid());
+        ModelBuilder builder(loop.mailbox_, gettid());
         static_cast<void>(loop.order(CommandKind::set_subtraction, 1.0));
         for (int i = 0; i < cycles; ++i) builder.attend();
     }

@@ -112,16 +112,17 @@ TEST(DrillScenario, the_same_run_leaves_the_same_bone) {
     EXPECT_EQ(run(), run());
 }
 
-// An emulated surgeon and the hand with the sucker at the same block of bone.
+// An emulated surgeon and the hand with the suction tube at the same block of bone.
 struct TwoHands {
     BoneBlock block{96, 5e-4, [](const Vec3& v) { return v.z() < 40.0 ? 1.0 : 0.0; }, 1};
     DrillBone bone{block.bricks, block.density, block.revision};
-    DrillModel burr{meta(), bone, {}}, sucker{meta(), bone, tube()};
+    DrillModel burr{meta(), bone, {}}, suction_tube{meta(), bone, tube()};
     SimLines lines;
     Lockstep loop;
 
     explicit TwoHands(Pedal burr_pedal = Pedal::button, Pedal suction = Pedal::button)
-        : loop(settings(burr_pedal, suction), hand("surgeon"), opened(), &burr, {hand("sucker"), &sucker}) {}
+        : loop(settings(burr_pedal, suction), hand("surgeon"), opened(), &burr,
+               {hand("suction-tube"), &suction_tube}) {}
 
     Lines* opened() {
         static_cast<void>(lines.open());
@@ -164,33 +165,33 @@ struct TwoHands {
     }
 };
 
-TEST(TwoHandsScenario, the_burr_cuts_the_sucker_is_held_and_each_has_a_force_of_its_own) {
+TEST(TwoHandsScenario, the_burr_cuts_the_suction_tube_is_held_and_each_has_a_force_of_its_own) {
     TwoHands t;
     const std::uint64_t whole = t.mass();
     t.active();
-    double pressed_n = 0.0, sucker_n = 0.0;
+    double pressed_n = 0.0, suction_tube_n = 0.0;
     bool lifted = false, sucked = false;
     for (int i = 0; i < 14000; ++i) {
         t.loop.cycles(1);
         const DrillTopic d = t.loop.drill();
         ASSERT_EQ(d.hand[0].kind, DrillKind::burr);
-        ASSERT_EQ(d.hand[1].kind, DrillKind::sucker);
+        ASSERT_EQ(d.hand[1].kind, DrillKind::suction_tube);
         ASSERT_EQ(d.hand[1].burr_rad_s, 0.0F);
         ASSERT_EQ(d.hand[0].suction, 0.0F);
         pressed_n = std::max(pressed_n, t.loop.device_.shown_dev().force_n.norm());
-        sucker_n = std::max(sucker_n, t.loop.device2_.shown_dev().force_n.norm());
+        suction_tube_n = std::max(suction_tube_n, t.loop.device2_.shown_dev().force_n.norm());
         sucked = sucked || d.hand[1].suction == 1.0F;
         lifted = lifted || (d.removed_levels > 0 && d.hand[0].burr_rad_s == 0.0F && d.hand[0].depth == 0.0F);
     }
     EXPECT_EQ(t.loop.state(), RunState::active);
     EXPECT_GT(pressed_n, 0.3);
     EXPECT_LT(pressed_n, 3.0);
-    EXPECT_GT(sucker_n, 0.05);
-    EXPECT_LT(sucker_n, 1.0);
+    EXPECT_GT(suction_tube_n, 0.05);
+    EXPECT_LT(suction_tube_n, 1.0);
     EXPECT_TRUE(sucked);
     EXPECT_TRUE(lifted);
     EXPECT_GT(t.burr.removed_m3(), 20e-9);
-    EXPECT_EQ(t.sucker.removed_levels(), 0U);
+    EXPECT_EQ(t.suction_tube.removed_levels(), 0U);
     EXPECT_EQ(t.loop.drill().removed_levels, t.burr.removed_levels());
     EXPECT_EQ(t.mass() + t.burr.removed_levels(), whole);
 }
@@ -229,7 +230,7 @@ TEST(TwoHandsScenario, a_foot_pedal_drives_the_burr_and_another_one_the_suction)
     EXPECT_EQ(t.loop.drill().hand[1].suction, 0.0F);
 }
 
-TEST(TwoHandsScenario, a_lost_sucker_stops_both_hands) {
+TEST(TwoHandsScenario, a_lost_suction_tube_stops_both_hands) {
     TwoHands t;
     t.active();
     t.loop.cycles(6000);

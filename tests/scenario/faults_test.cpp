@@ -184,7 +184,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
         FramesTopic frames{};
         auto* const words = reinterpret_cast<unsigned char*>(&frames);
         for (std::size_t i = 0; i < sizeof frames; ++i) words[i] = static_cast<unsigned char>(random());
-        frames.figures.late = frames.figures.frames + 1;
+        frames.metrics.late = frames.metrics.frames + 1;
         visual.region().frames.publish(frames);
         ASSERT_TRUE(watch.cycles_pass(5));
         EXPECT_EQ(watch.state(), RunState::active);
@@ -208,13 +208,13 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     std::printf("%d impossible commands and %d loads sent, %llu refusals counted\n", commands, loads,
                 static_cast<unsigned long long>(h.bad_input - refused));
     // None of its impossible figures were passed on; possible ones are.
-    PictureTopic picture{};
-    EXPECT_TRUE(!watch.region().picture.read(picture) || plausible(picture.figures));
+    DisplayTopic picture{};
+    EXPECT_TRUE(!watch.region().picture.read(picture) || plausible(picture.metrics));
     FramesTopic frames{};
-    frames.figures.frames = 4321;
+    frames.metrics.frames = 4321;
     visual.region().frames.publish(frames);
     EXPECT_TRUE(
-        until([&] { return watch.region().picture.read(picture) && picture.figures.frames == 4321; }));
+        until([&] { return watch.region().picture.read(picture) && picture.metrics.frames == 4321; }));
     // Good words are still understood.
     EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
     EXPECT_EQ(watch.state(), RunState::ready);

@@ -12,9 +12,9 @@ using std::chrono::microseconds;
 struct Picture {
     Lockstep& loop;
     double frame_s;
-    HouseReport report{};
+    HousekeepingReport report{};
 
-    void frame(bool obeys = true) {
+    void frame(bool applies = true) {
         const LevelsTopic l = loop.levels();
         const double level = static_cast<double>(l.path[Servo::kMeshIndex].level);
         const double work_s = 0.004 + (frame_s - 0.004) * level;
@@ -23,11 +23,11 @@ struct Picture {
         report.gui_generation = 5;
         report.gui_vertices_max = 100000;
         report.gui_vertices = static_cast<std::uint32_t>(100000 * level);
-        if (obeys) report.gui_levels_sequence = l.sequence;
+        if (applies) report.gui_levels_sequence = l.sequence;
         ++report.gui_frame;
         report.gui_work_s = work_s;
         report.gui_cpu_s += work_s;
-        loop.mail_.house.publish(report);
+        loop.mailbox_.housekeeping.publish(report);
         loop.cycles(static_cast<int>(1e3 * work_s) + 1);
     }
     [[nodiscard]] float level() const { return loop.levels().path[Servo::kMeshIndex].level; }
@@ -36,16 +36,16 @@ struct Picture {
     }
 };
 
-ServoSettings with_picture_goal(Law law, double hz) {
+ServoSettings with_display_goal(Law law, double hz) {
     ServoSettings s;
     s.governor.law = law;
-    s.governor.picture_goal_hz = hz;
+    s.governor.display_goal_hz = hz;
     return s;
 }
 
 TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_force_stays) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
-        Lockstep loop(with_picture_goal(law, 30.0));
+        Lockstep loop(with_display_goal(law, 30.0));
         loop.active();
         Picture picture{loop, 0.5};
         int frames = 0;
@@ -56,13 +56,13 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_f
         EXPECT_LT(0.004 + 0.496 * static_cast<double>(picture.level()), 1.1 / 30.0);
         EXPECT_GT(picture.level(), 0.02F);
         EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
-        EXPECT_FLOAT_EQ(loop.levels().picture_goal_hz, 30.0F);
+        EXPECT_FLOAT_EQ(loop.levels().display_goal_hz, 30.0F);
         EXPECT_EQ(loop.health().overruns, 0U);
     }
 }
 
 TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
-    Lockstep loop(with_picture_goal(Law::elastic, 30.0));
+    Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.active();
     Picture picture{loop, 0.5};
     picture.frame();
@@ -77,7 +77,7 @@ TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
 }
 
 TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) {
-    Lockstep loop(with_picture_goal(Law::elastic, 0.0));
+    Lockstep loop(with_display_goal(Law::elastic, 0.0));
     loop.active();
     Picture picture{loop, 0.5};
     for (int i = 0; i < 10; ++i) picture.frame();
@@ -89,7 +89,7 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
 PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[Servo::kParticlesIndex]; }
 
 TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
-    ServoSettings settings = with_picture_goal(Law::elastic, 30.0);
+    ServoSettings settings = with_display_goal(Law::elastic, 30.0);
     EXPECT_EQ(Lockstep(settings).levels().count, 2U);
     settings.bone = true;
     Lockstep loop(settings);
@@ -146,7 +146,7 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
 // --- a slow half that does not get through ---
 
 TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then_what_it_has_to_do) {
-    Lockstep loop(with_picture_goal(Law::elastic, 30.0));
+    Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(100);
     loop.active();
@@ -165,8 +165,8 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
     }
     // Nine tenths of a turn's time are used, and the servo itself missed nothing.
     EXPECT_TRUE(force_fell);
-    EXPECT_LT(loop.model_.tend_s(), 0.0041);
-    EXPECT_GT(loop.model_.tend_s(), 0.003);
+    EXPECT_LT(loop.model_.slow_update_s(), 0.0041);
+    EXPECT_GT(loop.model_.slow_update_s(), 0.003);
     EXPECT_EQ(loop.health().overruns, 0U);
     loop.model_.turn_s = 0.001;
     for (int i = 0; i < 4000; ++i) picture.frame();
@@ -211,12 +211,12 @@ TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer
     FreeLoop loop(Law::elastic);
     loop.model_.cost = std::chrono::microseconds(950);
     static_cast<void>(loop.windows(1.0));
-    EXPECT_FLOAT_EQ(loop.health().fresh_least, 1.0F);
+    EXPECT_FLOAT_EQ(loop.health().recomputed_fraction_least, 1.0F);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_GE(loop.windows(0.25).first, 96U);
-    EXPECT_LT(loop.health().fresh_least, 0.95F);
+    EXPECT_LT(loop.health().recomputed_fraction_least, 0.95F);
     EXPECT_GE(loop.windows(5.0).first, 96U);
-    EXPECT_GT(loop.health().fresh_mean, 0.95F);  // by then the law has answered
+    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the law has answered
     EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.66, 0.05);
 }
 
@@ -224,7 +224,7 @@ TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_whol
     FreeLoop loop(Law::fixed);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_LE(loop.windows(1.0).second, 68U);
-    EXPECT_FLOAT_EQ(loop.health().fresh_least, 1.0F);
+    EXPECT_FLOAT_EQ(loop.health().recomputed_fraction_least, 1.0F);
     loop.model_.cost = std::chrono::microseconds(100);
     EXPECT_GE(loop.windows(1.0).first, 900U);
     EXPECT_FLOAT_EQ(loop.health().rested, 0.0F);
@@ -249,7 +249,7 @@ TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_pictu
 
 TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_their_bounds) {
     for (const double bad : {-1.0, 1e300, 0.0}) {
-        Lockstep loop(with_picture_goal(Law::elastic, 30.0));
+        Lockstep loop(with_display_goal(Law::elastic, 30.0));
         loop.active();
         Picture picture{loop, 0.05};
         for (int i = 0; i < 20; ++i) {
@@ -259,7 +259,7 @@ TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_thei
             picture.report.gui_taken_at_ns = i % 2 == 0 ? INT64_MIN : INT64_MAX;
             picture.report.gui_work_s = bad;
             ++picture.report.gui_frame;
-            loop.mail_.house.publish(picture.report);
+            loop.mailbox_.housekeeping.publish(picture.report);
             loop.cycles(100);
             EXPECT_GE(picture.level(), 0.01F);
             EXPECT_LE(picture.level(), 1.0F);
@@ -322,7 +322,7 @@ TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_it
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(2000);  // the machine is too slow even so
     for (int i = 0; i < 20; ++i) {
-        loop.mail_.house.publish(gui_at(loop.clock_.now()));
+        loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
         loop.cycles(100);
         if (loop.levels().path[Servo::kMeshIndex].level > 0.011F) {
             EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);

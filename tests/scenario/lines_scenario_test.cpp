@@ -161,7 +161,7 @@ TEST(LinesScenarios, a_drop_by_the_supervisor_is_a_fault_of_its_own) {
     Loop loop;
     loop.active();
     loop.lines_.drop();
-    loop.mail_.pulse.drops.fetch_add(1);
+    loop.mailbox_.pulse.drops.fetch_add(1);
     loop.cycles(1);
     EXPECT_EQ(loop.shown_n(), 0.0);
     EXPECT_EQ(loop.state(), RunState::fault);
@@ -189,7 +189,7 @@ TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lam
     EXPECT_FALSE(loop.enabled());
     EXPECT_EQ(loop.driven() & kLineLamp, 0);
     loop.active();
-    loop.mail_.stop_signal.store(15);
+    loop.mailbox_.stop_signal.store(15);
     loop.cycles(300);
     EXPECT_TRUE(loop.servo_->finished());
     LinesSample s;

@@ -11,7 +11,7 @@
 #include "hal/sim/sim_device.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/topics/regions.hpp"
-#include "rt/loop/servo.hpp"
+#include "rt/servo/servo.hpp"
 #include "tests/support/spring_model.hpp"
 
 namespace tact {
@@ -34,7 +34,7 @@ public:
         hands_ = {HandParts{&device_, model != nullptr ? model : &model_, device_.open()},
                   HandParts{&device2_, second.model, device2_.open()}};
         const std::span<const HandParts> hands(hands_.data(), second.model != nullptr ? 2 : 1);
-        servo_.emplace(ServoParts{clock_, hands, *region_, mail_, lines}, settings);
+        servo_.emplace(ServoParts{clock_, hands, *region_, mailbox_, lines}, settings);
         servo_->warm_up();
     }
 
@@ -42,7 +42,7 @@ public:
         for (int i = 0; i < n && !servo_->finished(); ++i) servo_->cycle();
     }
     void order(CommandKind kind, double value = 0.0, std::uint32_t index = 0) {
-        mail_.orders.push({++sequence_, value, static_cast<std::uint32_t>(kind), index});
+        mailbox_.orders.push({++sequence_, value, static_cast<std::uint32_t>(kind), index});
     }
     // Armed, active, ramp over.
     void active() {
@@ -90,15 +90,15 @@ public:
     std::unique_ptr<RtRegion> region_;
     SimDevice device_, device2_;
     SpringModel model_;
-    ServoMail mail_;
+    ServoMailbox mailbox_;
     std::array<HandParts, 2> hands_{};
     std::optional<Servo> servo_;
     std::uint64_t sequence_ = 0;
 };
 
 // What the house says of a visual process that reported then.
-inline HouseReport gui_at(Instant t) {
-    HouseReport r{};
+inline HousekeepingReport gui_at(Instant t) {
+    HousekeepingReport r{};
     r.gui_heartbeat_ns = to_ns(t);
     r.gui_attached = 1;
     r.gui_generation = 5;

@@ -1,8 +1,8 @@
 // What the loop says of every cycle for recordings: all of it, in order, with the inputs as they came.
 #include <gtest/gtest.h>
 
-#include "deploy/record/drain.hpp"
-#include "deploy/record/flight.hpp"
+#include "ipc/recorder/drain.hpp"
+#include "ipc/recorder/flight.hpp"
 #include "tests/scenario/lockstep.hpp"
 
 namespace tact {
@@ -59,9 +59,9 @@ TEST(RecordScenario, a_step_says_what_the_device_gave_and_what_it_was_sent) {
     }
     EXPECT_EQ(h.taken_at_ns, tool.taken_at_ns);
     EXPECT_EQ(h.hand_present, 1);
-    EXPECT_EQ(h.deadline_look, 0U);
+    EXPECT_EQ(h.deadline_check, 0U);
     EXPECT_EQ(batch.cycles.back().run_state, static_cast<std::uint8_t>(RunState::active));
-    EXPECT_EQ(batch.cycles.back().looks, 4);  // wake, before and behind the model, end
+    EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake, before and behind the model, end
 }
 
 TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
@@ -69,16 +69,16 @@ TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
     loop.cycles(10);
     loop.order(CommandKind::set_goal_hz, 500.0);
     loop.cycles(5);
-    loop.mail_.house.publish(gui_at(loop.clock_.now()));
+    loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
     loop.cycles(5);
     Drain drain(*loop.region_);
     Batch batch;
     drain.take(batch, 0);
-    ASSERT_EQ(batch.mail.size(), 1U);
-    EXPECT_EQ(batch.mail[0].step, 20U + 11U);
-    EXPECT_EQ(batch.mail[0].kind, static_cast<std::uint32_t>(MailKind::order));
-    EXPECT_EQ(batch.mail[0].order.kind, static_cast<std::uint32_t>(CommandKind::set_goal_hz));
-    EXPECT_EQ(batch.mail[0].order.value, 500.0);
+    ASSERT_EQ(batch.mailbox.size(), 1U);
+    EXPECT_EQ(batch.mailbox[0].step, 20U + 11U);
+    EXPECT_EQ(batch.mailbox[0].kind, static_cast<std::uint32_t>(MailboxKind::order));
+    EXPECT_EQ(batch.mailbox[0].order.kind, static_cast<std::uint32_t>(CommandKind::set_goal_hz));
+    EXPECT_EQ(batch.mailbox[0].order.value, 500.0);
     ASSERT_EQ(batch.reports.size(), 1U);
     EXPECT_EQ(batch.reports[0].step, 20U + 16U);
     EXPECT_EQ(batch.reports[0].said.gui_generation, 5U);

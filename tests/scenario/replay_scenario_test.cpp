@@ -2,8 +2,8 @@
 // recording that was changed.
 #include <gtest/gtest.h>
 
-#include "deploy/record/recorder.hpp"
 #include "ipc/record/recording_reader.hpp"
+#include "ipc/recorder/recorder.hpp"
 #include "rt/replay/replay.hpp"
 #include "tests/scenario/rig.hpp"
 

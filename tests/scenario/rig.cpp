@@ -12,10 +12,10 @@
 #include <random>
 #include <sstream>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact::scenario {
 

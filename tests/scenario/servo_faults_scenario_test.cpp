@@ -20,7 +20,7 @@ ServoSettings strict() {
 struct Fault {
     const char* name;
     void (*happen)(Lockstep&);
-    void (*mend)(Lockstep&);
+    void (*fix)(Lockstep&);
     RunReason reason;
     int cycles_until_zero;
 };
@@ -41,12 +41,12 @@ TEST_P(FaultScenario, leads_to_zero_force_latched_until_a_person_resets_it) {
     EXPECT_EQ(loop.reason(), f.reason);
     EXPECT_EQ(loop.said(EventCode::fault_latched), 1);
     FaultSnapshot snapshot{};
-    ASSERT_TRUE(loop.mail_.fault.read(snapshot));
+    ASSERT_TRUE(loop.mailbox_.fault.read(snapshot));
     EXPECT_EQ(snapshot.reason, static_cast<std::uint64_t>(f.reason));
     EXPECT_EQ(snapshot.cycle, loop.servo_->state().cycle);
 
     // Arming is refused, the trouble's end changes nothing.
-    f.mend(loop);
+    f.fix(loop);
     loop.order(CommandKind::arm);
     loop.cycles(50);
     EXPECT_EQ(loop.state(), RunState::fault);

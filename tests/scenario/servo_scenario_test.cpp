@@ -92,7 +92,7 @@ TEST(ServoScenario, a_signal_ramps_to_zero_within_a_tenth_of_a_second_and_ends_w
     Lockstep loop;
     loop.active();
     const double before = loop.shown_n();
-    loop.mail_.stop_signal = 15;
+    loop.mailbox_.stop_signal = 15;
     loop.cycles(1);
     EXPECT_GT(loop.shown_n(), 0.5 * before);  // a ramp, not a step
     const Instant begin = loop.clock_.now();
@@ -110,7 +110,7 @@ TEST(ServoScenario, a_signal_ends_a_faulted_loop_as_well) {
     loop.active();
     loop.device_.inject(SimFault::unplugged);
     loop.cycles(10);
-    loop.mail_.stop_signal = 2;
+    loop.mailbox_.stop_signal = 2;
     loop.cycles(200);
     EXPECT_TRUE(loop.servo_->finished());
 }
@@ -185,7 +185,7 @@ TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_c
         ServoSettings s;
         s.gui_silent_ramps = ramps;
         Lockstep loop(s);
-        loop.mail_.house.publish(gui_at(loop.clock_.now()));
+        loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
         loop.order(CommandKind::arm);
         loop.cycles(499);
         EXPECT_EQ(loop.state(), RunState::active);
@@ -212,12 +212,12 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
     fresh->destroyed = &destroyed;
     SpringModel* const raw = fresh.get();
     std::unique_ptr<ForceModel> offered = std::move(fresh);
-    ASSERT_TRUE(loop.mail_.model.offer(offered));
+    ASSERT_TRUE(loop.mailbox_.model.offer(offered));
     loop.cycles(1);
     EXPECT_LT(loop.shown_n(), 0.01);
     EXPECT_EQ(raw->resets, 1);
     EXPECT_EQ(loop.said(EventCode::model_swapped), 1);
-    std::unique_ptr<ForceModel> old = loop.mail_.model.collect();
+    std::unique_ptr<ForceModel> old = loop.mailbox_.model.collect();
     EXPECT_EQ(old.get(), &loop.model_);
     static_cast<void>(old.release());  // the fixture's own
     loop.cycles(4000);
@@ -225,9 +225,9 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
 
     // Back again, so that the one on the heap is destroyed here.
     std::unique_ptr<ForceModel> back(&loop.model_);
-    ASSERT_TRUE(loop.mail_.model.offer(back));
+    ASSERT_TRUE(loop.mailbox_.model.offer(back));
     loop.cycles(1);
-    loop.mail_.model.collect().reset();
+    loop.mailbox_.model.collect().reset();
     EXPECT_EQ(destroyed, 1);
 }
 

@@ -99,8 +99,8 @@ TEST(SiteScenario, all_that_the_burr_took_is_dust_or_accounted_for) {
     EXPECT_TRUE(ledger.balances());
     EXPECT_GT(ledger.carried, 0U);
     EXPECT_LT(ledger.pooled, 50U * 255U);
-    EXPECT_GT(watched.site->figures().drilling_s, 1.0);
-    EXPECT_LE(watched.site->figures().seen_s, watched.site->figures().drilling_s);
+    EXPECT_GT(watched.site->metrics().drilling_s, 1.0);
+    EXPECT_LE(watched.site->metrics().seen_s, watched.site->metrics().drilling_s);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ class StallScenario : public testing::Test {
 protected:
     explicit StallScenario(double damping_n_s_m = 0.0) : loop_(settings(damping_n_s_m)) {
         std::unique_ptr<ForceModel> offered(&stiff_);
-        loop_.mail_.model.offer(offered);
+        loop_.mailbox_.model.offer(offered);
         loop_.cycles(10);
-        static_cast<void>(loop_.mail_.model.collect().release());  // the lockstep's own
+        static_cast<void>(loop_.mailbox_.model.collect().release());  // the lockstep's own
         loop_.active();
     }
     static ServoSettings settings(double damping_n_s_m) {

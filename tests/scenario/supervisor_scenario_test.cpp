@@ -37,7 +37,7 @@ TEST_P(SupervisorScenario, a_servo_that_stands_loses_the_enable_line_until_a_per
     ASSERT_TRUE(wait_for([&] { return loop.state() == RunState::fault; }));
     EXPECT_EQ(loop.health().reason, static_cast<std::uint8_t>(RunReason::supervisor));
     FaultSnapshot snapshot{};
-    ASSERT_TRUE(loop.mail().fault.read(snapshot));
+    ASSERT_TRUE(loop.mailbox().fault.read(snapshot));
     EXPECT_EQ(snapshot.reason, static_cast<std::uint64_t>(RunReason::supervisor));
     RingCursor cursor;
     EventTopic event{};

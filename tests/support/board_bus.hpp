@@ -13,8 +13,8 @@
 #include <thread>
 #include <utility>
 
-#include "hal/emu/board.hpp"
 #include "hal/phantom/phantom_usb.hpp"
+#include "tests/emu/board.hpp"
 
 namespace tact::emu {
 

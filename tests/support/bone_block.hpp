@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/bone_bricks.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 
 namespace tact {
 

@@ -130,7 +130,9 @@ public:
     }
     [[nodiscard]] const Vec3& grip_m() const noexcept { return grip_m_; }
     // What the motors push with now.
-    [[nodiscard]] Vec3 force_n() const noexcept { return legs_.force_n(legs_.posture(grip_m_), shown_); }
+    [[nodiscard]] Vec3 force_n() const noexcept {
+        return legs_.force_n(legs_.configuration(grip_m_), shown_);
+    }
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
     bool plugged = true, deaf = false, mute = false, stall = false, refuses_settings = false;

@@ -6,9 +6,9 @@
 #include <deque>
 #include <memory>
 
-#include "hal/emu/board.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "hal/polhem/polhem_bus.hpp"
+#include "tests/emu/board.hpp"
 
 namespace tact::emu {
 

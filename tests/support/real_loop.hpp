@@ -17,8 +17,8 @@
 #include "hal/sim/sim_lines.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/topics/regions.hpp"
-#include "rt/loop/servo.hpp"
-#include "rt/loop/supervisor.hpp"
+#include "rt/servo/servo.hpp"
+#include "rt/threads/supervisor.hpp"
 #include "tests/support/spring_model.hpp"
 
 namespace tact {
@@ -53,13 +53,13 @@ public:
         : region_(new RtRegion{}),
           device_({.hand = {}, .watchdog = kLong}),
           lines_({}, std::make_unique<BoardPort>(board_), std::chrono::milliseconds(1)),
-          supervisor_(mail_.pulse, silence_max, [this] { lines_.drop(); }) {
+          supervisor_(mailbox_.pulse, silence_max, [this] { lines_.drop(); }) {
         static_cast<void>(lines_.open());
         hand_ = {&device_, &model_, device_.open()};
         std::atomic<int> thread_id{0};
         thread_ = std::thread([this, priority, &thread_id] {
             static_cast<void>(raise_to_fifo(pthread_self(), "the servo", priority));
-            Servo servo({clock_, {&hand_, 1}, *region_, mail_, &lines_}, settings());
+            Servo servo({clock_, {&hand_, 1}, *region_, mailbox_, &lines_}, settings());
             servo.warm_up();
             thread_id.store(gettid());
             servo.run();
@@ -69,14 +69,14 @@ public:
     }
     ~RealLoop() {
         model_.stand.store(Stand::none);
-        mail_.stop_signal.store(15);
+        mailbox_.stop_signal.store(15);
         thread_.join();
     }
     RealLoop(const RealLoop&) = delete;
     RealLoop& operator=(const RealLoop&) = delete;
 
     std::uint64_t order(CommandKind kind) {
-        mail_.orders.push({++sequence_, 0.0, static_cast<std::uint32_t>(kind), 0});
+        mailbox_.orders.push({++sequence_, 0.0, static_cast<std::uint32_t>(kind), 0});
         return sequence_;
     }
     // A person resets and arms whenever that is due. True once the amplifier is enabled.
@@ -93,13 +93,13 @@ public:
         return h;
     }
     [[nodiscard]] RunState state() const { return static_cast<RunState>(health().state); }
-    [[nodiscard]] std::uint64_t drops() const { return mail_.pulse.drops.load(); }
-    [[nodiscard]] Instant beat() const { return instant_from_ns(mail_.pulse.beat_ns.load()); }
+    [[nodiscard]] std::uint64_t drops() const { return mailbox_.pulse.drops.load(); }
+    [[nodiscard]] Instant beat() const { return instant_from_ns(mailbox_.pulse.beat_ns.load()); }
     // As someone at the adapter measures it.
     [[nodiscard]] bool enabled() const { return (board_.driven() & kLineEnable) != 0; }
     [[nodiscard]] LinesHealth lines() const { return lines_.health(); }
     [[nodiscard]] const RtRegion& region() const { return *region_; }
-    [[nodiscard]] ServoMail& mail() { return mail_; }
+    [[nodiscard]] ServoMailbox& mailbox() { return mailbox_; }
 
 private:
     static constexpr Duration kLong = std::chrono::hours(1);
@@ -133,7 +133,7 @@ private:
     SimDevice device_;
     StandingModel model_;
     HandParts hand_{};
-    ServoMail mail_;
+    ServoMailbox mailbox_;
     SimBoard board_;
     PumpedLines lines_;
     Supervisor supervisor_;

@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "rt/govern/display_watch.hpp"
 #include "rt/govern/governor.hpp"
-#include "rt/govern/picture_watch.hpp"
 #include "rt/govern/rate_hold.hpp"
 
 namespace tact {
@@ -107,7 +107,7 @@ private:
                             : p_.free_running ? share / update_s
                                               : dt_s * std::min(governor_.settings().goal_hz, 1.0 / update_s);
         updates_ += made;
-        interval_fresh_ += made * fresh_;
+        interval_recomputed_ += made * fresh_;
         sample_fresh_ += made * fresh_;
         sample_updates_ += made;
         begun_ += made;
@@ -124,13 +124,13 @@ private:
 
     void begin_update() {
         const double goal_hz = governor_.settings().goal_hz;
-        fresh_ = std::ceil(8.0 * hold_.share(now(), goal_hz)) / 8.0;
+        fresh_ = std::ceil(8.0 * hold_.work_fraction(now(), goal_hz)) / 8.0;
         if (governor_.level(0) < 1.0F) rest_until_s_ = t_s_ + hold_.rest_s(now(), goal_hz);
     }
 
     void begin_frame() {
         begun_s_ = t_s_;
-        obeyed_ = sequence_;
+        applied_ = sequence_;
         drawn_level_ = static_cast<double>(governor_.level(0));
         const double jitter = 1.0 + p_.frame_jitter * std::clamp(normal_(random_), -3.0, 3.0);
         work_left_s_ = frame_s(drawn_level_) * jitter;
@@ -141,7 +141,7 @@ private:
         ++frame_;
         ++sample_frames_;
         const auto look = watch_.take({.frame = frame_,
-                                       .levels_sequence = obeyed_,
+                                       .levels_sequence = applied_,
                                        .taken_at_ns = static_cast<std::int64_t>(t_s_ * 1e9),
                                        .work_s = t_s_ - begun_s_,
                                        .cpu_s = cpu_s_,
@@ -150,7 +150,7 @@ private:
         pending_ = watch_.pending(now());
         if (look) {
             const float before = governor_.level(0);
-            static_cast<void>(governor_.look(*look));
+            static_cast<void>(governor_.update(*look));
             if (note(before)) return restart();
         }
         if (waited && !pending_ && governor_.settings().law == Law::elastic) restart();
@@ -159,7 +159,7 @@ private:
     void govern(double since_s, double update_s) {
         const double measured_hz = updates_ / since_s;
         double rate_hz = measured_hz;
-        const double whole = kFixed + (1.0 - kFixed) * interval_fresh_ / std::max(updates_, 1e-9);
+        const double whole = kFixed + (1.0 - kFixed) * interval_recomputed_ / std::max(updates_, 1e-9);
         if (p_.hold) rate_hz = whole * updates_ / std::max(since_s - interval_rest_s_, 0.1 * since_s);
         if (!p_.free_running) rate_hz = std::min(1.0 / update_s, 1.1 * governor_.settings().goal_hz);
         pending_ = watch_.pending(now());
@@ -180,7 +180,7 @@ private:
     }
     void restart() {
         interval_at_s_ = t_s_;
-        updates_ = interval_fresh_ = interval_rest_s_ = 0.0;
+        updates_ = interval_recomputed_ = interval_rest_s_ = 0.0;
     }
     void sample() {
         const double since_s = t_s_ - sample_at_s_;
@@ -196,20 +196,20 @@ private:
 
     PlantSettings p_;
     Governor governor_;
-    PictureWatch watch_;
+    DisplayWatch watch_;
     std::mt19937 random_;
     std::normal_distribution<double> normal_{0.0, 1.0};
     Load load_{};
     std::vector<PlantSample> samples_;
     double t_s_ = 0.0, interval_at_s_ = 0.0, updates_ = 0.0, cpu_s_ = 0.0;
     double work_left_s_ = 0.0, next_frame_s_ = 0.0, begun_s_ = 0.0, drawn_level_ = 1.0;
-    std::uint64_t sequence_ = 0, obeyed_ = 0, frame_ = 0;
+    std::uint64_t sequence_ = 0, applied_ = 0, frame_ = 0;
     double sample_at_s_ = 0.0, sample_updates_ = 0.0, sample_frames_ = 0.0;
     int changes_ = 0;
     bool pending_ = false;
     RateHold hold_;
     double rest_until_s_ = -1.0, interval_rest_s_ = 0.0;
-    double fresh_ = 1.0, begun_ = 0.0, interval_fresh_ = 0.0, sample_fresh_ = 0.0;
+    double fresh_ = 1.0, begun_ = 0.0, interval_recomputed_ = 0.0, sample_fresh_ = 0.0;
 };
 
 }  // namespace tact

@@ -35,13 +35,14 @@ public:
     StepResult step(const ToolState& tool, const Budget& budget) noexcept override {
         place_ = tool.T_world_tool;
         fidelity_ = static_cast<double>(budget.fidelity);
-        const double share = keeps_sums ? std::clamp(static_cast<double>(budget.share), 0.1, 1.0) : 1.0;
+        const double share =
+            keeps_sums ? std::clamp(static_cast<double>(budget.work_fraction), 0.1, 1.0) : 1.0;
         if (clock != nullptr) {
             clock->advance(Duration(static_cast<std::int64_t>(static_cast<double>(cost.count()) * share *
                                                               static_cast<double>(budget.fidelity))));
         }
         StepResult result;
-        result.load.fresh = static_cast<float>(share);
+        result.load.recomputed_fraction = static_cast<float>(share);
         result.wrench_world.force_n = stiffness_n_m * (rest_world_m - tool.T_world_tool.p_m);
         result.wrench_world.torque_n_m = -turn_stiffness_n_m * rotation_vector_rad(tool.T_world_tool.q);
         if (not_a_number) result.wrench_world.force_n.y() = std::numeric_limits<double>::quiet_NaN();
@@ -55,7 +56,7 @@ public:
         return bodies;
     }
 
-    [[nodiscard]] double tend_s() const noexcept override { return turn_s * fidelity_; }
+    [[nodiscard]] double slow_update_s() const noexcept override { return turn_s * fidelity_; }
 
 private:
     Pose place_;

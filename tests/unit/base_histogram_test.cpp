@@ -5,7 +5,7 @@
 namespace tact {
 namespace {
 
-TEST(DurationHistogram, EveryDurationLiesInItsBucketAndBucketsAreNarrow) {
+TEST(DurationHistogram, every_duration_lies_in_its_bucket_and_buckets_are_narrow) {
     for (std::uint64_t ns = 0; ns < 4'000'000'000ULL; ns = ns * 17 / 16 + 1) {
         const std::size_t b = DurationHistogram::bucket_of(ns);
         ASSERT_LT(b, DurationHistogram::kBuckets);
@@ -18,7 +18,7 @@ TEST(DurationHistogram, EveryDurationLiesInItsBucketAndBucketsAreNarrow) {
     }
 }
 
-TEST(DurationHistogram, PercentilesOfAKnownSetAreNeverUnderstated) {
+TEST(DurationHistogram, percentiles_of_a_known_set_are_never_understated) {
     DurationHistogram h;
     for (int i = 1; i <= 1000; ++i) h.add(Duration(i * 100));
     EXPECT_GE(h.percentile_ns(0.5), 50'000U);
@@ -29,7 +29,7 @@ TEST(DurationHistogram, PercentilesOfAKnownSetAreNeverUnderstated) {
     EXPECT_EQ(DurationHistogram{}.percentile_ns(0.5), 0U);
 }
 
-TEST(DurationHistogram, HostileDurationsAreCountedAtTheEnds) {
+TEST(DurationHistogram, hostile_durations_are_counted_at_the_ends) {
     DurationHistogram h;
     h.add(Duration(-5));
     h.add(Duration::max());

@@ -10,7 +10,7 @@ namespace tact {
 namespace {
 
 // RE25 of a Premium 1.5.
-const MotorHeatFigures kMotor{2.18, 3.1, 14.0, 12.0, 612.0, 100.0};
+const MotorHeatParameters kMotor{2.18, 3.1, 14.0, 12.0, 612.0, 100.0};
 
 MotorHeat by_small_steps(MotorHeat h, double current_a, double for_s) {
     const double cw = kMotor.winding_tau_s / kMotor.winding_k_w,

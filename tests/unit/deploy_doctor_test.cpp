@@ -43,7 +43,7 @@ Finding one(const Machine& m, const std::string& name) {
 TEST(Doctor, a_tuned_machine_has_nothing_to_mend) {
     for (const Finding& f : judge(tuned())) {
         EXPECT_EQ(f.level, FindingLevel::ok) << f.name << ": " << f.says;
-        EXPECT_EQ(f.mend, "") << f.name;
+        EXPECT_EQ(f.fix, "") << f.name;
     }
 }
 
@@ -66,7 +66,7 @@ TEST(Doctor, every_warning_says_how_to_mend_it) {
     for (const Finding& f : judge(m)) {
         if (f.level == FindingLevel::ok) continue;
         ++warnings;
-        EXPECT_NE(f.mend, "") << f.name;
+        EXPECT_NE(f.fix, "") << f.name;
     }
     EXPECT_EQ(warnings, 12);  // all but the throttling, which is only told
 }
@@ -77,7 +77,7 @@ TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
     m.rtprio_max = 0;
     EXPECT_NE(one(m, "rtprio").says.find("RLIMIT_RTPRIO is 0"), std::string::npos);
     EXPECT_NE(one(m, "rtprio").says.find("not a member of the group realtime"), std::string::npos);
-    EXPECT_EQ(one(m, "rtprio").mend, kRightsFix);
+    EXPECT_EQ(one(m, "rtprio").fix, kRightsFix);
     m.rtprio_max = 99;
     EXPECT_NE(one(m, "rtprio").says.find("container"), std::string::npos);
 }
@@ -94,7 +94,7 @@ TEST(Doctor, controllers_on_one_core_are_warned_about) {
     EXPECT_NE(
         one(m, "servo_cores").says.find("core 3 is shared by session default (process 100), session lab3"),
         std::string::npos);
-    EXPECT_EQ(one(m, "servo_cores").mend, kSharedCoreFix);
+    EXPECT_EQ(one(m, "servo_cores").fix, kSharedCoreFix);
 }
 
 TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
@@ -106,16 +106,16 @@ TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
     const auto expect = [&](const char* text, const char* fix) {
         for (const char* const name : {"rtprio", "memlock"}) {
             EXPECT_NE(one(m, name).says.find(text), std::string::npos) << one(m, name).says;
-            EXPECT_EQ(one(m, name).mend, fix) << name;
+            EXPECT_EQ(one(m, name).fix, fix) << name;
         }
     };
     m.person.groups = {"users"};
     m.person.listed = {"users"};
     expect("not a member of the group realtime", kRightsFix);
-    EXPECT_EQ(one(m, "dma_latency").mend, kRightsFix);
+    EXPECT_EQ(one(m, "dma_latency").fix, kRightsFix);
     m.person.listed = {"users", "realtime"};
     expect("this session is older than that", kLoginFix);
-    EXPECT_EQ(one(m, "dma_latency").mend, kLoginFix);
+    EXPECT_EQ(one(m, "dma_latency").fix, kLoginFix);
     m.person.groups = {"users", "realtime"};
     expect("tact.conf is missing", kRightsFix);
     m.person.limits = "# @realtime - rtprio 95\n@audio - rtprio 95\n@audio - memlock unlimited\n";
@@ -124,8 +124,8 @@ TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
     m.person.limits = {std::istreambuf_iterator<char>(shipped), {}};
     expect("the limits of this session are not those", kSessionLimitsFix);
     m.person.limits = "@realtime - rtprio 95\n";  // one of the two
-    EXPECT_EQ(one(m, "rtprio").mend, kSessionLimitsFix);
-    EXPECT_EQ(one(m, "memlock").mend, kRightsFix);
+    EXPECT_EQ(one(m, "rtprio").fix, kSessionLimitsFix);
+    EXPECT_EQ(one(m, "memlock").fix, kRightsFix);
     m.person = {true, {}, {}, ""};  // root without the capability, in a container
     expect("root has no capability", kCapabilityFix);
 }
@@ -140,8 +140,8 @@ TEST(Doctor, a_person_is_read_with_the_groups_of_the_process_and_of_the_database
 TEST(Doctor, the_fixes_for_rights_are_written_down_once) {
     std::string all;
     for (const char* const path :
-         {"deploy/tact/doctor.cpp", "deploy/tact/probe.cpp", "deploy/tact/probe_wish.cpp",
-          "deploy/tact/rights.cpp", "rt/loop/thread_setup.cpp", "ipc/base/fifo.hpp"}) {
+         {"deploy/tact/doctor.cpp", "deploy/tact/probe.cpp", "deploy/tact/probe_request.cpp",
+          "deploy/tact/rights.cpp", "rt/threads/thread_setup.cpp", "ipc/base/fifo.hpp"}) {
         std::ifstream in(path);
         ASSERT_TRUE(in) << path;
         all += std::string(std::istreambuf_iterator<char>(in), {});
@@ -174,7 +174,7 @@ TEST(Doctor, an_isolated_core_that_still_ticks_is_not_good_enough) {
     Machine m = tuned();
     m.nohz_full = "";
     EXPECT_EQ(one(m, "isolation").level, FindingLevel::warn);
-    EXPECT_NE(one(m, "isolation").mend.find("nohz_full=3"), std::string::npos);
+    EXPECT_NE(one(m, "isolation").fix.find("nohz_full=3"), std::string::npos);
 }
 
 TEST(Doctor, root_may_lock_memory_whatever_the_limit) {

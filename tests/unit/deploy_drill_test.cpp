@@ -3,15 +3,15 @@
 
 #include <fstream>
 
-#include "deploy/tact/bench_drilling.hpp"
-#include "deploy/tact/drill_run.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/info_drilling.hpp"
-#include "deploy/tact/reproduce/drilling.hpp"
-#include "ipc/assets/bone_labels.hpp"
-#include "ipc/assets/bone_volume.hpp"
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "tests/bench/bench_drilling.hpp"
+#include "tests/bench/drill_run.hpp"
+#include "tests/reproduce/drilling.hpp"
 
 namespace tact::launch {
 namespace {

@@ -28,12 +28,12 @@ DrillTopic two_tools() {
     t.hand[0].radius_m = 3e-3F;
     t.hand[0].length_m = 8e-3F;
     t.hand[0].shaft_radius_m = 1.2e-3F;
-    t.hand[1].kind = DrillKind::sucker;
+    t.hand[1].kind = DrillKind::suction_tube;
     t.hand[1].radius_m = 1e-3F;
     return t;
 }
 
-TEST(DrillingReport, TellsToolsInPeoplesUnitsAndWhatTheyTook) {
+TEST(DrillingReport, tells_tools_in_peoples_units_and_what_they_took) {
     const auto region = std::make_unique<RtRegion>();
     EXPECT_TRUE(drilling_report(*region, {}).is_null());
     region->drill.publish(two_tools());
@@ -44,14 +44,14 @@ TEST(DrillingReport, TellsToolsInPeoplesUnitsAndWhatTheyTook) {
     EXPECT_NEAR(j["burr"]["shaft_diameter_mm"].get<double>(), 2.4, 1e-5);
     EXPECT_NEAR(j["burr"]["rpm"].get<double>(), 60000.0, 0.1);
     EXPECT_NEAR(j["burr"]["irrigation_ml_min"].get<double>(), 20.0, 1e-4);
-    EXPECT_NEAR(j["sucker"]["diameter_mm"].get<double>(), 2.0, 1e-5);
-    EXPECT_NEAR(j["sucker"]["suction_l_min"].get<double>(), 20.0, 1e-4);
+    EXPECT_NEAR(j["suction_tube"]["diameter_mm"].get<double>(), 2.0, 1e-5);
+    EXPECT_NEAR(j["suction_tube"]["suction_l_min"].get<double>(), 20.0, 1e-4);
     EXPECT_TRUE(j["trainee"].is_null());
     EXPECT_EQ(drilling_summary(j), "bone taken: 1000.0 mm3\n");
     EXPECT_EQ(drilling_summary(nullptr), "");
 }
 
-TEST(DrillingReport, ATraineesFiguresAreTakenOverAndSaidInLines) {
+TEST(DrillingReport, a_trainees_figures_are_taken_over_and_said_in_lines) {
     const ScratchFolder scratch;
     const auto file = scratch.path() / "trainee.json";
     const nlohmann::json trainee = {
@@ -91,7 +91,7 @@ TEST(DrillingReport, ATraineesFiguresAreTakenOverAndSaidInLines) {
     EXPECT_EQ(said.find("facial nerve"), std::string::npos);  // never near
 }
 
-TEST(DrillingReport, WhatMakesNoSenseIsLeftOut) {
+TEST(DrillingReport, what_makes_no_sense_is_left_out) {
     const ScratchFolder scratch;
     const auto file = scratch.path() / "trainee.json";
     const auto region = std::make_unique<RtRegion>();
@@ -108,7 +108,7 @@ TEST(DrillingReport, WhatMakesNoSenseIsLeftOut) {
     }
 }
 
-TEST(ScanFiles, AreAFileAFolderOrAHeaderWithWhatLiesBesideIt) {
+TEST(ScanFiles, are_a_file_a_folder_or_a_header_with_what_lies_beside_it) {
     const ScratchFolder scratch;
     const auto touch = [&](const char* name) {
         std::ofstream(scratch.path() / name) << name;
@@ -124,10 +124,10 @@ TEST(ScanFiles, AreAFileAFolderOrAHeaderWithWhatLiesBesideIt) {
     EXPECT_EQ(scan_files(scratch.path() / "series"), (std::vector{first, second}));
 }
 
-TEST(LetTheHandsDrill, WhereNobodyAskedForAnotherHandOrDevice) {
+TEST(LetTheHandsDrill, where_nobody_asked_for_another_hand_or_device) {
     RunOptions o;
     let_the_hands_drill(o);
-    EXPECT_EQ(o.controller, (std::vector<std::string>{"--hand", "surgeon", "--hand2", "sucker"}));
+    EXPECT_EQ(o.controller, (std::vector<std::string>{"--hand", "surgeon", "--hand2", "suction-tube"}));
     for (const char* const asked : {"--hand", "--config"}) {
         RunOptions other;
         other.controller = {asked, "x"};

@@ -7,11 +7,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "deploy/tact/bench_docking.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/poses_csv.hpp"
 #include "ipc/base/error.hpp"
 #include "rt/force/docking/docking_model.hpp"
+#include "tests/bench/bench_docking.hpp"
 
 namespace tact::launch {
 namespace {
@@ -32,7 +32,7 @@ std::string error_of(const std::string& text) {
     return "";
 }
 
-TEST(PosesCsv, ReadsWhatItIsGiven) {
+TEST(PosesCsv, reads_what_it_is_given) {
     const auto poses = read(std::string("\xEF\xBB\xBF# made by hand\r\n") + kHeader +
                             "0,1,2,3,0,0,0,1\r\n\n 0.5, -1e-3 ,0,0, 0.6,0,0,0.8\n# end\n1,0,0,0,0,0,1.05,0");
     ASSERT_EQ(poses.size(), 3U);
@@ -43,7 +43,7 @@ TEST(PosesCsv, ReadsWhatItIsGiven) {
     EXPECT_NEAR(poses[2].T_world_tool.q.z(), 1.0, 1e-15);  // normalized
 }
 
-TEST(PosesCsv, NamesTheLineThatIsWrong) {
+TEST(PosesCsv, names_the_line_that_is_wrong) {
     const std::string good = "0,0,0,0,0,0,0,1\n";
     for (const char* bad :
          {"0,0,0,0,0,0,1", "0,0,0,0,0,0,0,1,2", "0,0,x,0,0,0,0,1", "0,0,nan,0,0,0,0,1", "0,0,inf,0,0,0,0,1",
@@ -117,7 +117,7 @@ std::vector<std::vector<std::string>> rows(const std::filesystem::path& path) {
     return out;
 }
 
-TEST(Eval, WritesTheForceOfTheServosModelForEveryPose) {
+TEST(Eval, writes_the_force_of_the_servos_model_for_every_pose) {
     const ScratchFolder folder;
     const auto scene = folder.path() / "scene.tact", poses = folder.path() / "in.csv",
                out = folder.path() / "out.csv";
@@ -150,7 +150,7 @@ TEST(Eval, WritesTheForceOfTheServosModelForEveryPose) {
     }
 }
 
-TEST(Eval, FailsInWordsAndLeavesNoHalfFile) {
+TEST(Eval, fails_in_words_and_leaves_no_half_file) {
     const ScratchFolder folder;
     const auto scene = folder.path() / "scene.tact", poses = folder.path() / "in.csv",
                out = folder.path() / "out.csv";
@@ -164,7 +164,7 @@ TEST(Eval, FailsInWordsAndLeavesNoHalfFile) {
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST(BenchDocking, MeasuresSomething) {
+TEST(BenchDocking, measures_something) {
     const DockingBench bench = bench_docking({.steps_n200 = 1000, .steps_atoms100k = 20});
     EXPECT_GT(bench.force_us_n200_p50, 0.0);
     EXPECT_GT(bench.force_us_atoms100k_p50, bench.force_us_n200_p50);

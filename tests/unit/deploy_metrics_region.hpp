@@ -46,17 +46,17 @@ inline std::unique_ptr<RtRegion> a_region() {
     tracker.state = 2;
     tracker.missed = 4;
     region->tracker.publish(tracker);
-    PictureTopic picture{};
+    DisplayTopic picture{};
     picture.taken_at_ns = 1;
-    picture.figures.frames = 400;
-    picture.figures.late = 2;
-    picture.figures.due_s = 0.02;
-    picture.figures.p50_s = 0.5F;
-    picture.figures.p99_s = picture.figures.most_s = 0.75F;
-    for (PassFigures& p : picture.figures.pass) p.drawn_p50_s = p.drawn_p99_s = -1.0F;
-    picture.figures.pass[static_cast<std::size_t>(Pass::bone)] = {0.125F, 0.25F, 0.375F, 0.5F};
-    picture.figures.path[1].work_p50_s = 0.0625F;
-    picture.figures.path[1].work_p99_s = 0.125F;
+    picture.metrics.frames = 400;
+    picture.metrics.late = 2;
+    picture.metrics.due_s = 0.02;
+    picture.metrics.p50_s = 0.5F;
+    picture.metrics.p99_s = picture.metrics.most_s = 0.75F;
+    for (PassMetrics& p : picture.metrics.pass) p.drawn_p50_s = p.drawn_p99_s = -1.0F;
+    picture.metrics.pass[static_cast<std::size_t>(Pass::bone)] = {0.125F, 0.25F, 0.375F, 0.5F};
+    picture.metrics.path[1].work_p50_s = 0.0625F;
+    picture.metrics.path[1].work_p99_s = 0.125F;
     region->picture.publish(picture);
     return region;
 }

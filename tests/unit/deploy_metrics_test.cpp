@@ -28,7 +28,7 @@ double value_of(const std::string& text, const std::string& line) {
     return at == std::string::npos ? NAN : std::stod(text.substr(at + line.size() + 2));
 }
 
-TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
+TEST(Metrics, tell_rate_lateness_levels_and_faults_by_cause) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
@@ -82,7 +82,7 @@ TEST(Metrics, TellRateLatenessLevelsAndFaultsByCause) {
     EXPECT_NEAR(value_of(text, "tact_servo_lateness_seconds_sum{session=\"lab\"}"), 0.04, 0.003);
 }
 
-TEST(Metrics, AControllerThatIsGoneIsDownAndItsFiguresAreNotTold) {
+TEST(Metrics, a_controller_that_is_gone_is_down_and_its_figures_are_not_told) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
@@ -106,7 +106,7 @@ std::map<std::string, double> causes_of(const std::string& text) {
     return causes;
 }
 
-TEST(Metrics, EveryCauseIsExportedAtZeroBeforeItsFirstFault) {
+TEST(Metrics, every_cause_is_exported_at_zero_before_its_first_fault) {
     Metrics metrics("lab");
     std::map<std::string, double> wanted{{"unknown", 0.0}};
     for (int r = 0; r <= 255; ++r)
@@ -130,7 +130,7 @@ TEST(Metrics, EveryCauseIsExportedAtZeroBeforeItsFirstFault) {
     EXPECT_EQ(causes_of(metrics.text(nullptr)), wanted);
 }
 
-TEST(Metrics, FaultsAddUpAcrossControllersAndANewConnectionCountsNoneTwice) {
+TEST(Metrics, faults_add_up_across_controllers_and_a_new_connection_counts_none_twice) {
     Metrics metrics("lab");
     const auto first = a_region(), second = a_region();
     fault(*first, RunReason::device_lost);
@@ -153,7 +153,7 @@ TEST(Metrics, FaultsAddUpAcrossControllersAndANewConnectionCountsNoneTwice) {
     EXPECT_GT(value_of(metrics.text(nullptr), "tact_events_missed_total{session=\"lab\"}"), 1000.0);
 }
 
-TEST(Metrics, AControllerThatWasKilledIsToldFromOneThatEndedInOrder) {
+TEST(Metrics, a_controller_that_was_killed_is_told_from_one_that_ended_in_order) {
     Metrics metrics("lab");
     const std::string name = "tact_controller_ended_in_order{session=\"lab\"}";
     EXPECT_TRUE(std::isnan(value_of(metrics.text(nullptr), name)));  // none was seen
@@ -170,7 +170,7 @@ TEST(Metrics, AControllerThatWasKilledIsToldFromOneThatEndedInOrder) {
     EXPECT_EQ(value_of(metrics.text(nullptr), name), 1.0);
 }
 
-TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
+TEST(Metrics, a_hostile_region_leaves_a_page_that_can_be_read) {
     const auto region = std::make_unique<RtRegion>();
     HealthTopic h{};
     std::memset(static_cast<void*>(&h), 0xFF, sizeof h);
@@ -180,7 +180,7 @@ TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
     std::memcpy(l.path[0].path, "a\"b\\c\nd", 8);
     l.path[0].level = 1.0F;
     region->levels.publish(l);
-    PictureTopic p{};
+    DisplayTopic p{};
     std::memset(static_cast<void*>(&p), 0x7F, sizeof p);
     region->picture.publish(p);
     EventTopic e{};
@@ -197,7 +197,7 @@ TEST(Metrics, AHostileRegionLeavesAPageThatCanBeRead) {
     }
 }
 
-TEST(Metrics, AreAnsweredOverHttpOnTheLoopback) {
+TEST(Metrics, are_answered_over_http_on_the_loopback) {
     MetricsServer server("127.0.0.1", 0);
     ASSERT_GT(server.port(), 0);
     httplib::Client client("127.0.0.1", server.port());
@@ -215,7 +215,7 @@ TEST(Metrics, AreAnsweredOverHttpOnTheLoopback) {
     EXPECT_THROW(MetricsServer("203.0.113.7", 0), StartupError);
 }
 
-TEST(Metrics, AFileIsReplacedWhole) {
+TEST(Metrics, a_file_is_replaced_whole) {
     const ScratchFolder folder;
     const auto path = folder.path() / "tact.prom";
     for (const char* const text : {"long text\n", "short\n"}) {
@@ -227,7 +227,7 @@ TEST(Metrics, AFileIsReplacedWhole) {
     EXPECT_THROW(write_textfile(folder.path() / "none" / "tact.prom", "x"), StartupError);
 }
 
-TEST(Metrics, PromtoolTakesThePageAndTheRules) {
+TEST(Metrics, promtool_takes_the_page_and_the_rules) {
     const std::filesystem::path promtool = find_in_path("promtool");
     if (promtool.empty()) GTEST_SKIP() << "there is no promtool in PATH (./deploy/test fetches one)";
     const ScratchFolder folder;

@@ -85,13 +85,13 @@ struct Answer {
     }
 };
 
-Answer ask(const Tree& tree, const DeviceWish& wish, const Person& person = kMember) {
-    return {judge_devices(probe::read_buses(tree.root()), wish, person,
-                          find_hd_library(tree.root(), wish.hd_library))};
+Answer ask(const Tree& tree, const DeviceRequest& request, const Person& person = kMember) {
+    return {judge_devices(probe::read_buses(tree.root()), request, person,
+                          find_hd_library(tree.root(), request.hd_library))};
 }
 
-DeviceWish phantom_wish() {
-    DeviceWish w;
+DeviceRequest phantom_request() {
+    DeviceRequest w;
     w.driver = "phantom-usb";
     return w;
 }
@@ -108,13 +108,13 @@ TEST(Probe, a_machine_that_shows_nothing_says_so_and_an_emulated_run_is_all_righ
 
 TEST(Probe, what_the_configuration_asks_for_and_cannot_be_seen_fails_with_a_mend) {
     const Tree tree;
-    DeviceWish wish = phantom_wish();
-    wish.tracker = "can";
-    wish.lines = "gpio";
-    const Answer a = ask(tree, wish);
+    DeviceRequest request = phantom_request();
+    request.tracker = "can";
+    request.lines = "gpio";
+    const Answer a = ask(tree, request);
     for (const char* const name : {"device", "can", "gpio"}) {
         EXPECT_EQ(a.one(name).level, FindingLevel::fail) << name;
-        EXPECT_NE(a.one(name).mend, "") << name;
+        EXPECT_NE(a.one(name).fix, "") << name;
     }
     EXPECT_TRUE(says(a.one("device").says, {"no USB can be seen", "cannot be told"}));
 }
@@ -123,7 +123,7 @@ TEST(Probe, an_arm_is_known_by_the_class_of_its_interface_and_told_with_its_seri
     const Tree tree;
     tree.usb("usb1", "1d6b", "0002", "0000:00", 1);
     tree.phantom("1-1", "P15-7", 4);
-    const Answer a = ask(tree, phantom_wish());
+    const Answer a = ask(tree, phantom_request());
     EXPECT_FALSE(a.fails());
     EXPECT_EQ(a.one("device").level, FindingLevel::ok);
     EXPECT_TRUE(says(a.one("usb").says, {"2 devices", "1 arm "}));
@@ -135,13 +135,13 @@ TEST(Probe, several_arms_need_a_serial_and_the_wrong_one_is_none) {
     const Tree tree;
     tree.phantom("1-1", "LEFT", 4);
     tree.phantom("1-2", "RIGHT", 5);
-    DeviceWish wish = phantom_wish();
-    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"several", "LEFT", "RIGHT"}));
-    EXPECT_TRUE(ask(tree, wish).fails());
-    wish.serial = "RIGHT";
-    EXPECT_FALSE(ask(tree, wish).fails());
-    wish.serial = "MIDDLE";
-    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"no such device with serial MIDDLE"}));
+    DeviceRequest request = phantom_request();
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"several", "LEFT", "RIGHT"}));
+    EXPECT_TRUE(ask(tree, request).fails());
+    request.serial = "RIGHT";
+    EXPECT_FALSE(ask(tree, request).fails());
+    request.serial = "MIDDLE";
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"no such device with serial MIDDLE"}));
 }
 
 TEST(Probe, a_node_that_may_not_be_opened_fails_for_the_wanted_arm_and_warns_for_another) {
@@ -153,24 +153,24 @@ TEST(Probe, a_node_that_may_not_be_opened_fails_for_the_wanted_arm_and_warns_for
     node.usable = false;
     node.group = "root";
     node.mode = 0664;
-    const Answer wanted{judge_devices(buses, phantom_wish(), kMember, "")};
+    const Answer wanted{judge_devices(buses, phantom_request(), kMember, "")};
     EXPECT_EQ(wanted.one("arm").level, FindingLevel::fail);
     EXPECT_TRUE(says(wanted.one("arm").says, {"may not open", "group root, mode 664"}));
-    EXPECT_TRUE(says(wanted.one("arm").mend, {"deploy/install.sh --rights"}));
+    EXPECT_TRUE(says(wanted.one("arm").fix, {"deploy/install.sh --rights"}));
     const Answer other{judge_devices(buses, {}, kMember, "")};
     EXPECT_EQ(other.one("arm").level, FindingLevel::warn);
     fs::remove(tree.root() / "dev/bus/usb/001/004");
-    EXPECT_TRUE(says(ask(tree, phantom_wish()).one("arm").says, {"is not there", "container"}));
+    EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"is not there", "container"}));
 }
 
 TEST(Probe, a_slow_port_is_warned_about) {
     const Tree tree;
     tree.phantom("1-1", "P", 4);
     tree.file("sys/bus/usb/devices/1-1/speed", "12\n");
-    const Answer a = ask(tree, phantom_wish());
+    const Answer a = ask(tree, phantom_request());
     EXPECT_EQ(a.one("arm").level, FindingLevel::warn);
     EXPECT_TRUE(says(a.one("arm").says, {"only 12 Mbit/s"}));
-    EXPECT_NE(a.one("arm").mend, "");
+    EXPECT_NE(a.one("arm").fix, "");
 }
 
 TEST(Probe, devices_without_a_driver_here_are_seen_as_such) {
@@ -203,12 +203,12 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     ASSERT_EQ(usb.there[0].nodes.size(), 1U);
     EXPECT_EQ(usb.there[0].nodes[0].path, (tree.root() / "dev/hidraw2").string());
     EXPECT_TRUE(usb.there[0].nodes[0].usable);
-    DeviceWish wish;
-    wish.driver = "polhem";
-    EXPECT_FALSE(ask(tree, wish).fails());
-    EXPECT_TRUE(says(ask(tree, wish).one("arm").says, {"driver polhem, may be opened"}));
+    DeviceRequest request;
+    request.driver = "polhem";
+    EXPECT_FALSE(ask(tree, request).fails());
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, may be opened"}));
     fs::remove(tree.root() / "dev/hidraw2");
-    EXPECT_TRUE(says(ask(tree, wish).one("arm").says, {"hidraw2 is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 is not there"}));
     ASSERT_EQ(usb.there[1].nodes.size(), 1U);
     EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
     EXPECT_FALSE(usb.there[1].nodes[0].usable);
@@ -218,15 +218,15 @@ TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
     const Tree tree;
     tree.usb("1-4", "0403", "cb48", "FA-1", 8);
     tree.file("sys/bus/usb/devices/1-4/speed", "12\n");
-    DeviceWish wish;
-    EXPECT_EQ(ask(tree, wish).one("firmware").says, "");  // nobody asked for one
-    wish.driver = "falcon";
-    Answer a = ask(tree, wish);
+    DeviceRequest request;
+    EXPECT_EQ(ask(tree, request).one("firmware").says, "");  // nobody asked for one
+    request.driver = "falcon";
+    Answer a = ask(tree, request);
     EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, may be opened"}));
     EXPECT_EQ(a.one("firmware").level, FindingLevel::warn);
-    EXPECT_TRUE(says(a.one("firmware").mend, {"the file that came with the device"}));
+    EXPECT_TRUE(says(a.one("firmware").fix, {"the file that came with the device"}));
     const auto read_again = [&] {
-        return device_wish_from(
+        return device_request_from(
             {{"ok", true},
              {"values",
               {{"device.driver", "falcon"}, {"device.firmware", (tree.root() / "fw.bin").string()}}}});
@@ -248,55 +248,55 @@ TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
     tree.can("eth0", "0x1003\n", 1500, 1);
     tree.can("can0", "0x40080\n", 16);
     tree.file("proc/net/can/version", "");
-    DeviceWish wish;
-    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"can0 (down)"}));
-    EXPECT_EQ(ask(tree, wish).one("can").says.find("eth0"), std::string::npos);
-    EXPECT_FALSE(ask(tree, wish).fails());
-    wish.tracker = "can";
-    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"it is down"}));
-    EXPECT_TRUE(says(ask(tree, wish).one("can").mend, {"deploy/can-up can0"}));
+    DeviceRequest request;
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"can0 (down)"}));
+    EXPECT_EQ(ask(tree, request).one("can").says.find("eth0"), std::string::npos);
+    EXPECT_FALSE(ask(tree, request).fails());
+    request.tracker = "can";
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"it is down"}));
+    EXPECT_TRUE(says(ask(tree, request).one("can").fix, {"deploy/can-up can0"}));
     tree.can("can0", "0x400c1\n", 16);
-    EXPECT_FALSE(ask(tree, wish).fails());
-    wish.tracker_format = "fd";
-    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"CAN FD"}));
+    EXPECT_FALSE(ask(tree, request).fails());
+    request.tracker_format = "fd";
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"CAN FD"}));
     tree.can("can0", "0x400c1\n", 72);
-    EXPECT_FALSE(ask(tree, wish).fails());
-    wish.tracker_interface = "can7";
-    EXPECT_TRUE(says(ask(tree, wish).one("can").says, {"none of this name", "can0 (up, FD)"}));
+    EXPECT_FALSE(ask(tree, request).fails());
+    request.tracker_interface = "can7";
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"none of this name", "can0 (up, FD)"}));
 }
 
 TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
     const Tree tree;
     tree.gpio("gpiochip0", "INT34C5:00");
     tree.gpio("gpiochip1", "cp2112_gpio");
-    DeviceWish wish;
-    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"gpiochip0 \"INT34C5:00\"", "gpiochip1"}));
-    wish.lines = "gpio";
+    DeviceRequest request;
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"gpiochip0 \"INT34C5:00\"", "gpiochip1"}));
+    request.lines = "gpio";
     for (const std::string& chip :
          {std::string("cp2112_gpio"), std::string("gpiochip1"), (tree.root() / "dev/gpiochip1").string()}) {
-        wish.lines_chip = chip;
-        EXPECT_FALSE(ask(tree, wish).fails()) << chip;
+        request.lines_chip = chip;
+        EXPECT_FALSE(ask(tree, request).fails()) << chip;
     }
-    wish.lines_chip = "mcp2221";
-    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"none of this label"}));
+    request.lines_chip = "mcp2221";
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"none of this label"}));
     tree.gpio("gpiochip2", "cp2112_gpio");
-    wish.lines_chip = "cp2112_gpio";
-    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"several chips"}));
-    wish.lines_chip = "gpiochip2";
+    request.lines_chip = "cp2112_gpio";
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"several chips"}));
+    request.lines_chip = "gpiochip2";
     fs::remove(tree.root() / "dev/gpiochip2");
-    EXPECT_TRUE(says(ask(tree, wish).one("gpio").says, {"is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"is not there"}));
 }
 
 TEST(Probe, the_makers_library_is_found_where_it_is_put_or_named) {
     const Tree tree;
-    DeviceWish wish;
-    wish.driver = "openhaptics";
-    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"libHD.so"}));
-    EXPECT_TRUE(ask(tree, wish).fails());
+    DeviceRequest request;
+    request.driver = "openhaptics";
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"libHD.so"}));
+    EXPECT_TRUE(ask(tree, request).fails());
     tree.file("usr/lib/libHD.so", "");
-    EXPECT_TRUE(says(ask(tree, wish).one("device").says, {"/usr/lib/libHD.so", "only seen when"}));
-    wish.hd_library = "/nowhere/libHD.so";
-    EXPECT_TRUE(ask(tree, wish).fails());
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"/usr/lib/libHD.so", "only seen when"}));
+    request.hd_library = "/nowhere/libHD.so";
+    EXPECT_TRUE(ask(tree, request).fails());
 }
 
 TEST(Probe, groups_are_told_by_what_they_are_for) {
@@ -306,14 +306,14 @@ TEST(Probe, groups_are_told_by_what_they_are_for) {
     const Finding f = ask(tree, {}, {false, {"users", "tact"}}).one("groups");
     EXPECT_EQ(f.level, FindingLevel::warn);
     EXPECT_TRUE(says(f.says, {"realtime"}));
-    EXPECT_TRUE(says(f.mend, {"--rights"}));
+    EXPECT_TRUE(says(f.fix, {"--rights"}));
     const Finding later = ask(tree, {}, {false, {"users"}, {"users", "tact", "realtime"}, ""}).one("groups");
     EXPECT_EQ(later.level, FindingLevel::warn);
     EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session is older"}));
-    EXPECT_EQ(later.mend, kLoginFix);
+    EXPECT_EQ(later.fix, kLoginFix);
     // Of one missing membership and one missing login, the former: logging in alone would not do.
-    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").mend, kRightsFix);
-    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "realtime"}, ""}).one("groups").mend, kRightsFix);
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").fix, kRightsFix);
+    EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "realtime"}, ""}).one("groups").fix, kRightsFix);
 }
 
 TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
@@ -349,29 +349,29 @@ TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
 TEST(Probe, the_second_device_is_looked_for_too) {
     const Tree tree;
     tree.phantom("1-1", "LEFT", 4);
-    DeviceWish wish;
-    EXPECT_EQ(ask(tree, wish).one("device2").says, "");  // none is asked for
-    wish.driver2 = "phantom-usb";
-    EXPECT_FALSE(ask(tree, wish).fails());
+    DeviceRequest request;
+    EXPECT_EQ(ask(tree, request).one("device2").says, "");  // none is asked for
+    request.driver2 = "phantom-usb";
+    EXPECT_FALSE(ask(tree, request).fails());
     EXPECT_TRUE(
-        says(ask(tree, wish).one("device2").says, {"device2.driver = \"phantom-usb\": there is one"}));
-    wish.serial2 = "RIGHT";
-    EXPECT_TRUE(ask(tree, wish).fails());
-    EXPECT_TRUE(says(ask(tree, wish).one("device2").says, {"no such device with serial RIGHT"}));
-    EXPECT_TRUE(says(ask(tree, wish).one("device2").mend, {"device2.driver = \"sim\""}));
+        says(ask(tree, request).one("device2").says, {"device2.driver = \"phantom-usb\": there is one"}));
+    request.serial2 = "RIGHT";
+    EXPECT_TRUE(ask(tree, request).fails());
+    EXPECT_TRUE(says(ask(tree, request).one("device2").says, {"no such device with serial RIGHT"}));
+    EXPECT_TRUE(says(ask(tree, request).one("device2").fix, {"device2.driver = \"sim\""}));
     tree.phantom("1-2", "RIGHT", 5);
-    wish.driver = "phantom-usb";
-    wish.serial = "LEFT";
-    EXPECT_FALSE(ask(tree, wish).fails());
+    request.driver = "phantom-usb";
+    request.serial = "LEFT";
+    EXPECT_FALSE(ask(tree, request).fails());
     // The second arm's node counts as asked for.
     probe::Buses buses = probe::read_buses(tree.root());
     for (probe::UsbDevice& d : buses.usb.there) d.node.usable = d.serial != "RIGHT";
-    const Answer refused{judge_devices(buses, wish, kMember, "")};
+    const Answer refused{judge_devices(buses, request, kMember, "")};
     EXPECT_TRUE(refused.fails());
-    wish.driver2 = "falcon";
-    EXPECT_EQ(ask(tree, wish).one("firmware").level, FindingLevel::warn);
-    wish.driver2 = "openhaptics";
-    EXPECT_EQ(ask(tree, wish).one("device2").level, FindingLevel::fail);
+    request.driver2 = "falcon";
+    EXPECT_EQ(ask(tree, request).one("firmware").level, FindingLevel::warn);
+    request.driver2 = "openhaptics";
+    EXPECT_EQ(ask(tree, request).one("device2").level, FindingLevel::fail);
 }
 
 TEST(Probe, what_the_controller_says_of_the_configuration_is_what_is_probed_for) {
@@ -391,16 +391,16 @@ TEST(Probe, what_the_controller_says_of_the_configuration_is_what_is_probed_for)
                                       {"key", "servo.x"},
                                       {"problem", "there is no such key"},
                                       {"fix", "remove it"}}}}};
-    const DeviceWish w = device_wish_from(answer);
+    const DeviceRequest w = device_request_from(answer);
     EXPECT_EQ(w.driver + w.serial + w.driver2 + w.serial2 + w.tracker + w.tracker_format + w.lines,
               "phantom-usbLfalconRcanfdgpio");
     EXPECT_EQ(w.tracker_interface, "can0");
     const Answer a = ask(tree, w);
     EXPECT_EQ(a.one("configuration").level, FindingLevel::fail);
     EXPECT_EQ(a.one("configuration").says, "a.toml:2: servo.x: there is no such key");
-    EXPECT_EQ(a.one("configuration").mend, "remove it");
-    EXPECT_EQ(device_wish_from(nlohmann::json::object()).driver, "sim");
-    EXPECT_EQ(device_wish_from({{"values", {{"device.driver", 3}}}}).driver, "sim");
+    EXPECT_EQ(a.one("configuration").fix, "remove it");
+    EXPECT_EQ(device_request_from(nlohmann::json::object()).driver, "sim");
+    EXPECT_EQ(device_request_from({{"values", {{"device.driver", 3}}}}).driver, "sim");
 }
 
 }  // namespace

@@ -20,11 +20,11 @@
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/run.hpp"
-#include "ipc/assets/scene_hand_over.hpp"
 #include "ipc/base/device_notice.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact::launch {
 
@@ -127,7 +127,7 @@ inline int controller(int argc, char** argv) {
 // Leaves its desk file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
 inline int window(int argc, char** argv) {
     log_words("WINDOWS", argc, argv);
-    if (const std::string desk = value_of(argc, argv, "--desk"); !desk.empty())
+    if (const std::string desk = value_of(argc, argv, "--window-state"); !desk.empty())
         std::ofstream(desk) << "as left";
     LinkClient link(value_of(argc, argv, "--session"), -1);
     while (!link.attached()) {
@@ -136,7 +136,7 @@ inline int window(int argc, char** argv) {
     }
     const std::string seconds = value_of(argc, argv, "--seconds");
     if (const char* const other = std::getenv("ASKS_FOR"); other != nullptr) {
-        const std::filesystem::path folder = value_of(argc, argv, "--hand-over");
+        const std::filesystem::path folder = value_of(argc, argv, "--scene-switch");
         std::ofstream told(std::getenv("TOLD"), std::ios::app);
         told << argv[1] << '\n';
         if (auto refusal = take_refusal(folder)) {

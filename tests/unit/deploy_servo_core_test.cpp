@@ -28,7 +28,7 @@ int last_of(const cpu_set_t& cores) {
     return last;
 }
 
-TEST(ServoCore, IsThatOfThePinnedThreadOfThatName) {
+TEST(ServoCore, is_that_of_the_pinned_thread_of_that_name) {
     EXPECT_EQ(servo_core(getpid()), std::nullopt);
     const int core = last_of(cores_of(0));
     std::latch named(1), seen(1);
@@ -48,7 +48,7 @@ TEST(ServoCore, IsThatOfThePinnedThreadOfThatName) {
     EXPECT_EQ(servo_core(-1), std::nullopt);
 }
 
-TEST(ServoCore, AServoThatIsNotPinnedHasNone) {
+TEST(ServoCore, a_servo_that_is_not_pinned_has_none) {
     const cpu_set_t mine = cores_of(0);
     if (CPU_COUNT(&mine) < 2) GTEST_SKIP() << "one core";
     std::latch named(1), seen(1);
@@ -63,7 +63,7 @@ TEST(ServoCore, AServoThatIsNotPinnedHasNone) {
     servo.join();
 }
 
-TEST(ServoCore, OthersKeepWhatTheyHadWithoutIt) {
+TEST(ServoCore, others_keep_what_they_had_without_it) {
     ChildSettings settings;
     settings.arguments = {"600"};
     const Child child("sleep", "/bin/sleep", settings);

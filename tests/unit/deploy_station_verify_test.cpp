@@ -18,8 +18,8 @@
 namespace tact::launch {
 namespace {
 
-VerifyFigures good() {
-    VerifyFigures f;
+VerifyMetrics good() {
+    VerifyMetrics f;
     f.seconds = 60.0;
     f.rate_hz = 1000.0;
     f.cycles = 60000;
@@ -42,8 +42,8 @@ VerifyFigures good() {
     return f;
 }
 
-Grade grade_of(const std::function<void(VerifyFigures&)>& change) {
-    VerifyFigures f = good();
+Grade grade_of(const std::function<void(VerifyMetrics&)>& change) {
+    VerifyMetrics f = good();
     change(f);
     return worst_of(judge_station(f, {}));
 }

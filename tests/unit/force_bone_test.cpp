@@ -81,7 +81,7 @@ void expect_octree_is_right(const BoneBlock& bone, const MomentOctree& octree) {
     }
 }
 
-TEST(MomentOctree, EveryBlockHoldsTheSumsOfItsVoxels) {
+TEST(MomentOctree, every_block_holds_the_sums_of_its_voxels) {
     for (const std::uint32_t edge : {1U, 8U, 21U, 40U}) {
         const BoneBlock bone = noise(edge, edge);
         expect_octree_is_right(bone, MomentOctree(bone.bricks, bone.density));
@@ -91,7 +91,7 @@ TEST(MomentOctree, EveryBlockHoldsTheSumsOfItsVoxels) {
     expect_octree_is_right(solid, MomentOctree(solid.bricks, solid.density));
 }
 
-TEST(MomentOctree, WhatABrickLosesGoesUpExactly) {
+TEST(MomentOctree, what_a_brick_loses_goes_up_exactly) {
     BoneBlock bone = noise(40, 3);
     MomentOctree octree(bone.bricks, bone.density);
     SeededRandom random(1);
@@ -106,7 +106,7 @@ TEST(MomentOctree, WhatABrickLosesGoesUpExactly) {
     expect_octree_is_right(bone, octree);
 }
 
-TEST(MomentOctree, RefusesWhatDoesNotFit) {
+TEST(MomentOctree, refuses_what_does_not_fit) {
     BoneBlock bone = noise(16, 1);
     const auto refused = [&](const auto& spoil) {
         BoneBricks b = bone.bricks;
@@ -125,7 +125,7 @@ TEST(MomentOctree, RefusesWhatDoesNotFit) {
 double cap_m0(double r, double h) { return 255.0 * kPi * h * h * (r - h / 3.0); }
 double cap_m1(double r, double h) { return 255.0 * kPi / 4.0 * h * h * (2.0 * r - h) * (2.0 * r - h); }
 
-TEST(BallMoments, AreThoseOfHalfSpaceSlabAndBall) {
+TEST(BallMoments, are_those_of_half_space_slab_and_ball) {
     const double r = 10.0;
     const auto check = [&](const BoneBlock& bone, const Vec3& at, double m0, const Vec3& m1, double part) {
         const MomentOctree octree(bone.bricks, bone.density);
@@ -208,7 +208,7 @@ Errors force_errors(double level) {
     return e;
 }
 
-TEST(BallMoments, TheForceIsThatOfSingleResolutionWithinTwoPercentAtTheDefaultLevel) {
+TEST(BallMoments, the_force_is_that_of_single_resolution_within_two_percent_at_the_default_level) {
     const Errors fine = force_errors(0.1), usual = force_errors(0.3), coarse = force_errors(0.5);
     EXPECT_LT(fine.mean, 0.01);
     EXPECT_LT(usual.mean, 0.02);
@@ -219,7 +219,7 @@ TEST(BallMoments, TheForceIsThatOfSingleResolutionWithinTwoPercentAtTheDefaultLe
     EXPECT_LE(usual.mean, coarse.mean);
 }
 
-TEST(BallMoments, AreContinuousInPlaceAndLevel) {
+TEST(BallMoments, are_continuous_in_place_and_level) {
     const double r = 14.0;
     const BoneBlock bone(64, 1e-3, half_space(Vec3(31.2, 32.3, 32.8), Vec3(0.36, 0.48, 0.8)), 2);
     const MomentOctree octree(bone.bricks, bone.density);
@@ -250,7 +250,7 @@ TEST(BallMoments, AreContinuousInPlaceAndLevel) {
     }
 }
 
-TEST(BrickKernels, AllInstructionSetsGiveTheSameBits) {
+TEST(BrickKernels, all_instruction_sets_give_the_same_bits) {
     SeededRandom random(11);
     const BoneBlock bone = noise(40, 8);
     const auto spread = [&](double size) {
@@ -306,7 +306,7 @@ TEST(BrickKernels, AllInstructionSetsGiveTheSameBits) {
     }
 }
 
-TEST(BurrForces, PenetrationIsTheRootOfItsEquation) {
+TEST(BurrForces, penetration_is_the_root_of_its_equation) {
     double before = 0.0;
     for (double x = 1e-7; x <= 2.0; x *= 1.07) {
         const double r = 3e-3, m0 = kPi * r * r * r * x * x * (1.0 - x / 3.0);
@@ -321,7 +321,7 @@ TEST(BurrForces, PenetrationIsTheRootOfItsEquation) {
     EXPECT_LE(penetration_of(1.0, 1e-3), 2.0);  // more than full
 }
 
-TEST(BurrForces, FollowTheirEquationsOnAFlatSurface) {
+TEST(BurrForces, follow_their_equations_on_a_flat_surface) {
     BurrLaw law;
     law.friction_share = 0.0;
     const double r = 3e-3;
@@ -347,7 +347,7 @@ TEST(BurrForces, FollowTheirEquationsOnAFlatSurface) {
     }
 }
 
-TEST(BurrForces, ABurrInASlotOrAllInBoneIsNotThrownAbout) {
+TEST(BurrForces, a_burr_in_a_slot_or_all_in_bone_is_not_thrown_about) {
     const BurrLaw law;
     const double r = 3e-3, m0 = 0.8 * kPi * r * r * r;
     double before = 0.0;
@@ -377,7 +377,7 @@ TEST(BurrForces, ABurrInASlotOrAllInBoneIsNotThrownAbout) {
     }
 }
 
-TEST(BurrForces, FrictionStaysBelowItsShareOfThePush) {
+TEST(BurrForces, friction_stays_below_its_share_of_the_push) {
     BurrLaw law;
     law.friction_n_s_m3 = 1e6;
     const double r = 3e-3, m0 = 0.1 * kPi * r * r * r;
@@ -392,7 +392,7 @@ TEST(BurrForces, FrictionStaysBelowItsShareOfThePush) {
     EXPECT_NEAR(elastic_for(5e-3, 1.25e-3) * 5e-3 * 5e-3 * std::pow(0.25, 1.5), 1.0, 1e-12);
 }
 
-TEST(BurrShapes, WeightsCountEveryPlaceOnce) {
+TEST(BurrShapes, weights_count_every_place_once) {
     DrillToolSettings s;
     s.shape = BurrShape::cylinder;
     s.radius_m = 2e-3;

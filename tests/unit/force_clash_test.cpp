@@ -71,7 +71,7 @@ Crowd crowd(std::uint64_t seed) {
 
 ClashResult felt(const Crowd& c) { return clash_force(c.active, c.others, kScale, kGains); }
 
-RC_GTEST_PROP(Clash, WrenchIsTheSlopeOfTheEnergyByPlaceAndRotation, ()) {
+RC_GTEST_PROP(Clash, wrench_is_the_slope_of_the_energy_by_place_and_rotation, ()) {
     const Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashResult here = felt(c);
     for (int a = 0; a < 3; ++a) {
@@ -91,7 +91,7 @@ RC_GTEST_PROP(Clash, WrenchIsTheSlopeOfTheEnergyByPlaceAndRotation, ()) {
     }
 }
 
-RC_GTEST_PROP(Clash, TheForceOnOneIsMinusThatOnTheOther, ()) {
+RC_GTEST_PROP(Clash, the_force_on_one_is_minus_that_on_the_other, ()) {
     const Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashBody &a = c.active, &b = c.others[0];
     const ClashResult on_a = clash_force(a, {&b, 1}, kScale, kGains);
@@ -106,7 +106,7 @@ RC_GTEST_PROP(Clash, TheForceOnOneIsMinusThatOnTheOther, ()) {
     RC_ASSERT(turned.norm() <= 1e-7 + 1e-3 * on_a.wrench_world.torque_n_m.norm());
 }
 
-RC_GTEST_PROP(Clash, PushesApart, ()) {
+RC_GTEST_PROP(Clash, pushes_apart, ()) {
     Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashResult near = clash_force(c.active, {c.others.data(), 1}, kScale, kGains);
     const Vec3 away = c.active.T_model_body.p_m - c.others[0].T_model_body.p_m;
@@ -116,7 +116,7 @@ RC_GTEST_PROP(Clash, PushesApart, ()) {
         RC_ASSERT(near.wrench_world.force_n.dot(away.normalized()) > -1e-6);
 }
 
-TEST(Clash, AHandThatGoesInCirclesGainsNoEnergy) {
+TEST(Clash, a_hand_that_goes_in_circles_gains_no_energy) {
     const Crowd start = crowd(7);
     double work_j = 0.0, size_j = 0.0;
     constexpr int kSteps = 3000;
@@ -144,7 +144,7 @@ TEST(Clash, AHandThatGoesInCirclesGainsNoEnergy) {
 }
 
 // Through contact and many voxels in steps of a hundredth of an angstrom.
-TEST(Clash, TheForceNeverStepsAndItsSlopeIsLimited) {
+TEST(Clash, the_force_never_steps_and_its_slope_is_limited) {
     const std::vector<ClashField> fields = [] {
         std::vector<ClashField> made;
         made.emplace_back(kBall);
@@ -180,7 +180,7 @@ TEST(Clash, TheForceNeverStepsAndItsSlopeIsLimited) {
     }
 }
 
-TEST(Clash, FieldIsTheFourthPowerOfTheDepth) {
+TEST(Clash, field_is_the_fourth_power_of_the_depth) {
     Vec3 gradient;
     double before = 1e300;
     // A ball of atoms out to 15 A is closed to other atoms out to 17.8 A; its surface is uneven by an atom's
@@ -212,7 +212,7 @@ TEST(Clash, FieldIsTheFourthPowerOfTheDepth) {
     }
 }
 
-TEST(Clash, NothingIsFeltOutOfReachOrWithoutAPlace) {
+TEST(Clash, nothing_is_felt_out_of_reach_or_without_a_place) {
     Crowd c = crowd(1);
     for (ClashBody& b : c.others) b.T_model_body.p_m += Vec3::Constant(200.0 * kA);
     EXPECT_EQ(felt(c).wrench_world.force_n, Vec3::Zero());
@@ -233,7 +233,7 @@ TEST(Clash, NothingIsFeltOutOfReachOrWithoutAPlace) {
     EXPECT_GT(inside.depth_model_m, 5.0 * kA);
 }
 
-TEST(Clash, RefusesStructuresWithoutAtomsOrSize) {
+TEST(Clash, refuses_structures_without_atoms_or_size) {
     EXPECT_THROW(ClashField{Structure{}}, StartupError);
     Structure far = kBall;
     far.x_m[0] = 1.0F;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace rod;
 
-TEST(DockingLevels, ForceDoesNotDependOnHowManyPointsStandForTheBody) {
+TEST(DockingLevels, force_does_not_depend_on_how_many_points_stand_for_the_body) {
     const auto model = make_model();
     const Pose body = start_pose(model->home(), 6.0 * kA, 0.2, 5);
     const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
@@ -22,7 +22,7 @@ TEST(DockingLevels, ForceDoesNotDependOnHowManyPointsStandForTheBody) {
     }
 }
 
-TEST(DockingLevels, TheErrorItReportsHoldsNearHome) {
+TEST(DockingLevels, the_error_it_reports_holds_near_home) {
     const auto model = make_model();
     SeededRandom random(11);
     int above = 0;
@@ -40,7 +40,8 @@ TEST(DockingLevels, TheErrorItReportsHoldsNearHome) {
     EXPECT_GT(model->predict(0.0F).error, 0.0);
 }
 
-TEST(DockingLevels, TheAuditMeasuresTheDistanceFromAllAtomsAndTheBoundIsNeverBelowWhatItFound) {
+TEST(DockingLevels,
+     the_audit_measures_the_distance_from_all_atoms_and_the_bound_is_never_below_what_it_found) {
     const auto model = make_model();
     const double n_per_gradient = scene().meta.energy_j_per_sigma / scene().meta.world_per_model;
     model->reset(tool_at(kGrip));
@@ -65,7 +66,7 @@ TEST(DockingLevels, TheAuditMeasuresTheDistanceFromAllAtomsAndTheBoundIsNeverBel
     EXPECT_GT(done, 100U);
 }
 
-TEST(DockingLevels, CostIsPredictedInOrderOfSize) {
+TEST(DockingLevels, cost_is_predicted_in_order_of_size) {
     const auto model = make_model();
     EXPECT_GT(model->predict(1.0F).cost_predicted.count(), 0);
     EXPECT_LT(model->predict(0.0F).cost_predicted, model->predict(1.0F).cost_predicted);

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "ipc/assets/docking_gain.hpp"
-#include "ipc/assets/laplacian_map.hpp"
-#include "ipc/assets/simulated_map.hpp"
+#include "ipc/scene/density/docking_gain.hpp"
+#include "ipc/scene/density/laplacian_map.hpp"
+#include "ipc/scene/density/simulated_map.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
@@ -93,7 +93,7 @@ Wrench felt_at(const ForceModel& model, const Pose& pose) {
     return dynamic_cast<const DockingModel&>(model).evaluate(pose, Budget{}).wrench_world;
 }
 
-TEST(DockingOptions, WithSubtractionTheDensityOfTheOtherBodyIsGoneAndTheOwnOneStays) {
+TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_the_own_one_stays) {
     const auto model = make_model();
     const Vec3 own = scene().structures[0].home_com_model_m, other = scene().structures[1].home_com_model_m;
     const double own_before = density_at(*model, own), other_before = density_at(*model, other);
@@ -116,7 +116,7 @@ TEST(DockingOptions, WithSubtractionTheDensityOfTheOtherBodyIsGoneAndTheOwnOneSt
     EXPECT_NEAR(density_at(*next, other), other_before, 1e-6 * other_before);
 }
 
-TEST(DockingOptions, TheContoursAreFeltAsStronglyAsTheDensity) {
+TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
     const auto model = make_model();
     ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
     const auto next = rebuilt(*model);
@@ -144,7 +144,7 @@ TEST(DockingOptions, TheContoursAreFeltAsStronglyAsTheDensity) {
     EXPECT_LT(felt_at(*next, away).force_n.z(), -0.05);
 }
 
-TEST(DockingOptions, BothTogetherAreTheContoursOfWhatIsLeft) {
+TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
     const auto model = make_model();
     ASSERT_TRUE(set_option(*model, kOptionLaplacian | kOptionSubtraction, true));
     const auto next = rebuilt(*model);
@@ -154,7 +154,7 @@ TEST(DockingOptions, BothTogetherAreTheContoursOfWhatIsLeft) {
     EXPECT_LT(std::abs(density_at(*next, other)), 0.2 * density_at(*next, own));
 }
 
-TEST(DockingOptions, TheUnitOfTheContoursIsTheSameWhicheverOptionCameFirst) {
+TEST(DockingOptions, the_unit_of_the_contours_is_the_same_whichever_option_came_first) {
     const Vec3 own = scene().structures[0].home_com_model_m;
     const auto both = make_model();
     ASSERT_TRUE(set_option(*both, kOptionLaplacian | kOptionSubtraction, true));
@@ -170,7 +170,7 @@ TEST(DockingOptions, TheUnitOfTheContoursIsTheSameWhicheverOptionCameFirst) {
     EXPECT_EQ(density_at(*make_model(), own), density_at(*model, own));
 }
 
-TEST(DockingOptions, AClashIsFeltAtOnceWithoutAStepOfTheForce) {
+TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     const auto model = make_model();
     Pose overlapping = scene().structures[1].home();
     overlapping.p_m.x() -= 18.0 * kA;
@@ -217,7 +217,7 @@ TEST(DockingOptions, AClashIsFeltAtOnceWithoutAStepOfTheForce) {
     EXPECT_LT((felt_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
 }
 
-TEST(DockingOptions, AnOrderBetweenTakeOverAndStepDoesNotCutTheForce) {
+TEST(DockingOptions, an_order_between_take_over_and_step_does_not_cut_the_force) {
     DockingSettings settings;
     settings.start_offset_m = 6.0 * kA;
     const auto model = make_model(settings);
@@ -233,7 +233,7 @@ TEST(DockingOptions, AnOrderBetweenTakeOverAndStepDoesNotCutTheForce) {
     EXPECT_LT((after.wrench_world.force_n - before.wrench_world.force_n).norm(), 0.05);
 }
 
-TEST(DockingOptions, ForceScaleScalesTheClashToo) {
+TEST(DockingOptions, force_scale_scales_the_clash_too) {
     DockingSettings settings;
     settings.force_scale = 0.5;
     const auto full = make_model(), half = make_model(settings);
@@ -243,7 +243,7 @@ TEST(DockingOptions, ForceScaleScalesTheClashToo) {
     EXPECT_LT((0.5 * felt_at(*full, overlapping).force_n - felt_at(*half, overlapping).force_n).norm(), 1e-9);
 }
 
-TEST(DockingOptions, UnknownOptionsAreRefused) {
+TEST(DockingOptions, unknown_options_are_refused) {
     const auto model = make_model();
     EXPECT_FALSE(set_option(*model, 0, true));
     EXPECT_FALSE(set_option(*model, 1U << 9, true));

@@ -33,7 +33,7 @@ double energy_j(const DockingModel& model, const Pose& T_model_body) {
     return -scene().meta.energy_j_per_sigma * sum;
 }
 
-TEST(Docking, WrenchIsTheSlopeOfTheEnergyByTheToolsPlaceAndRotation) {
+TEST(Docking, wrench_is_the_slope_of_the_energy_by_the_tools_place_and_rotation) {
     const auto model = make_model();
     const double scale = scene().meta.world_per_model;
     SeededRandom random(3);
@@ -57,7 +57,7 @@ TEST(Docking, WrenchIsTheSlopeOfTheEnergyByTheToolsPlaceAndRotation) {
     }
 }
 
-TEST(Docking, AHandThatGoesInCirclesGainsNoEnergyAtAnyLevel) {
+TEST(Docking, a_hand_that_goes_in_circles_gains_no_energy_at_any_level) {
     const auto model = make_model();
     for (const float fidelity : {0.0F, 0.37F, 1.0F}) {
         model->reset(tool_at(kGrip));
@@ -85,7 +85,7 @@ TEST(Docking, AHandThatGoesInCirclesGainsNoEnergyAtAnyLevel) {
     }
 }
 
-TEST(Docking, TheToolMovesTheBodyByTheScaleAndTurnsItAboutItsCentreOfMass) {
+TEST(Docking, the_tool_moves_the_body_by_the_scale_and_turns_it_about_its_centre_of_mass) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
     (void)model->step(tool_at(kGrip), at(0.0F));
@@ -103,7 +103,7 @@ TEST(Docking, TheToolMovesTheBodyByTheScaleAndTurnsItAboutItsCentreOfMass) {
     EXPECT_LT(model->bodies().T_model_body[0].q.angularDistance(turn * model->home().q), 1e-9);
 }
 
-TEST(Docking, WithTheClutchHeldTheToolMovesAloneAndNothingIsFeltSuddenly) {
+TEST(Docking, with_the_clutch_held_the_tool_moves_alone_and_nothing_is_felt_suddenly) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
     Wrench before = model->step(tool_at(kGrip), at(1.0F)).wrench_world;
@@ -129,7 +129,7 @@ TEST(Docking, WithTheClutchHeldTheToolMovesAloneAndNothingIsFeltSuddenly) {
     }
 }
 
-TEST(Docking, AStepWithAShareSumsItsPartAnewAndItsErrorSaysWhatTheRestMayBeOff) {
+TEST(Docking, a_step_with_a_share_sums_its_part_anew_and_its_error_says_what_the_rest_may_be_off) {
     const Scene big = make_scene(4096);
     DockingModel model(big.meta, big.grid, {big.rod}, {big.codebook}, {});
     for (const float fidelity : {1.0F, 0.9F}) {  // at 0.9 two big levels are blended
@@ -139,13 +139,13 @@ TEST(Docking, AStepWithAShareSumsItsPartAnewAndItsErrorSaysWhatTheRestMayBeOff) 
             hand.p_m += Vec3(1e-5, -5e-6, 4e-6) * std::cos(0.01 * i);  // 10 mm/s at 1 kHz
             hand.q = quat_from_rotation_vector(Vec3(1e-4, 2e-4, 0)) * hand.q;
             Budget budget = at(fidelity);
-            budget.share = i < 300 ? 1.0F : 0.25F;
+            budget.work_fraction = i < 300 ? 1.0F : 0.25F;
             const StepResult r = model.step(tool_at(hand), budget);
             ASSERT_EQ(r.status, StepStatus::ok);
             if (i < 300) continue;  // the ramp
             const StepResult whole = model.evaluate(model.bodies().T_model_body[0], budget);
-            EXPECT_EQ(whole.load.fresh, 1.0F);  // it keeps nothing
-            EXPECT_NEAR(r.load.fresh, 0.25F, 1e-3F);
+            EXPECT_EQ(whole.load.recomputed_fraction, 1.0F);  // it keeps nothing
+            EXPECT_NEAR(r.load.recomputed_fraction, 0.25F, 1e-3F);
             EXPECT_EQ(r.load.items, whole.load.items);
             EXPECT_GT(r.load.error, whole.load.error);
             EXPECT_LT(r.load.error, whole.load.error + 0.1);
@@ -159,11 +159,12 @@ TEST(Docking, AStepWithAShareSumsItsPartAnewAndItsErrorSaysWhatTheRestMayBeOff) 
     place.T_model_body = start_pose(model.home(), 10.0 * kA, 0.1, 1);
     ASSERT_TRUE(model.order(place));
     Budget budget = at(1.0F);
-    budget.share = 0.25F;
-    EXPECT_EQ(model.step(tool_at(kGrip), budget).load.fresh, 1.0F);  // a body elsewhere is summed wholly
+    budget.work_fraction = 0.25F;
+    EXPECT_EQ(model.step(tool_at(kGrip), budget).load.recomputed_fraction,
+              1.0F);  // a body elsewhere is summed wholly
 }
 
-TEST(Docking, AModelIsRebuiltWhileItIsSteppedAndOrderedAbout) {
+TEST(Docking, a_model_is_rebuilt_while_it_is_stepped_and_ordered_about) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
     const ModelBodies then = model->bodies();
@@ -186,7 +187,7 @@ TEST(Docking, AModelIsRebuiltWhileItIsSteppedAndOrderedAbout) {
     EXPECT_FALSE(make_model()->adopt(*model));  // of another scene
 }
 
-TEST(Docking, StartsWithTheBodiesThatItIsGiven) {
+TEST(Docking, starts_with_the_bodies_that_it_is_given) {
     DockingSettings settings;
     const Pose place = start_pose(Pose{Vec3::Constant(kCentre), Quat::Identity()}, 9.0 * kA, 0.3, 2);
     settings.bodies = {{.structure = 0, .T_model_body = place, .fixed = true},
@@ -207,7 +208,7 @@ TEST(Docking, StartsWithTheBodiesThatItIsGiven) {
     EXPECT_THROW(make_model(settings), StartupError);
 }
 
-TEST(Docking, StartsWhereItIsToldTheSameEveryTime) {
+TEST(Docking, starts_where_it_is_told_the_same_every_time) {
     DockingSettings settings;
     settings.start_offset_m = 15.0 * kA;
     settings.start_rotation_rad = 0.5;
@@ -222,7 +223,7 @@ TEST(Docking, StartsWhereItIsToldTheSameEveryTime) {
     EXPECT_NE(make_model(settings)->bodies().T_model_body[0].p_m, a.p_m);
 }
 
-TEST(Docking, ForceScaleScales) {
+TEST(Docking, force_scale_scales) {
     DockingSettings settings;
     settings.force_scale = 0.25;
     const Pose body = start_pose(make_model()->home(), 6.0 * kA, 0.2, 5);
@@ -232,7 +233,7 @@ TEST(Docking, ForceScaleScales) {
     EXPECT_LT((0.25 * full.torque_n_m - quarter.torque_n_m).norm(), 1e-12);
 }
 
-TEST(Docking, RefusesBrokenScenes) {
+TEST(Docking, refuses_broken_scenes) {
     const Scene& good = scene();
     const auto build = [](const Scene& s, std::size_t codebooks = 1) {
         return DockingModel(s.meta, s.grid, {s.rod}, std::vector<Codebook>(codebooks, s.codebook), {});

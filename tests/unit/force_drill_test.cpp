@@ -49,7 +49,7 @@ double removed_by_theory(const BoneBlock& bone, const Vec3& from, const Vec3& to
     return removed;
 }
 
-TEST(Erosion, TakesWhatItsEquationSaysAtAnyServoRateAndStrokeSpeed) {
+TEST(Erosion, takes_what_its_equation_says_at_any_servo_rate_and_stroke_speed) {
     const double radius = 4.0, rate_per_s = 30.0;
     const Vec3 from(9.2, 10.1, 11.4), to(17.7, 13.9, 12.2);
     const double way_m = kVoxelM * (to - from).norm();
@@ -75,7 +75,7 @@ TEST(Erosion, TakesWhatItsEquationSaysAtAnyServoRateAndStrokeSpeed) {
     }
 }
 
-TEST(Erosion, BricksThatTakeTurnsLoseTheSame) {
+TEST(Erosion, bricks_that_take_turns_lose_the_same) {
     const double radius = 13.0, exposure = 1.5;
     const Vec3 from(17.2, 20.1, 18.4), to(27.7, 23.9, 25.2);
     constexpr int kSteps = 80;
@@ -101,7 +101,7 @@ TEST(Erosion, BricksThatTakeTurnsLoseTheSame) {
     EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 0.005 * right);
 }
 
-TEST(Erosion, SlowOrSoftBoneIsRoundedRightInExpectation) {
+TEST(Erosion, slow_or_soft_bone_is_rounded_right_in_expectation) {
     // So little a step that a voxel seldom loses a level; and one step that takes nearly all.
     for (const double exposure : {1e-5, 1e-3, 0.09, 0.11, 3.0}) {
         for (const double soft : {1.0, 3.0}) {
@@ -120,7 +120,7 @@ TEST(Erosion, SlowOrSoftBoneIsRoundedRightInExpectation) {
     }
 }
 
-TEST(Erosion, NoMassIsLost) {
+TEST(Erosion, no_mass_is_lost) {
     BoneBlock bone = solid(144, 0.9);
     const std::vector<std::uint8_t> before = bone.density;
     MomentOctree octree(bone.bricks, bone.density);
@@ -204,7 +204,7 @@ DrillSettings burr(double radius_m = 2e-3) {
 }
 constexpr double kFullRadS = 6283.0;
 
-TEST(DrillModel, AScriptedStrokeRepeatsBitByBit) {
+TEST(DrillModel, a_scripted_stroke_repeats_bit_by_bit) {
     const auto run = [](std::uint64_t seed, std::vector<Vec3>& forces) {
         DrillSettings s = burr();
         s.seed = seed;
@@ -229,7 +229,7 @@ TEST(DrillModel, AScriptedStrokeRepeatsBitByBit) {
     EXPECT_NE(left, left_other);
 }
 
-TEST(DrillModel, TheForceIsContinuousWhileBoneVanishes) {
+TEST(DrillModel, the_force_is_continuous_while_bone_vanishes) {
     for (const auto shape : {BurrShape::sphere, BurrShape::cylinder}) {
         DrillSettings s = burr();
         s.tool.shape = shape;
@@ -255,7 +255,7 @@ TEST(DrillModel, TheForceIsContinuousWhileBoneVanishes) {
     }
 }
 
-TEST(DrillModel, StepsThatWereLateAreMadeUpFor) {
+TEST(DrillModel, steps_that_were_late_are_made_up_for) {
     const auto removed = [](int late_every, double radius_m) {
         Bench b(burr(radius_m));
         b.model->drive({kFullRadS, 1e-3});
@@ -280,7 +280,7 @@ TEST(DrillModel, StepsThatWereLateAreMadeUpFor) {
     }
 }
 
-TEST(DrillModel, OnlyATurningHeadCutsAndNotWhileTheClutchIsHeld) {
+TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
     Bench b(burr());
     const ToolState in = Bench::at(0.0, 0.0, 1.2e-3);
     const std::uint64_t mass = mass_of(b.bone);
@@ -313,7 +313,7 @@ TEST(DrillModel, OnlyATurningHeadCutsAndNotWhileTheClutchIsHeld) {
     EXPECT_EQ(mass - mass_of(b.bone), b.model->removed_levels());
 }
 
-TEST(DrillModel, AJumpCutsNothingOnItsWay) {
+TEST(DrillModel, a_jump_cuts_nothing_on_its_way) {
     Bench b(burr());
     b.model->drive({kFullRadS, 1e-3});
     b.model->reset(Bench::at(-20e-3, 0.0, 0.0));
@@ -323,7 +323,7 @@ TEST(DrillModel, AJumpCutsNothingOnItsWay) {
     EXPECT_EQ(b.model->removed_levels(), 0U);
 }
 
-TEST(DrillModel, ARunningBurrRattlesWithinItsShareAndAroundTheSameForce) {
+TEST(DrillModel, a_running_burr_rattles_within_its_share_and_around_the_same_force) {
     DrillSettings s = burr();
     s.rate_per_s = 0.0;
     s.law.friction_n_s_m3 = 0.0;
@@ -349,7 +349,7 @@ TEST(DrillModel, ARunningBurrRattlesWithinItsShareAndAroundTheSameForce) {
     EXPECT_GT(calm.norm(), 0.1);
 }
 
-TEST(DrillModel, RefusesWhatItCannotRender) {
+TEST(DrillModel, refuses_what_it_cannot_render) {
     const auto refused = [](const auto& spoil) {
         DrillSettings s = burr();
         spoil(s);

@@ -75,37 +75,38 @@ void expect_equal(const DensitySums& a, const DensitySums& b) {
     EXPECT_LT((a.moment - b.moment).norm(), 20.0 * kRounding);
 }
 
-TEST(PartialSums, ShareOneIsTheSumOverAllPoints) {
+TEST(PartialSums, share_one_is_the_sum_over_all_points) {
     PartialSums partial;
     for (int i = 0; i < 50; ++i) {
         const PartialSums::Result r = step(partial, on_the_way(3 * i), 1.0);
-        EXPECT_EQ(r.fresh, 1.0F);
+        EXPECT_EQ(r.recomputed_fraction, 1.0F);
         EXPECT_EQ(r.stale, 0.0);
         EXPECT_TRUE(r.complete);
         expect_equal(r.sums, whole(on_the_way(3 * i)));
     }
 }
 
-TEST(PartialSums, WhatIsNoShareIsAWholeStep) {
+TEST(PartialSums, what_is_no_share_is_a_whole_step) {
     for (const double share : {0.0, -1.0, 1.5, std::nan(""), HUGE_VAL}) {
         PartialSums partial;
         (void)step(partial, on_the_way(0), 1.0);
-        EXPECT_EQ(step(partial, on_the_way(1), share).fresh, 1.0F) << share;
+        EXPECT_EQ(step(partial, on_the_way(1), share).recomputed_fraction, 1.0F) << share;
     }
 }
 
-TEST(PartialSums, TheWorkIsInProportionToTheShare) {
+TEST(PartialSums, the_work_is_in_proportion_to_the_share) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     for (int eighths = 1; eighths < 8; ++eighths) {
-        const float fresh = step(partial, on_the_way(3), 0.125 * eighths).fresh;
+        const float fresh = step(partial, on_the_way(3), 0.125 * eighths).recomputed_fraction;
         EXPECT_NEAR(static_cast<double>(fresh), 0.125 * eighths, 8.0 / kPoints);
-        EXPECT_NEAR(static_cast<double>(step(partial, on_the_way(3), 0.125 * eighths - 0.1).fresh),
-                    0.125 * eighths, 8.0 / kPoints);  // rounded up
+        EXPECT_NEAR(
+            static_cast<double>(step(partial, on_the_way(3), 0.125 * eighths - 0.1).recomputed_fraction),
+            0.125 * eighths, 8.0 / kPoints);  // rounded up
     }
 }
 
-TEST(PartialSums, ABodyThatRestsIsSummedWhollyWithinAsManyStepsAsThereAreSlices) {
+TEST(PartialSums, a_body_that_rests_is_summed_wholly_within_as_many_steps_as_there_are_slices) {
     for (const double share : {0.01, 0.125, 0.3, 0.6, 0.99}) {
         PartialSums partial;
         for (int i = 0; i < 20; ++i) (void)step(partial, on_the_way(i), share);
@@ -117,7 +118,7 @@ TEST(PartialSums, ABodyThatRestsIsSummedWhollyWithinAsManyStepsAsThereAreSlices)
 }
 
 // The estimate is held where it is made for: on a smooth way, whatever the shares.
-RC_GTEST_PROP(PartialSums, TheErrorOfAMovingBodyIsBelowItsBound, ()) {
+RC_GTEST_PROP(PartialSums, the_error_of_a_moving_body_is_below_its_bound, ()) {
     PartialSums partial;
     const int from = *rc::gen::inRange(0, 2000);
     double stale_most = 0.0;
@@ -133,7 +134,7 @@ RC_GTEST_PROP(PartialSums, TheErrorOfAMovingBodyIsBelowItsBound, ()) {
 }
 
 // Whatever the shares do, a step is no bigger than what all slices together change in kSlices steps.
-TEST(PartialSums, SharesThatChangeEveryStepMoveTheSumNoFurtherThanTheBodyDid) {
+TEST(PartialSums, shares_that_change_every_step_move_the_sum_no_further_than_the_body_did) {
     constexpr int kSteps = 600;
     const std::size_t slices = PartialSums::kSlices;
     std::vector<std::array<Vec3, PartialSums::kSlices>> part(kSteps);
@@ -168,41 +169,41 @@ TEST(PartialSums, SharesThatChangeEveryStepMoveTheSumNoFurtherThanTheBodyDid) {
     EXPECT_LE(biggest, most + kRounding / kA);
 }
 
-TEST(PartialSums, ALeapOfTheBodyIsSummedWholly) {
+TEST(PartialSums, a_leap_of_the_body_is_summed_wholly) {
     PartialSums partial;
     for (int i = 0; i < 5; ++i) (void)step(partial, on_the_way(i), 0.25);
     Pose far = on_the_way(5);
     far.p_m.x() += 3.0 * kA;
     const PartialSums::Result r = step(partial, far, 0.125);
-    EXPECT_EQ(r.fresh, 1.0F);
+    EXPECT_EQ(r.recomputed_fraction, 1.0F);
     expect_equal(r.sums, whole(far));
     Pose turned = far;
     turned.q = quat_from_rotation_vector(Vec3(0.0, 0.5, 0.0)) * turned.q;
-    EXPECT_EQ(step(partial, turned, 0.125).fresh, 1.0F);
+    EXPECT_EQ(step(partial, turned, 0.125).recomputed_fraction, 1.0F);
     turned.q.coeffs() *= -1.0;  // the same rotation
-    EXPECT_NEAR(static_cast<double>(step(partial, turned, 0.125).fresh), 0.125, 8.0 / kPoints);
+    EXPECT_NEAR(static_cast<double>(step(partial, turned, 0.125).recomputed_fraction), 0.125, 8.0 / kPoints);
 }
 
-TEST(PartialSums, AnotherDensityAndOtherPointsAreSummedWholly) {
+TEST(PartialSums, another_density_and_other_points_are_summed_wholly) {
     const DensityMap other = make_map();
     const PointSet fewer = make_point_set(points().view(), "again");
     PartialSums partial;
     const auto settled = [&] {
         for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
-        return step(partial, on_the_way(3), 0.125).fresh;
+        return step(partial, on_the_way(3), 0.125).recomputed_fraction;
     };
     EXPECT_LT(settled(), 0.2F);
-    EXPECT_EQ(partial.step(other, points(), on_the_way(3), 0.125, Instant::max()).fresh, 1.0F);
+    EXPECT_EQ(partial.step(other, points(), on_the_way(3), 0.125, Instant::max()).recomputed_fraction, 1.0F);
     EXPECT_LT(settled(), 0.2F);
-    EXPECT_EQ(partial.step(map(), fewer, on_the_way(3), 0.125, Instant::max()).fresh, 1.0F);
+    EXPECT_EQ(partial.step(map(), fewer, on_the_way(3), 0.125, Instant::max()).recomputed_fraction, 1.0F);
 }
 
-TEST(PartialSums, ADeadlineThatHasPassedLeavesTheOldSumsAsTheyWere) {
+TEST(PartialSums, a_deadline_that_has_passed_leaves_the_old_sums_as_they_were) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     const PartialSums::Result late = partial.step(map(), points(), on_the_way(3), 0.5, Monotonic::now());
     EXPECT_FALSE(late.complete);
-    EXPECT_EQ(late.fresh, 0.0F);
+    EXPECT_EQ(late.recomputed_fraction, 0.0F);
     expect_equal(late.sums, whole(on_the_way(2)));
     expect_equal(step(partial, on_the_way(3), 1.0).sums, whole(on_the_way(3)));
 }

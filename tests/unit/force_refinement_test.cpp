@@ -4,9 +4,9 @@
 
 #include <set>
 
-#include "ipc/assets/refinement.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/mesh/refinement.hpp"
 #include "prep/mesh/mesh_folds.hpp"
 #include "prep/mesh/nearest_point.hpp"
 #include "prep/surface/forest_builder.hpp"
@@ -107,7 +107,7 @@ void settle(Refinement& r, const Vec3& probe_m) {
     FAIL() << "still changing after 1000 steps";
 }
 
-TEST(RefineFilter, DistanceIsWhereTheErrorBecomesAllowed) {
+TEST(RefineFilter, distance_is_where_the_error_becomes_allowed) {
     const RefineFilter bell = RefineFilter::bell(0.1F, 0.2F, 0.01F);
     const RefineFilter::Point points[] = {
         {0.3F, 0.02F}, {0.2F, 0.01F}, {0.4F, 0.015F}, {NAN, 1.0F}, {0.5F, -1.0F}};
@@ -131,7 +131,7 @@ TEST(RefineFilter, DistanceIsWhereTheErrorBecomesAllowed) {
     EXPECT_GT(RefineFilter().distance_m(1e-9F), 1e30F);
 }
 
-TEST(Refinement, EveryCutOnAPathIsTheWholeClosedSurfaceWithoutFolds) {
+TEST(Refinement, every_cut_on_a_path_is_the_whole_closed_surface_without_folds) {
     Refinement r(torus().forest, some_settings(0.12F));
     expect_whole(r, torus());
     const std::size_t folds = count_folds(torus().mesh);
@@ -157,7 +157,7 @@ TEST(Refinement, EveryCutOnAPathIsTheWholeClosedSurfaceWithoutFolds) {
     }
 }
 
-TEST(Refinement, NoTriangleTurnsAgainstTheSmoothSurfaceThatItStandsFor) {
+TEST(Refinement, no_triangle_turns_against_the_smooth_surface_that_it_stands_for) {
     const Surface ball([] {
         TriangleMesh mesh = test::sheet(70, [](float, float) { return 0.0F; });
         for (std::size_t v = 0; v < mesh.vertices(); ++v) {  // a cap of a sphere, nearly a half
@@ -185,7 +185,7 @@ TEST(Refinement, NoTriangleTurnsAgainstTheSmoothSurfaceThatItStandsFor) {
     EXPECT_GT(worst, 0.5);  // 60 degrees, where triangles at the border of the cap are as large as it
 }
 
-TEST(Refinement, AllWithinTheRadiusIsAsInTheFullMesh) {
+TEST(Refinement, all_within_the_radius_is_as_in_the_full_mesh) {
     Refinement r(torus().forest, some_settings(0.15F));
     for (const Vec3& probe : {Vec3(1.3, 0.0, 0.0), Vec3(0.0, -1.0, 0.3), Vec3(-0.7, 0.1, 0.0)}) {
         EXPECT_TRUE(r.step(probe, Vec3::Zero()).full_detail);
@@ -199,7 +199,7 @@ TEST(Refinement, AllWithinTheRadiusIsAsInTheFullMesh) {
         expect_full_detail(r, torus(), from + 0.01 * part * velocity, 0.15);
 }
 
-TEST(Refinement, TheCutDoesNotDependOnWhereTheProbeCameFrom) {
+TEST(Refinement, the_cut_does_not_depend_on_where_the_probe_came_from) {
     Refinement r(torus().forest, some_settings(0.2F));
     const Vec3 here(1.1, 0.3, 0.2);
     settle(r, here);
@@ -239,7 +239,7 @@ double farthest_from(const TriangleMesh& from, const TriangleMesh& to) {
     return farthest;
 }
 
-TEST(Refinement, TheDeviationOfTheActiveSurfaceIsWithinWhatIsSaid) {
+TEST(Refinement, the_deviation_of_the_active_surface_is_within_what_is_said) {
     static const Surface small(rough_torus(24, 12));
     Refinement r(small.forest, some_settings(0.15F));
     for (const Vec3& probe : {Vec3(1.3, 0.0, 0.0), Vec3(-0.9, 0.4, 0.2), Vec3(40.0, 0.0, 0.0)}) {
@@ -255,7 +255,7 @@ TEST(Refinement, TheDeviationOfTheActiveSurfaceIsWithinWhatIsSaid) {
     EXPECT_EQ(r.deviation_m(), 0.0F);
 }
 
-TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {
+TEST(Refinement, budgets_hold_and_what_is_left_follows) {
     RefinementSettings settings = some_settings(0.25F);
     settings.splits_max = 37;
     settings.merges_max = 23;
@@ -281,7 +281,7 @@ TEST(Refinement, BudgetsHoldAndWhatIsLeftFollows) {
     EXPECT_EQ(vertices_of(r), vertices_of(at_once));
 }
 
-TEST(Refinement, FullPoolsAreSaidAndTheSurfaceStaysWhole) {
+TEST(Refinement, full_pools_are_said_and_the_surface_stays_whole) {
     RefinementSettings settings = some_settings(0.5F);
     settings.nodes_max = torus().forest.roots() + 200;
     Refinement r(torus().forest, settings);
@@ -297,7 +297,7 @@ TEST(Refinement, FullPoolsAreSaidAndTheSurfaceStaysWhole) {
     EXPECT_THROW(Refinement(torus().forest, settings), StartupError);
 }
 
-TEST(Refinement, AProbeThatIsNotFiniteChangesNothing) {
+TEST(Refinement, a_probe_that_is_not_finite_changes_nothing) {
     Refinement r(torus().forest, some_settings(0.1F));
     settle(r, Vec3(1.0, 0.0, 0.3));
     const auto before = vertices_of(r);
@@ -308,7 +308,7 @@ TEST(Refinement, AProbeThatIsNotFiniteChangesNothing) {
     expect_whole(r, torus());
 }
 
-TEST(Refinement, AnotherFilterIsFollowedByTheNextStep) {
+TEST(Refinement, another_filter_is_followed_by_the_next_step) {
     Refinement r(torus().forest, some_settings(0.1F));
     const Vec3 here(1.0, 0.0, 0.3);
     settle(r, here);

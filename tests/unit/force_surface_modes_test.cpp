@@ -15,7 +15,7 @@ namespace tact {
 namespace {
 
 constexpr double kStepS = 1e-3;
-constexpr int kTendEvery = 4;  // cycles
+constexpr int kSlowUpdateEvery = 4;  // cycles
 
 struct Baked {
     std::vector<std::byte> bytes;
@@ -43,7 +43,7 @@ struct Felt {
 };
 
 // Once around the sphere, and up and down, at a speed in the hand's world.
-Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool tended = true) {
+Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool has_slow_update = true) {
     const auto model = load_surface_model(
         *sphere().file, {.radius_m = radius_m, .damping_n_s_m = 0.0, .friction = 0.1, .mode = mode});
     const double scale = sphere().world_per_model, ball_m = 0.05 * scale;
@@ -63,7 +63,7 @@ Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool tended = tru
             i == 0 ? Vec3(Vec3::Zero()) : Vec3((tool.T_world_tool.p_m - before) / kStepS);
         before = tool.T_world_tool.p_m;
         if (i == 0) model->reset(tool);
-        if (tended && i % kTendEvery == 0) model->tend(tool, {});
+        if (has_slow_update && i % kSlowUpdateEvery == 0) model->slow_update(tool, {});
         felt.force_n.push_back(model->step(tool, {}).wrench_world.force_n);
         felt.adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / 1200.0 : 0.0;
     }
@@ -82,13 +82,13 @@ void expect_same_force(const Felt& a, const Felt& b) {
     EXPECT_EQ(different, 0U);
 }
 
-TEST(SurfaceModes, AllTrianglesAndTheTreeGiveTheSameForce) {
+TEST(SurfaceModes, all_triangles_and_the_tree_give_the_same_force) {
     for (const double radius_m : {0.0, 1e-3})
         expect_same_force(feel(SurfaceMode::off_brute, radius_m, 0.05),
                           feel(SurfaceMode::off_tree, radius_m, 0.05));
 }
 
-TEST(SurfaceModes, TheAdaptiveSurfaceGivesTheForceOfTheFullMesh) {
+TEST(SurfaceModes, the_adaptive_surface_gives_the_force_of_the_full_mesh) {
     for (const double radius_m : {0.0, 1e-3, 3e-3}) {
         const Felt chr = feel(SurfaceMode::chr, radius_m, 0.05);
         expect_same_force(chr, feel(SurfaceMode::off_tree, radius_m, 0.05));
@@ -96,19 +96,19 @@ TEST(SurfaceModes, TheAdaptiveSurfaceGivesTheForceOfTheFullMesh) {
     }
 }
 
-TEST(SurfaceModes, ItKeepsUpWithAFastHand) {
+TEST(SurfaceModes, it_keeps_up_with_a_fast_hand) {
     const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.5);
     expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.5));
     EXPECT_GT(chr.adaptive, 0.99);
 }
 
-TEST(SurfaceModes, WithoutTendingTheTreeAnswersAndSaysSo) {
+TEST(SurfaceModes, without_tending_the_tree_answers_and_says_so) {
     const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.05, false);
     EXPECT_EQ(chr.adaptive, 0.0);
     expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.05));
 }
 
-TEST(SurfaceModes, AdaptiveWithoutAForestIsRefusedAndTheOthersAreNot) {
+TEST(SurfaceModes, adaptive_without_a_forest_is_refused_and_the_others_are_not) {
     const Baked plain(false);
     EXPECT_THROW((void)load_surface_model(*plain.file, {.mode = SurfaceMode::chr}), StartupError);
     EXPECT_NE(load_surface_model(*plain.file, {.mode = SurfaceMode::off_brute}), nullptr);
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> leaves_in(const SurfaceMesh& mesh, const Vec3& centre
     return leaf;
 }
 
-TEST(NearSurface, FindsWhatTheWholeTreeFindsInItsBox) {
+TEST(NearSurface, finds_what_the_whole_tree_finds_in_its_box) {
     const SurfaceMesh full = read_surface(*sphere().file);
     NearSurface near(4096);
     SeededRandom random(5);
@@ -162,7 +162,7 @@ TEST(NearSurface, FindsWhatTheWholeTreeFindsInItsBox) {
     EXPECT_GT(nothing, 100U);
 }
 
-TEST(NearSurface, WhatDoesNotFitIsNotHeld) {
+TEST(NearSurface, what_does_not_fit_is_not_held) {
     const SurfaceMesh full = read_surface(*sphere().file);
     NearSurface near(16);
     std::array<float, 3> low_m{}, high_m{};
@@ -177,7 +177,7 @@ TEST(NearSurface, WhatDoesNotFitIsNotHeld) {
     EXPECT_TRUE(near.holds(full.low_m().cast<float>().cast<double>(), 0.0));
 }
 
-TEST(SurfaceModes, MoreFidelityIsAWiderRadiusOfMoreTriangles) {
+TEST(SurfaceModes, more_fidelity_is_a_wider_radius_of_more_triangles) {
     const auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
     double radius = 0.0, triangles = 0.0;
     for (const float fidelity : {0.0F, 0.3F, 1.0F}) {
@@ -199,13 +199,13 @@ std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder
     for (int i = 0; i < turns; ++i) {
         tool.T_world_tool.p_m.x() += 1e-3;  // so that each turn has something to build
         static_cast<void>(model->step(tool, {.fidelity = fidelity}));
-        model->tend(tool, {});
+        model->slow_update(tool, {});
     }
     static_cast<void>(model->step(tool, {.fidelity = fidelity}));
     return model;
 }
 
-TEST(SurfaceModes, WhatIsKeptFineIsShownWithItsBoundAndCost) {
+TEST(SurfaceModes, what_is_kept_fine_is_shown_with_its_bound_and_cost) {
     const ModelDetail d = rested(1.0F, 40)->touch().detail;
     ASSERT_TRUE(d.there);
     EXPECT_TRUE(d.full);
@@ -218,7 +218,7 @@ TEST(SurfaceModes, WhatIsKeptFineIsShownWithItsBoundAndCost) {
     EXPECT_FALSE(load_surface_model(*sphere().file, {})->touch().detail.there);
 }
 
-TEST(SurfaceModes, TheKnobsCostIsThatOfTheSurfaceAroundTheTool) {
+TEST(SurfaceModes, the_knobs_cost_is_that_of_the_surface_around_the_tool) {
     const auto model = rested(0.5F, 10);
     EXPECT_EQ(model->items(0.5F), model->touch().detail.near_triangles);
     EXPECT_GT(model->items(1.0F), model->items(0.2F));
@@ -226,11 +226,11 @@ TEST(SurfaceModes, TheKnobsCostIsThatOfTheSurfaceAroundTheTool) {
     const AdaptiveSurface& surface = *model->adaptive();
     EXPECT_NEAR(surface.predicted_s(1.0F) / surface.predicted_s(0.2F),
                 surface.predicted_triangles(1.0F) / surface.predicted_triangles(0.2F), 1e-6);
-    EXPECT_GT(model->tend_s(), 0.0);
-    EXPECT_EQ(load_surface_model(*sphere().file, {})->tend_s(), 0.0);
+    EXPECT_GT(model->slow_update_s(), 0.0);
+    EXPECT_EQ(load_surface_model(*sphere().file, {})->slow_update_s(), 0.0);
 }
 
-TEST(SurfaceModes, APersonFormsTheFilterAndTheCutFollows) {
+TEST(SurfaceModes, a_person_forms_the_filter_and_the_cut_follows) {
     ModelOrder order;
     order.kind = ModelOrder::Kind::filter;
     order.width = 0.2F;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
-#include "ipc/assets/vertex_forest.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/surface/build_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Surface, ForceModelContract,
                                                         {Vec3(0.004, 0.05, 0.003), Quat::Identity()}}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(Surface, APlanePushesBackByStiffnessTimesDepth) {
+TEST(Surface, a_plane_pushes_back_by_stiffness_times_depth) {
     for (const double radius_m : {0.0, 0.001, 0.003}) {
         Hand hand(plane(), plain(radius_m), Vec3(0.003, 0.01, 0.002));
         const Vec3 force = hand.lead(Vec3(0.013, -0.002, -0.004));
@@ -166,7 +166,7 @@ TEST(Surface, APlanePushesBackByStiffnessTimesDepth) {
     }
 }
 
-TEST(Surface, WhatIsShownOfATouchIsWhatIsFelt) {
+TEST(Surface, what_is_shown_of_a_touch_is_what_is_felt) {
     Hand hand(crossing(), plain(0.002), Vec3(0.01, 0.012, 0.014));
     const Vec3 goal(-0.002, -0.003, 0.02);  // over one sheet, held by the two others
     const Vec3 force = hand.lead(goal);
@@ -183,7 +183,7 @@ TEST(Surface, WhatIsShownOfATouchIsWhatIsFelt) {
     EXPECT_EQ(hand.model->touch().planes, 0U);
 }
 
-TEST(Surface, ASheetWithoutThicknessIsFeltFromTheSideWhereTheToolCameFrom) {
+TEST(Surface, a_sheet_without_thickness_is_felt_from_the_side_where_the_tool_came_from) {
     for (const double side : {1.0, -1.0}) {
         for (const double radius_m : {0.0, 0.002}) {
             Hand hand(plane(), plain(radius_m), Vec3(0.0, 0.01 * side, 0.0));
@@ -194,13 +194,13 @@ TEST(Surface, ASheetWithoutThicknessIsFeltFromTheSideWhereTheToolCameFrom) {
     }
 }
 
-TEST(Surface, AroundTheBorderOfASheetTheToolComesFree) {
+TEST(Surface, around_the_border_of_a_sheet_the_tool_comes_free) {
     Hand hand(plane(), plain(0.001), Vec3(0.0, 0.01, 0.0));
     (void)hand.lead(Vec3(0.0, -0.002, 0.0));
     EXPECT_NEAR(hand.lead(Vec3(0.056, -0.002, 0.0)).norm(), 0.0, 1e-6);
 }
 
-TEST(Surface, AConcaveCornerHoldsByAllOfItsPlanes) {
+TEST(Surface, a_concave_corner_holds_by_all_of_its_planes) {
     for (const double radius_m : {0.0, 0.002}) {
         Hand hand(crossing(), plain(radius_m), Vec3(0.01, 0.012, 0.014));
         const Vec3 force = hand.lead(Vec3(-0.002, -0.003, -0.001));
@@ -209,7 +209,7 @@ TEST(Surface, AConcaveCornerHoldsByAllOfItsPlanes) {
     }
 }
 
-TEST(Surface, ABallOverAConvexEdgeIsPushedAlongTheLineFromTheEdge) {
+TEST(Surface, a_ball_over_a_convex_edge_is_pushed_along_the_line_from_the_edge) {
     Hand hand(box(), plain(0.003), Vec3(0.025, 0.025, 0.003));
     // Beside the edge, so that neither side's plane is below the centre.
     const Vec3 tool(0.0205, 0.021, 0.003), edge(0.02, 0.02, 0.003);
@@ -221,7 +221,7 @@ TEST(Surface, ABallOverAConvexEdgeIsPushedAlongTheLineFromTheEdge) {
     EXPECT_LT((hand.lead(corner_tool) - at_corner).norm(), 0.01);
 }
 
-TEST(Surface, APointThatIsLedRoundABoxIsFeltOnTheSideThatItIsUnder) {
+TEST(Surface, a_point_that_is_led_round_a_box_is_felt_on_the_side_that_it_is_under) {
     Hand hand(box(), plain(), Vec3(0.01, 0.03, 0.003));
     EXPECT_LT((hand.lead(Vec3(0.012, 0.019, 0.003)) - Vec3(0, kStiffness * 0.001, 0)).norm(), 0.006);
     EXPECT_LT((hand.lead(Vec3(0.0190, 0.0185, 0.003)) - Vec3(0, kStiffness * 0.0015, 0)).norm(), 0.006);
@@ -229,7 +229,7 @@ TEST(Surface, APointThatIsLedRoundABoxIsFeltOnTheSideThatItIsUnder) {
     EXPECT_LT((hand.lead(Vec3(0.0190, 0.0100, 0.003)) - Vec3(kStiffness * 0.001, 0, 0)).norm(), 0.006);
 }
 
-TEST(Surface, FrictionKeepsTheForceInItsConeAndSlidingIsAtItsRim) {
+TEST(Surface, friction_keeps_the_force_in_its_cone_and_sliding_is_at_its_rim) {
     for (const double friction : {0.1, 0.3, 0.8}) {
         Hand hand(plane(), plain(0.001, friction), Vec3(0.0, 0.01, 0.0));
         Vec3 force = hand.lead(Vec3(0.0, -0.001, 0.0));
@@ -258,7 +258,7 @@ Vec3 slide(double t_s, double depth_m) {
 // Against the true sphere's normal, which goes from the centre through the tool. What remains with shading: a
 // triangle's own normal is off by a, at the proxy, which is r + d from the tool, so the place where normals are
 // interpolated is off by a (r + d) / R, and the interpolated normal itself by what the vertices' are.
-TEST(Surface, OnASmoothSphereTheShadedForceHasTheSpheresDirection) {
+TEST(Surface, on_a_smooth_sphere_the_shaded_force_has_the_spheres_direction) {
     const SurfaceMesh& mesh = smooth().mesh;
     const auto between = [](const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); };
     double facet = 0.0, vertex = 0.0;
@@ -287,7 +287,7 @@ TEST(Surface, OnASmoothSphereTheShadedForceHasTheSpheresDirection) {
 }
 
 // Facets 8.7 degrees apart, four a tenth of a second: the turn by shading has to change as fast as facets do.
-TEST(Surface, OnACoarseSphereTheDirectionHoldsForAFastHandAndTheForceMakesNoSteps) {
+TEST(Surface, on_a_coarse_sphere_the_direction_holds_for_a_fast_hand_and_the_force_makes_no_steps) {
     static const auto coarse = scene(smooth_sphere(10));
     for (const double radius_m : {0.0, 0.001, 0.003}) {
         SurfaceSettings settings = plain(radius_m);
@@ -303,7 +303,7 @@ TEST(Surface, OnACoarseSphereTheDirectionHoldsForAFastHandAndTheForceMakesNoStep
             const Vec3 last = hand.place, force = hand.step(place(i));
             off.push_back(std::atan2(force.cross(hand.place).norm(), force.dot(hand.place)));
             ASSERT_LT((force - before).norm(),
-                      2.5 * kStiffness * (hand.place - last).norm() + 2.0 * SurfaceModel::kGlideN + 1e-3);
+                      2.5 * kStiffness * (hand.place - last).norm() + 2.0 * SurfaceModel::kLagN + 1e-3);
             before = force;
         }
         std::sort(off.begin(), off.end());
@@ -328,7 +328,7 @@ void expect_settled(const Hand& hand, double radius_m, SeededRandom& random) {
     }
 }
 
-TEST(Surface, TheProxyNeverJamsOnARoughSurface) {
+TEST(Surface, the_proxy_never_jams_on_a_rough_surface) {
     SeededRandom random(7);
     for (const double radius_m : {0.0, 0.003}) {
         for (const double speed : {1.0, 4.0}) {
@@ -348,7 +348,7 @@ TEST(Surface, TheProxyNeverJamsOnARoughSurface) {
     }
 }
 
-TEST(Surface, MostStepsOfASlideAreAtRestAfterTheirFirstMove) {
+TEST(Surface, most_steps_of_a_slide_are_at_rest_after_their_first_move) {
     SeededRandom random(9);
     for (const double radius_m : {0.0, 0.001}) {
         Hand hand(rough(), plain(radius_m), slide(0.0, -0.008));
@@ -369,7 +369,7 @@ TEST(Surface, MostStepsOfASlideAreAtRestAfterTheirFirstMove) {
 
 // In hollows of a dense rough surface that the ball just fits, every way is as level as numbers are good: moves that lead
 // round in a ring must not use up the step. Two places of a slide where they did, ten and seven steps in a row.
-TEST(Surface, ABallInAHollowThatItFitsComesToRest) {
+TEST(Surface, a_ball_in_a_hollow_that_it_fits_comes_to_rest) {
     const auto toward = [](double t_s) {
         const double around = 1.1 * t_s + 0.3 * std::sin(0.7 * t_s),
                      up = 0.9 * std::sin(0.61 * t_s) + 0.2 * std::sin(3.1 * t_s);
@@ -411,7 +411,7 @@ TEST(Surface, ABallInAHollowThatItFitsComesToRest) {
     }
 }
 
-TEST(Surface, FromStepToStepTheForceChangesByWhatTheHandDidAndATenthOfANewton) {
+TEST(Surface, from_step_to_step_the_force_changes_by_what_the_hand_did_and_a_tenth_of_a_newton) {
     for (const double friction : {0.0, 0.4}) {
         for (const double speed : {1.0, 4.0}) {
             SurfaceSettings settings = plain(0.001, friction);
@@ -423,14 +423,14 @@ TEST(Surface, FromStepToStepTheForceChangesByWhatTheHandDidAndATenthOfANewton) {
                 const Vec3 force = hand.step(slide(1e-3 * speed * i, 0.001));
                 const double moved = (hand.place - last).norm();
                 ASSERT_LT((force - before).norm(),
-                          2.5 * kStiffness * moved + 2.0 * SurfaceModel::kGlideN + 1e-3);
+                          2.5 * kStiffness * moved + 2.0 * SurfaceModel::kLagN + 1e-3);
                 before = force;
             }
         }
     }
 }
 
-TEST(Surface, AClosedPathGainsNoEnergy) {
+TEST(Surface, a_closed_path_gains_no_energy) {
     SeededRandom random(3);
     for (const double friction : {0.0, 0.3}) {
         for (int path = 0; path < 6; ++path) {
@@ -460,7 +460,7 @@ TEST(Surface, AClosedPathGainsNoEnergy) {
     }
 }
 
-TEST(Surface, ShadingMakesASmoothSurfaceSmoothAndLeavesAnEdgeSharp) {
+TEST(Surface, shading_makes_a_smooth_surface_smooth_and_leaves_an_edge_sharp) {
     SurfaceSettings settings = plain();
     const auto worst_degrees = [&](bool shading) {
         settings.shading = shading;
@@ -482,7 +482,7 @@ TEST(Surface, ShadingMakesASmoothSurfaceSmoothAndLeavesAnEdgeSharp) {
     EXPECT_LT((hand.lead(Vec3(0.019, 0.019, 0.003)) - Vec3(0, kStiffness * 0.001, 0)).norm(), 0.006);
 }
 
-TEST(Surface, DampingOpposesTheWayInAndNeverPulls) {
+TEST(Surface, damping_opposes_the_way_in_and_never_pulls) {
     SurfaceSettings settings = plain(0.001);
     settings.damping_n_s_m = 2.0;
     Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
@@ -496,7 +496,7 @@ TEST(Surface, DampingOpposesTheWayInAndNeverPulls) {
     EXPECT_NEAR(hand.model->step(tool, {}).wrench_world.force_n.y(), at_rest, 0.001);
 }
 
-TEST(Surface, ATooDeepToolIsPushedByTheLimitAndNoMore) {
+TEST(Surface, a_too_deep_tool_is_pushed_by_the_limit_and_no_more) {
     SurfaceSettings settings = plain();
     settings.force_n_max = 3.0;
     Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
@@ -504,7 +504,7 @@ TEST(Surface, ATooDeepToolIsPushedByTheLimitAndNoMore) {
     EXPECT_EQ(hand.model->released(), 0U);
 }
 
-TEST(Surface, AToolThatIsFarBeyondTheLimitIsReleasedWithoutAStep) {
+TEST(Surface, a_tool_that_is_far_beyond_the_limit_is_released_without_a_step) {
     SurfaceSettings settings = plain();
     settings.force_n_max = 3.0;
     Hand hand(plane(), settings, Vec3(0.0, 0.01, 0.0));
@@ -519,7 +519,7 @@ TEST(Surface, AToolThatIsFarBeyondTheLimitIsReleasedWithoutAStep) {
     EXPECT_LT(hand.lead(Vec3(0.0, 0.002, 0.0)).y(), -0.9);  // from now on it is felt from below
 }
 
-TEST(Surface, AHandThatLeapsAwayIsFollowedAndAStepThatCannotSaysSo) {
+TEST(Surface, a_hand_that_leaps_away_is_followed_and_a_step_that_cannot_says_so) {
     Hand hand(rough(), plain(0.001), slide(0.0, -0.005));
     (void)hand.lead(slide(0.0, 0.001));
     Budget hurried;
@@ -531,7 +531,7 @@ TEST(Surface, AHandThatLeapsAwayIsFollowedAndAStepThatCannotSaysSo) {
     EXPECT_LT((hand.proxy() - hand.place).norm(), 1e-9);
 }
 
-TEST(Surface, AResetInsideAClosedSurfaceSeatsTheToolOutside) {
+TEST(Surface, a_reset_inside_a_closed_surface_seats_the_tool_outside) {
     Hand hand(box(), plain(0.002), Vec3(0.003, 0.016, 0.001));
     EXPECT_LT((hand.proxy() - Vec3(0.003, 0.022, 0.001)).norm(), 1e-5);
     EXPECT_NEAR(hand.step(hand.place).y(), kStiffness * 0.006, 0.006);
@@ -540,7 +540,7 @@ TEST(Surface, AResetInsideAClosedSurfaceSeatsTheToolOutside) {
     EXPECT_GT(corner.proxy().maxCoeff(), 0.0219);
 }
 
-TEST(Surface, TheClutchLetsGoAndTakesHoldWhereTheToolIs) {
+TEST(Surface, the_clutch_lets_go_and_takes_hold_where_the_tool_is) {
     Hand hand(plane(), plain(0.001), Vec3(0.0, 0.01, 0.0));
     const double felt = hand.lead(Vec3(0.0, -0.002, 0.0)).norm();
     ToolState tool = at(hand.place);
@@ -557,7 +557,7 @@ TEST(Surface, TheClutchLetsGoAndTakesHoldWhereTheToolIs) {
     EXPECT_LT(hand.lead(Vec3(0.0, 0.002, 0.0)).y(), -1.0);
 }
 
-TEST(Surface, ABakedSceneIsLoadedAndLiesBelowTheHand) {
+TEST(Surface, a_baked_scene_is_loaded_and_lies_below_the_hand) {
     SceneWriter out;
     SurfaceInput input;
     input.title = "rough";
@@ -585,7 +585,7 @@ TEST(Surface, ABakedSceneIsLoadedAndLiesBelowTheHand) {
         ASSERT_GT(mesh.normal(v).dot(mesh.position_m(v).normalized()), 0.5);
 }
 
-TEST(Surface, ASceneWithoutForestIsSmallerAndCanStillBeTouched) {
+TEST(Surface, a_scene_without_forest_is_smaller_and_can_still_be_touched) {
     SceneWriter out;
     SurfaceInput input;
     input.mesh = rough_sphere(6);
@@ -597,7 +597,7 @@ TEST(Surface, ASceneWithoutForestIsSmallerAndCanStillBeTouched) {
     EXPECT_NE(load_surface_model(file, {}), nullptr);
 }
 
-TEST(Surface, AWrongSceneOrSettingIsRefused) {
+TEST(Surface, a_wrong_scene_or_setting_is_refused) {
     SceneMeta meta = plane().meta;
     EXPECT_THROW(SurfaceModel(meta, plane().mesh, {.radius_m = -1.0}), StartupError);
     EXPECT_THROW(SurfaceModel(meta, plane().mesh, {.stiffness_n_m = 0.0}), StartupError);

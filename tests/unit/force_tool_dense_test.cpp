@@ -32,7 +32,7 @@ TriangleMesh dense_patch() {
     return mesh;
 }
 
-TEST(DenseSurface, DoesNotHoldAToolFast) {
+TEST(DenseSurface, does_not_hold_a_tool_fast) {
     TriangleMesh block = made_tool("block");  // 16 mm
     for (float& x : block.position_m) x *= 0.2F;
     SceneWriter out;

@@ -15,7 +15,7 @@ namespace tact {
 namespace {
 
 constexpr double kStepS = 1e-3;
-constexpr int kTendEvery = 4, kSteps = 1500;  // cycles
+constexpr int kSlowUpdateEvery = 4, kSteps = 1500;  // cycles
 constexpr SectionTag kForest{'F', 'R', 'S', 'T'};
 
 struct Scene {
@@ -46,7 +46,8 @@ struct Felt {
 };
 
 // Around the sphere and up and down, and about its own axis; pressed in after a quarter of a second.
-Felt feel(SurfaceMode mode, double speed_m_s, bool tended = true, int steps = kSteps, double friction = 0.1) {
+Felt feel(SurfaceMode mode, double speed_m_s, bool has_slow_update = true, int steps = kSteps,
+          double friction = 0.1) {
     const auto model = load_tool_model(
         *scene().file, {.damping_n_s_m = 0.0, .friction = friction, .shading = true, .mode = mode});
     const double ball_m = 0.05 * scene().meta.world_per_model;
@@ -63,7 +64,7 @@ Felt feel(SurfaceMode mode, double speed_m_s, bool tended = true, int steps = kS
         if (i > 0) tool.twist_world.linear_m_s = (tool.T_world_tool.p_m - before) / kStepS;
         before = tool.T_world_tool.p_m;
         if (i == 0) model->reset(tool);
-        if (tended && i % kTendEvery == 0) model->tend(tool, {});
+        if (has_slow_update && i % kSlowUpdateEvery == 0) model->slow_update(tool, {});
         felt.wrench.push_back(model->step(tool, {}).wrench_world);
         felt.touching += (felt.wrench.back().force_n.norm() > 0.1 ? 1.0 : 0.0) / steps;
         felt.adaptive += (model->regime() == SurfaceRegime::adaptive ? 1.0 : 0.0) / steps;
@@ -81,7 +82,7 @@ std::size_t different(const Felt& a, const Felt& b) {
     return count;
 }
 
-TEST(ToolModes, TheAdaptiveSurfaceGivesTheWrenchOfTheFullMeshToTheBit) {
+TEST(ToolModes, the_adaptive_surface_gives_the_wrench_of_the_full_mesh_to_the_bit) {
     for (const double speed_m_s : {0.055, 0.22}) {
         const Felt chr = feel(SurfaceMode::chr, speed_m_s), tree = feel(SurfaceMode::off_tree, speed_m_s);
         EXPECT_EQ(different(chr, tree), 0U);
@@ -91,14 +92,14 @@ TEST(ToolModes, TheAdaptiveSurfaceGivesTheWrenchOfTheFullMeshToTheBit) {
     }
 }
 
-TEST(ToolModes, WithoutTendingTheTreeAnswersAndSaysSo) {
+TEST(ToolModes, without_tending_the_tree_answers_and_says_so) {
     const Felt chr = feel(SurfaceMode::chr, 0.055, false);
     EXPECT_EQ(chr.adaptive, 0.0);
     EXPECT_EQ(different(chr, feel(SurfaceMode::off_tree, 0.055)), 0U);
 }
 
 // With friction the way of the proxy counts too, and that depends on which guards happen to be known.
-TEST(ToolModes, AllTrianglesGiveTheForceOfTheTree) {
+TEST(ToolModes, all_triangles_give_the_force_of_the_tree) {
     constexpr int kFew = 600;
     const Felt brute = feel(SurfaceMode::off_brute, 0.055, false, kFew, 0.0),
                tree = feel(SurfaceMode::off_tree, 0.055, false, kFew, 0.0);
@@ -109,28 +110,28 @@ TEST(ToolModes, AllTrianglesGiveTheForceOfTheTree) {
     EXPECT_LT(worst_n, 1e-3);
 }
 
-TEST(ToolModes, ChrWithoutAForestIsRefused) {
+TEST(ToolModes, chr_without_a_forest_is_refused) {
     const Scene bare(false);
     ASSERT_EQ(bare.file->count(kForest), 0U);
     EXPECT_THROW((void)load_tool_model(*bare.file, {.mode = SurfaceMode::chr}), StartupError);
 }
 
-TEST(ToolModes, WhatIsTendedIsShown) {
+TEST(ToolModes, what_is_tended_is_shown) {
     const auto model = load_tool_model(*scene().file, {.mode = SurfaceMode::chr});
     ToolState tool;
     tool.T_world_tool.p_m = scene().meta.to_world(Vec3(0.0, 0.055, 0.0));
     model->reset(tool);
     for (int i = 0; i < 40; ++i) {
-        model->tend(tool, {});
+        model->slow_update(tool, {});
         (void)model->step(tool, {});
     }
     const ModelDetail detail = model->touch().detail;
-    EXPECT_TRUE(model->tended());
+    EXPECT_TRUE(model->has_slow_update());
     EXPECT_TRUE(detail.there);
     EXPECT_TRUE(detail.full);
     // The whole tool lies in it, however it turns.
     EXPECT_GT(detail.radius_m, model->contact().points().reach_m());
-    EXPECT_GT(model->tend_s(), 0.0);
+    EXPECT_GT(model->slow_update_s(), 0.0);
 }
 
 }  // namespace

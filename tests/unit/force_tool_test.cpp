@@ -159,7 +159,7 @@ Pose pose(const Vec3& p, const Vec3& turn_rad = Vec3::Zero()) {
     return {p, quat_from_rotation_vector(turn_rad)};
 }
 
-TEST(TouchTool, EveryPrefixOfItsPointsIsAnEvenSampling) {
+TEST(TouchTool, every_prefix_of_its_points_is_an_even_sampling) {
     const TriangleMesh mesh = box_mesh({0.015, 0.005, 0.01});
     const TouchTool tool = sample_tool(mesh, {.points = 600});
     ASSERT_EQ(tool.points(), 600U);
@@ -194,7 +194,7 @@ TEST(TouchTool, EveryPrefixOfItsPointsIsAnEvenSampling) {
     EXPECT_LT(stick_out, 12U);
 }
 
-TEST(TouchTool, TheSameMeshGivesTheSameToolAndTheSectionHoldsIt) {
+TEST(TouchTool, the_same_mesh_gives_the_same_tool_and_the_section_holds_it) {
     const TriangleMesh mesh = made_tool("scaler");
     SceneWriter out;
     const TouchTool a = sample_tool(mesh, {.points = 400, .grip_in_middle = false}),
@@ -211,7 +211,7 @@ TEST(TouchTool, TheSameMeshGivesTheSameToolAndTheSectionHoldsIt) {
     EXPECT_EQ(read.ball_m, a.ball_m);
 }
 
-TEST(TouchTool, AWrongSectionIsRefused) {
+TEST(TouchTool, a_wrong_section_is_refused) {
     const TouchTool good = sample_tool(box_mesh({0.01, 0.01, 0.01}), {.points = 20});
     const auto refused = [&](auto change) {
         TouchTool tool = good;
@@ -233,7 +233,7 @@ TEST(TouchTool, AWrongSectionIsRefused) {
     refused([](TouchTool& t) { t.parent.clear(); });
 }
 
-TEST(TouchTool, MadeToolsAreClosedAndTurnedOutward) {
+TEST(TouchTool, made_tools_are_closed_and_turned_outward) {
     for (const char* name : kMadeTools) {
         const TriangleMesh mesh = made_tool(name);
         EXPECT_TRUE(build_surface(mesh).closed) << name;
@@ -249,28 +249,28 @@ TEST(TouchTool, MadeToolsAreClosedAndTurnedOutward) {
     EXPECT_EQ(made_tool("none").triangles(), 0U);
 }
 
-TEST(TwistGuards, TheAnswerIsTheNearestTwistThatKeepsEveryGuard) {
+TEST(TwistHalfSpaces, the_answer_is_the_nearest_twist_that_keeps_every_guard) {
     SeededRandom random(11);
     const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
     for (int trial = 0; trial < 60; ++trial) {
-        TwistGuards guards;
+        TwistHalfSpaces half_spaces;
         const int count = 1 + static_cast<int>(random.below(40));
         std::vector<std::pair<Vec6, double>> plane;
         for (int i = 0; i < count; ++i) {
             const Vec3 n = random.direction(), lever(number(), number(), number());
-            TriangleLooks look{};
+            TriangleQueries look{};
             for (std::size_t axis = 0; axis < 3; ++axis)
                 look.away[axis][0] = static_cast<float>(n[static_cast<Eigen::Index>(axis)]);
             const auto slack = static_cast<float>(0.3 * random.uniform());
-            ASSERT_TRUE(guards.add(0, 0, lever.cast<float>(), look, 0, slack, slack, false));
+            ASSERT_TRUE(half_spaces.add(0, 0, lever.cast<float>(), look, 0, slack, slack, false));
             Vec6 normal;
             normal << n, lever.cross(n);
             plane.emplace_back(normal, static_cast<double>(slack));
         }
         Vec6 goal;
         for (double& x : goal) x = number();
-        TwistGuards::Solution s = TwistGuards::fresh(goal);
-        guards.solve(goal, 1e-6, s);
+        TwistHalfSpaces::Solution s = TwistHalfSpaces::fresh(goal);
+        half_spaces.solve(goal, 1e-6, s);
         ASSERT_TRUE(s.exact);
         Vec6 pushed = goal;
         for (std::size_t i = 0; i < s.active_count; ++i) {
@@ -295,7 +295,7 @@ INSTANTIATE_TEST_SUITE_P(Tool, ForceModelContract,
                                                         pose({0.004, 0.06, 0.003}, {0.1, 0.0, 0.1})}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(Tool, ABoxOnAPlanePushesAlongTheNormalByItsDepth) {
+TEST(Tool, a_box_on_a_plane_pushes_along_the_normal_by_its_depth) {
     Hand hand(box_on_plane(), plain(), pose({0.003, 0.02, -0.002}));
     const Wrench& w = hand.lead(pose({0.013, 0.004, 0.004}));
     EXPECT_NEAR(w.force_n.y(), kStiffness * 0.001, 0.01);
@@ -305,7 +305,7 @@ TEST(Tool, ABoxOnAPlanePushesAlongTheNormalByItsDepth) {
     EXPECT_LT(clear.force_n.norm() + clear.torque_n_m.norm(), 1e-9);
 }
 
-TEST(Tool, ATiltedBoxIsHeldByItsLowestCornerAndTheTorqueIsLeverTimesForce) {
+TEST(Tool, a_tilted_box_is_held_by_its_lowest_corner_and_the_torque_is_lever_times_force) {
     Hand hand(box_on_plane(), plain(), pose({0.0, 0.03, 0.0}));
     (void)hand.lead(pose({0.0, 0.013, 0.0}, {0.3, 0.1, 0.5}));
     ASSERT_GT(hand.model->tool_touch().places, 0U);
@@ -325,7 +325,7 @@ TEST(Tool, ATiltedBoxIsHeldByItsLowestCornerAndTheTorqueIsLeverTimesForce) {
 // Two supports at a = 0.009 and b = 0.014 from the hand (inner edges of the blocks), pushed down by d without
 // a turn: the proxy turns by t and lies y above, with weights l: y = l1 + l2, g^2 t = b l2 - a l1, kept where
 // y + t b = d, y - t a = d. Both hold only for t = 0, y = d: forces b / (a + b) and a / (a + b).
-TEST(Tool, ABarOnTwoSupportsSharesTheForceByItsLevers) {
+TEST(Tool, a_bar_on_two_supports_shares_the_force_by_its_levers) {
     Hand hand(bar_on_blocks(), plain(), pose({0.0, 0.01, 0.0}));
     (void)hand.lead(pose({0.0, 0.0, 0.0}));
     EXPECT_NEAR(hand.felt.force_n.y(), kStiffness * 0.001, 0.01);
@@ -339,7 +339,7 @@ TEST(Tool, ABarOnTwoSupportsSharesTheForceByItsLevers) {
     EXPECT_LT(lever, 0.0135);
 }
 
-TEST(Tool, ABoxOverAnEdgeTiltsAndTheForceFollowsFromOneEnergy) {
+TEST(Tool, a_box_over_an_edge_tilts_and_the_force_follows_from_one_energy) {
     Hand hand(bar_on_blocks(), plain(), pose({-0.018, 0.01, 0.0}));
     SeededRandom random(2);
     const auto energy = [&](const Pose& goal) {
@@ -363,7 +363,7 @@ TEST(Tool, ABoxOverAnEdgeTiltsAndTheForceFollowsFromOneEnergy) {
     }
 }
 
-TEST(Tool, AMirroredWorldGivesAMirroredWrench) {
+TEST(Tool, a_mirrored_world_gives_a_mirrored_wrench) {
     // x to -x.
     Hand left(bar_on_blocks(), plain(), pose({0.003, 0.01, 0.0}));
     static const auto mirrored = [] {
@@ -380,7 +380,7 @@ TEST(Tool, AMirroredWorldGivesAMirroredWrench) {
     EXPECT_LT((a.torque_n_m - Vec3(b.torque_n_m.x(), -b.torque_n_m.y(), -b.torque_n_m.z())).norm(), 2e-4);
 }
 
-TEST(Tool, FrictionHoldsABoxInItsConeAndItSlidesAtTheRim) {
+TEST(Tool, friction_holds_a_box_in_its_cone_and_it_slides_at_the_rim) {
     constexpr double kFriction = 0.4, kDepth = 0.001;
     Hand hand(box_on_plane(), plain(kFriction), pose({0.0, 0.02, 0.0}));
     (void)hand.lead(pose({0.0, 0.005 - kDepth, 0.0}));
@@ -398,7 +398,7 @@ Pose slide(double t, double depth) {
     return {(rough_radius_m(d) + 0.0137 - depth) * d, q};
 }
 
-TEST(Tool, TheProxyNeverJamsAndNoPointIsEverBehindTheSurface) {
+TEST(Tool, the_proxy_never_jams_and_no_point_is_ever_behind_the_surface) {
     for (const double speed : {1.0, 3.0}) {
         Hand hand(scaler_on_rough(), plain(speed > 2.0 ? 0.2 : 0.0), slide(0.0, -0.01));
         const ToolPoints& points = hand.model->contact().points();
@@ -434,7 +434,7 @@ TEST(Tool, TheProxyNeverJamsAndNoPointIsEverBehindTheSurface) {
     }
 }
 
-TEST(Tool, ASettledProxyIsTheNearestFreePoseThatSmallMovesFind) {
+TEST(Tool, a_settled_proxy_is_the_nearest_free_pose_that_small_moves_find) {
     Hand hand(scaler_on_rough(), plain(), slide(0.0, -0.01));
     SeededRandom random(4);
     const World& w = scaler_on_rough();
@@ -460,7 +460,7 @@ TEST(Tool, ASettledProxyIsTheNearestFreePoseThatSmallMovesFind) {
     }
 }
 
-TEST(Tool, AToolThatIsPutIntoTheSurfaceComesToRestOnItAndIsFeltWithoutAStep) {
+TEST(Tool, a_tool_that_is_put_into_the_surface_comes_to_rest_on_it_and_is_felt_without_a_step) {
     for (const double y : {0.001, 0.004, 0.0051, 0.02}) {
         const auto model = box_on_plane().model(plain());
         const ToolState tool = at({0.0, y, 0.0});
@@ -518,17 +518,17 @@ OnFacets slide_on_facets(bool shading) {
     return felt;
 }
 
-TEST(Tool, ShadingTurnsForceAndTorqueToTheSmoothNormalWithoutSteps) {
+TEST(Tool, shading_turns_force_and_torque_to_the_smooth_normal_without_steps) {
     const OnFacets flat = slide_on_facets(false), shaded = slide_on_facets(true);
     constexpr double kDegree = std::numbers::pi / 180.0;
     EXPECT_GT(flat.off_rad, 3.5 * kDegree);
     EXPECT_LT(shaded.off_rad, 2.0 * kDegree);
-    EXPECT_LT(shaded.beyond_n, 2.0 * SurfaceModel::kGlideN + 1e-3);
-    EXPECT_LT(shaded.twist_beyond_n, 2.0 * SurfaceModel::kGlideN + 1e-3);
+    EXPECT_LT(shaded.beyond_n, 2.0 * SurfaceModel::kLagN + 1e-3);
+    EXPECT_LT(shaded.twist_beyond_n, 2.0 * SurfaceModel::kLagN + 1e-3);
 }
 
 // At rest each place pushes along the smooth normal there, as hard as it did, and where it did.
-TEST(Tool, TheShadedTorqueIsThatOfThePushesWhereTheyAre) {
+TEST(Tool, the_shaded_torque_is_that_of_the_pushes_where_they_are) {
     const World& w = pin_on_facets();
     SurfaceSettings settings = plain();
     settings.shading = true;
@@ -557,7 +557,7 @@ TEST(Tool, TheShadedTorqueIsThatOfThePushesWhereTheyAre) {
     EXPECT_GT(torque_n_m, 1e-4);
 }
 
-TEST(Tool, ShadingLeavesAPlaneAndAnEdgeAsTheyAre) {
+TEST(Tool, shading_leaves_a_plane_and_an_edge_as_they_are) {
     SurfaceSettings settings = plain();
     settings.shading = true;
     Hand hand(box_on_plane(), settings, pose({0.003, 0.02, -0.002}));
@@ -573,7 +573,7 @@ TEST(Tool, ShadingLeavesAPlaneAndAnEdgeAsTheyAre) {
     EXPECT_LT((a.torque_n_m - b.torque_n_m).norm(), 1e-9);
 }
 
-TEST(Tool, WithoutTimeItGoesNoFartherThanWhatIsKnownToBeFree) {
+TEST(Tool, without_time_it_goes_no_farther_than_what_is_known_to_be_free) {
     Hand hand(scaler_on_rough(), plain(), slide(0.0, -0.004));
     Budget hurried;
     hurried.deadline = instant_from_ns(0);

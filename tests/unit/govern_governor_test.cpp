@@ -1,6 +1,6 @@
 // The governor: the seed's law to the letter, its order of sacrifice, and what holds for any rates.
+#include "rt/govern/display_watch.hpp"
 #include "rt/govern/governor.hpp"
-#include "rt/govern/picture_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -151,7 +151,7 @@ TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_betwe
     const bool held = rc::check([] {
         KnobSpec zero{.path = "z", .floor = 0.0F, .start = 0.5F};
         Governor governor =
-            with({.law = Law::elastic, .goal_hz = 1000.0, .picture_goal_hz = 30.0}, {kMesh, kForce, zero});
+            with({.law = Law::elastic, .goal_hz = 1000.0, .display_goal_hz = 30.0}, {kMesh, kForce, zero});
         const auto number = [](int to) {
             const double nasty = *rc::gen::element(std::numeric_limits<double>::quiet_NaN(), -1.0, 1e308, 0.0,
                                                    std::numeric_limits<double>::infinity());
@@ -164,7 +164,7 @@ TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_betwe
             if (*rc::gen::inRange(0, 2) == 0) {
                 static_cast<void>(governor.step(1e3 * number(5000), kStep));
             } else {
-                static_cast<void>(governor.look({number(3000), number(3000), number(3000)}));
+                static_cast<void>(governor.update({number(3000), number(3000), number(3000)}));
                 RC_ASSERT(governor.level(1) == force);  // no force is given up for a picture
             }
             for (const GovernedPath& p : governor.paths())
@@ -178,7 +178,7 @@ TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
     Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
     // Half of the picture's cost varies (the prior), and it has half of the core.
     for (int i = 0; i < 50; ++i)
-        static_cast<void>(governor.look({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
+        static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
     ASSERT_TRUE(governor.step(900.0, kStep));
     const double e = 900.0 / 1002.0 - 1.0;
     EXPECT_NEAR(static_cast<double>(governor.level(0)), std::exp(e * (1.0 - 0.5) / (0.5 * 0.5)), 1e-3);
@@ -200,9 +200,10 @@ TEST(Governor, the_elastic_law_comes_back_only_after_a_hold_and_by_small_steps) 
 }
 
 TEST(Governor, one_hitch_of_the_picture_is_no_load_and_two_are) {
-    Governor governor = with({.goal_hz = 1000.0, .picture_goal_hz = 30.0}, {kMesh});
+    Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 30.0}, {kMesh});
     const auto frame = [&](double work_s) {
-        return governor.look({.work_s = work_s, .processor_s = work_s, .period_s = std::max(work_s, 0.033)});
+        return governor.update(
+            {.work_s = work_s, .processor_s = work_s, .period_s = std::max(work_s, 0.033)});
     };
     for (int i = 0; i < 10; ++i) EXPECT_FALSE(frame(0.02));
     EXPECT_FALSE(frame(0.3));
@@ -214,9 +215,9 @@ TEST(Governor, one_hitch_of_the_picture_is_no_load_and_two_are) {
 }
 
 TEST(Governor, without_a_goal_of_its_own_the_picture_may_take_its_time) {
-    Governor governor = with({.goal_hz = 1000.0, .picture_goal_hz = 0.0}, {kMesh});
+    Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 0.0}, {kMesh});
     for (int i = 0; i < 10; ++i)
-        EXPECT_FALSE(governor.look({.work_s = 2.0, .processor_s = 2.0, .period_s = 2.0}));
+        EXPECT_FALSE(governor.update({.work_s = 2.0, .processor_s = 2.0, .period_s = 2.0}));
     EXPECT_FLOAT_EQ(governor.level(0), 1.0F);
 }
 
@@ -255,8 +256,8 @@ TEST(CostFit, finds_the_elasticity_of_a_line_and_keeps_its_prior_where_nothing_m
     EXPECT_NEAR(still.elasticity(0.5), 0.5, 1e-9);
 }
 
-TEST(PictureWatch, hands_on_each_frame_that_obeyed_once) {
-    PictureWatch watch;
+TEST(DisplayWatch, hands_on_each_frame_that_obeyed_once) {
+    DisplayWatch watch;
     const Instant t = Instant{} + std::chrono::hours(1);
     PictureWord w{.frame = 5,
                   .levels_sequence = 1,

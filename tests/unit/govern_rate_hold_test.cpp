@@ -39,8 +39,8 @@ struct Core {
                     rest_until_s = t_s + rest_s;
                     continue;
                 }
-                all.push_back({t_s, std::ceil(8.0 * hold.share(now, goal_hz)) / 8.0});
-                left_s += update_s(t_s) * (0.05 + 0.95 * all.back().share);
+                all.push_back({t_s, std::ceil(8.0 * hold.work_fraction(now, goal_hz)) / 8.0});
+                left_s += update_s(t_s) * (0.05 + 0.95 * all.back().work_fraction);
             }
             left_s -= kTick_s;
         }
@@ -71,7 +71,7 @@ double worst_window(const std::vector<Core::Update>& all, double from_s, double 
 double mean_share(const std::vector<Core::Update>& all, double from_s, double to_s) {
     double sum = 0.0, n = 0.0;
     for (const Core::Update& u : all)
-        if (u.t_s >= from_s && u.t_s < to_s) sum += u.share, n += 1.0;
+        if (u.t_s >= from_s && u.t_s < to_s) sum += u.work_fraction, n += 1.0;
     return sum / n;
 }
 
@@ -194,14 +194,14 @@ TEST(RateHold, any_times_and_goals_give_a_share_and_a_rest) {
     for (const double goal_hz : {1.0, 1e7})
         for (const Duration d : {Duration{0}, Duration{-5}, Duration::max() / 4, -Duration::max() / 4}) {
             for (int i = 0; i < 100; ++i) {
-                const double share = hold.share(now + i * Duration{1000}, goal_hz);
+                const double share = hold.work_fraction(now + i * Duration{1000}, goal_hz);
                 EXPECT_GE(share, RateHold::kLeast);
                 EXPECT_LE(share, 1.0);
             }
             const double rest_s = hold.rest_s(now, goal_hz);
             EXPECT_GE(rest_s, 0.0);
             EXPECT_LE(rest_s, RateHold::kRestMost_s);
-            const double share = hold.share(now + d, goal_hz);
+            const double share = hold.work_fraction(now + d, goal_hz);
             EXPECT_GE(share, RateHold::kLeast);
             EXPECT_LE(share, 1.0);
         }

@@ -90,7 +90,7 @@ const std::vector<Contender> kContenders{{"sensitus, s 0.5, 0.2 s", Law::sensitu
                                          {"elastic, 0.1 s", Law::elastic, 0.5, 0.1},
                                          {"elastic, held", Law::elastic, 0.5, 0.1, true}};
 
-Figures figures(const Story& story, const Contender& c) {
+Figures metrics(const Story& story, const Contender& c) {
     PlantSettings p = story.plant;
     p.interval_s = c.interval_s;
     p.hold = c.hold;
@@ -133,7 +133,7 @@ TEST(LawReplay, the_default_law_is_better_than_the_published_one_over_the_same_l
     for (const Story& story : stories()) {
         Figures best{.missed_percent = 1e9, .settling_s = 1e9};  // of the published law, column by column
         for (const Contender& c : kContenders) {
-            const Figures f = figures(story, c);
+            const Figures f = metrics(story, c);
             std::printf("| %s | %s | %.2f %% | %.1f s | %+.1f %% | %.1f %% | %.2f | %.2f | %d |\n",
                         story.name.c_str(), c.name.c_str(), f.missed_percent, f.settling_s, f.mean_percent,
                         f.worst_percent, f.fidelity, f.overshoot, f.changes);
@@ -174,7 +174,7 @@ TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_t
             if (s.t_s < 2.0) continue;
             worst = std::min(worst, s.rate_hz / kGoal_hz);
             sum += s.rate_hz / kGoal_hz;
-            fresh += s.fresh;
+            fresh += s.recomputed_fraction;
             level += s.level;
             ++n;
         }
@@ -248,7 +248,7 @@ TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it
         p.frame_full_s = 0.6;  // 1.6 frames a second with all of it
         p.fps_max = 60.0;
         p.seconds = 20.0;
-        SharedCorePlant plant(p, {.law = law, .goal_hz = kGoal_hz, .picture_goal_hz = 30.0});
+        SharedCorePlant plant(p, {.law = law, .goal_hz = kGoal_hz, .display_goal_hz = 30.0});
         const auto& s = plant.run([](double) { return Load{}; });
         double below_s = 0.0, fps = 0.0;
         for (const PlantSample& x : s) {
@@ -274,7 +274,7 @@ TEST(LawReplay, a_picture_with_time_to_spare_comes_back_to_all_of_it) {
     p.fps_max = 60.0;
     p.frame_full_s = 0.02;  // 37 frames a second with all of it
     p.seconds = 20.0;
-    SharedCorePlant plant(p, {.goal_hz = kGoal_hz, .picture_goal_hz = 30.0});
+    SharedCorePlant plant(p, {.goal_hz = kGoal_hz, .display_goal_hz = 30.0});
     const auto& s = plant.run([](double t) { return Load{.frame_times = t < 5.0 ? 20.0 : 1.0}; });
     EXPECT_LT(s[45].level, 0.1);
     EXPECT_DOUBLE_EQ(s.back().level, 1.0);

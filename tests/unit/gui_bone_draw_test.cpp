@@ -99,7 +99,7 @@ protected:
     Camera camera_;
 };
 
-TEST_F(BoneDraw, ABallOfBoneIsWhereItsSurfaceIsInEveryPixel) {
+TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
     BoneView view(*content_, now_);
     draw(view);
     EXPECT_TRUE(view.sharp());
@@ -125,7 +125,7 @@ TEST_F(BoneDraw, ABallOfBoneIsWhereItsSurfaceIsInEveryPixel) {
     EXPECT_EQ(wrong, 0);
 }
 
-TEST_F(BoneDraw, DrillingChangesThePictureWhereItIsAndNoMoreRaysAreSent) {
+TEST_F(BoneDraw, drilling_changes_the_picture_where_it_is_and_no_more_rays_are_sent) {
     BoneView view(*content_, now_);
     draw(view);
     const double before = depth_a(kWidth / 2, kHeight / 2);
@@ -153,7 +153,7 @@ TEST_F(BoneDraw, DrillingChangesThePictureWhereItIsAndNoMoreRaysAreSent) {
     EXPECT_EQ(view.rays(), 0U);
 }
 
-TEST_F(BoneDraw, AMovingViewIsCoarseAndBecomesTheSameAsOneThatNeverMoved) {
+TEST_F(BoneDraw, a_moving_view_is_coarse_and_becomes_the_same_as_one_that_never_moved) {
     BoneView still(*content_, now_), moving(*content_, now_);
     draw(still);
     const Image sharp = read_pixels(kWidth, kHeight);
@@ -179,7 +179,7 @@ TEST_F(BoneDraw, AMovingViewIsCoarseAndBecomesTheSameAsOneThatNeverMoved) {
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, sharp.rgb);
 }
 
-TEST_F(BoneDraw, ASoftStructureIsSeenInItsColourOnceTheBoneOverItIsGone) {
+TEST_F(BoneDraw, a_soft_structure_is_seen_in_its_colour_once_the_bone_over_it_is_gone) {
     // The inner half of the ball is a nerve, of a density that bone has where it is all but nothing.
     std::vector<std::uint8_t> labels(block_->density.size());
     for (std::uint32_t z = 0; z < kEdge; ++z)
@@ -210,7 +210,7 @@ TEST_F(BoneDraw, ASoftStructureIsSeenInItsColourOnceTheBoneOverItIsGone) {
     EXPECT_LT(depth_a(kWidth / 2, kHeight / 2), 0.0);
 }
 
-TEST_F(BoneDraw, ALargeVolumeComesFromItsFrontPictureByPictureAndIsTheSameAtTheEnd) {
+TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_the_same_at_the_end) {
     BoneView at_once(*content_, now_), slowly(*content_, now_);
     draw(at_once);
     EXPECT_EQ(at_once.filled(), 1.0F);
@@ -248,7 +248,7 @@ TEST_F(BoneDraw, ALargeVolumeComesFromItsFrontPictureByPictureAndIsTheSameAtTheE
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, whole.rgb);
 }
 
-TEST_F(BoneDraw, TheFrameBufferThatWasBoundIsBoundAgain) {
+TEST_F(BoneDraw, the_frame_buffer_that_was_bound_is_bound_again) {
     BoneView view(*content_, now_);
     GLint before = 0, after = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);

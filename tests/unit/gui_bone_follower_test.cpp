@@ -60,7 +60,7 @@ long long levels(std::span<const std::uint8_t> voxels) {
     return std::accumulate(voxels.begin(), voxels.end(), 0LL);
 }
 
-TEST(BoneFollower, WithoutAControllerItIsTheScenesBone) {
+TEST(BoneFollower, without_a_controller_it_is_the_scenes_bone) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     EXPECT_TRUE(follower.follow(100).empty());
@@ -68,7 +68,7 @@ TEST(BoneFollower, WithoutAControllerItIsTheScenesBone) {
     EXPECT_EQ(follower.volume().bricks.size, bone.bricks.size);
 }
 
-TEST(BoneFollower, TellsWhatIsCutOnceWithBeforeAndAfter) {
+TEST(BoneFollower, tells_what_is_cut_once_with_before_and_after) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     ASSERT_EQ(follower.attach(bone.mapped), "");
@@ -92,7 +92,7 @@ TEST(BoneFollower, TellsWhatIsCutOnceWithBeforeAndAfter) {
     EXPECT_EQ(again[0].before[17], 120);
 }
 
-TEST(BoneFollower, AFewBricksAtACallReachAllOfThemAndNoneStarves) {
+TEST(BoneFollower, a_few_bricks_at_a_call_reach_all_of_them_and_none_starves) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     ASSERT_EQ(follower.attach(bone.mapped), "");
@@ -115,7 +115,7 @@ TEST(BoneFollower, AFewBricksAtACallReachAllOfThemAndNoneStarves) {
     EXPECT_EQ(levels(follower.volume().density), levels(bone.region->densities()));
 }
 
-TEST(BoneFollower, WhatWasDrilledBeforeItCameIsNotCutNow) {
+TEST(BoneFollower, what_was_drilled_before_it_came_is_not_cut_now) {
     const DrilledBone bone;
     bone.cut(2, 5, 0);
     BoneFollower follower(bone.view(), 5);
@@ -133,7 +133,7 @@ TEST(BoneFollower, WhatWasDrilledBeforeItCameIsNotCutNow) {
     EXPECT_TRUE(later[0].cut_now);
 }
 
-TEST(BoneFollower, AnotherControllerBringsTheBoneBack) {
+TEST(BoneFollower, another_controller_brings_the_bone_back) {
     const DrilledBone first, second;
     BoneFollower follower(first.view(), 5);
     ASSERT_EQ(follower.attach(first.mapped), "");
@@ -151,7 +151,7 @@ TEST(BoneFollower, AnotherControllerBringsTheBoneBack) {
     EXPECT_EQ(levels(follower.volume().density), levels(second.density));
 }
 
-TEST(BoneFollower, ARegionOfAnotherSceneIsRefusedInWords) {
+TEST(BoneFollower, a_region_of_another_scene_is_refused_in_words) {
     const DrilledBone bone, other({24, 24, 16});
     BoneFollower follower(bone.view(), 6);
     EXPECT_NE(follower.attach(bone.mapped).find("another scene"), std::string::npos);
@@ -162,7 +162,7 @@ TEST(BoneFollower, ARegionOfAnotherSceneIsRefusedInWords) {
     EXPECT_TRUE(smaller.follow(100).empty());
 }
 
-TEST(BoneFollower, NothingBeyondTheSizeIsTakenOver) {
+TEST(BoneFollower, nothing_beyond_the_size_is_taken_over) {
     DrilledBone bone({20, 9, 9});  // 3 x 2 x 2 bricks, most of them in part
     for (std::size_t b = 0; b < bone.bricks.brick_count(); ++b)
         for (std::size_t v = 0; v < kVoxels; ++v) bone.cut(b, v, 255);

@@ -14,7 +14,7 @@
 namespace tact {
 namespace {
 
-TEST(BoneField, WhatIsSoftButLabelledIsAsSolidAsTheShareOfItThatIsLeft) {
+TEST(BoneField, what_is_soft_but_labelled_is_as_solid_as_the_share_of_it_that_is_left) {
     EXPECT_EQ(solid_of(90, 200, 0), 90) << "bone without a label: its density";
     EXPECT_EQ(solid_of(90, 200, 3), 90) << "a bony structure too";
     EXPECT_EQ(solid_of(40, 40, 3), 255);
@@ -102,13 +102,13 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
     EXPECT_GT(far, 50U) << "large steps are possible";
 }
 
-TEST(BoneField, NoSurfaceLiesWhereARayLeaps) {
+TEST(BoneField, no_surface_lies_where_a_ray_leaps) {
     const TwoBalls two;
     const BoneField field(two.baked, two.labels, two.now);
     expect_true_distances(field, two.now);
 }
 
-TEST(BoneField, DrilledPlacesOpenAndBoneThatComesBackIsSeenAgain) {
+TEST(BoneField, drilled_places_open_and_bone_that_comes_back_is_seen_again) {
     TwoBalls two;
     BoneField field(two.baked, two.labels, two.now);
     const auto brick = static_cast<std::uint32_t>(two.block.bricks.brick(33, 33, 33));
@@ -127,7 +127,7 @@ TEST(BoneField, DrilledPlacesOpenAndBoneThatComesBackIsSeenAgain) {
     expect_true_distances(field, two.now);
 }
 
-TEST(BoneTiles, AllOfTheViewIsDrawnOnceFromTheMiddleOutwards) {
+TEST(BoneTiles, all_of_the_view_is_drawn_once_from_the_middle_outwards) {
     BoneTiles tiles;
     tiles.resize(300, 200);
     tiles.all_wrong({0, 0, 300, 200});
@@ -156,14 +156,14 @@ TEST(BoneTiles, AllOfTheViewIsDrawnOnceFromTheMiddleOutwards) {
     EXPECT_TRUE(tiles.take(5000).empty());
 }
 
-TEST(BoneTiles, ATileLargerThanTheRaysIsDrawnAllTheSame) {
+TEST(BoneTiles, a_tile_larger_than_the_rays_is_drawn_all_the_same) {
     BoneTiles tiles;
     tiles.resize(256, 64);
     tiles.all_wrong({0, 0, 256, 64});
     EXPECT_EQ(tiles.take(1).size(), 1U);
 }
 
-TEST(BoneTiles, WhereBoneChangedIsDrawnFirstAndOnlyThere) {
+TEST(BoneTiles, where_bone_changed_is_drawn_first_and_only_there) {
     BoneTiles tiles;
     tiles.resize(640, 640);
     tiles.all_wrong({0, 0, 640, 640});
@@ -176,7 +176,7 @@ TEST(BoneTiles, WhereBoneChangedIsDrawnFirstAndOnlyThere) {
     EXPECT_EQ(std::set<std::uint32_t>(now.begin(), now.end()), (std::set<std::uint32_t>{0, 1}));
 }
 
-TEST(BoneTiles, BeyondTheBoneNothingIsDrawn) {
+TEST(BoneTiles, beyond_the_bone_nothing_is_drawn) {
     BoneTiles tiles;
     tiles.resize(640, 640);
     tiles.all_wrong({64, 64, 128, 96});
@@ -185,7 +185,7 @@ TEST(BoneTiles, BeyondTheBoneNothingIsDrawn) {
     EXPECT_TRUE(tiles.all_good());
 }
 
-TEST(RayPace, RaysFitTheTimeOfAFrameAndComeBackSlowly) {
+TEST(RayPace, rays_fit_the_time_of_a_frame_and_come_back_slowly) {
     RayPace pace;
     for (int i = 0; i < 60; ++i) pace.took(0, 0.010);
     for (int i = 0; i < 60; ++i) pace.took(pace.rays_most(), 0.010 + 2e-6 * pace.rays_most());
@@ -213,7 +213,7 @@ double farthest(const TubeMesh& mesh, double z_most) {
     return most;
 }
 
-TEST(DrillTools, AHeadReachesAsFarAsItCutsAndNormalsPointOutwards) {
+TEST(DrillTools, a_head_reaches_as_far_as_it_cuts_and_normals_point_outwards) {
     DrawnDrillTool tool;
     tool.radius_m = 3e-9;  // 30 angstroms
     tool.length_m = 6e-9;
@@ -245,13 +245,13 @@ TEST(DrillTools, AHeadReachesAsFarAsItCutsAndNormalsPointOutwards) {
     EXPECT_TRUE(build_drill_tool(tool).index.empty());
 }
 
-TEST(DrillHands, ToolsAreDrawnInModelLengthsAndTurnOnlyWhileTheyTurn) {
+TEST(DrillHands, tools_are_drawn_in_model_lengths_and_turn_only_while_they_turn) {
     DrillTopic topic{};
     SceneMeta meta{};
     meta.world_per_model = 2.0;
     DrillHands hands;
     EXPECT_TRUE(hands.follow(topic, meta).empty());
-    topic.hand[1].kind = DrillKind::sucker;
+    topic.hand[1].kind = DrillKind::suction_tube;
     topic.hand[1].radius_m = 1e-3F;
     topic.hand[1].quat_model_tool_xyzw[3] = 1.0;
     topic.hand[1].pos_model_m[2] = 0.5;

@@ -102,7 +102,7 @@ protected:
     pid_t tact_ = 0;
 };
 
-TEST_F(BrowserInTheWindow, ASceneThatIsPressedRunsAndIsTheNewestOfTheList) {
+TEST_F(BrowserInTheWindow, a_scene_that_is_pressed_runs_and_is_the_newest_of_the_list) {
     // The scene that runs comes first, then the one from before.
     EXPECT_TRUE(until_words("asking the launcher for " + second_, [] {
         x("key --clearmodifiers o");
@@ -122,7 +122,7 @@ TEST_F(BrowserInTheWindow, ASceneThatIsPressedRunsAndIsTheNewestOfTheList) {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << said();
 }
 
-TEST_F(BrowserInTheWindow, RawDataThatAreMarkedInTheFolderAreImportedAndRun) {
+TEST_F(BrowserInTheWindow, raw_data_that_are_marked_in_the_folder_are_imported_and_run) {
     const std::string mesh = folder_ + "/tetra.obj";
     std::ofstream(mesh) << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     EXPECT_TRUE(until_words("importing " + mesh, [] {

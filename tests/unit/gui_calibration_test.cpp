@@ -99,7 +99,7 @@ void touch_screen(Person& person, Calibration& calibration, const Lab& lab) {
 
 double apart_rad(const Quat& a, const Quat& b) { return rotation_vector_rad(a * b.conjugate()).norm(); }
 
-TEST(RestWindow, TakesTheMeanOfASecondAtRestAndSaysTheSpread) {
+TEST(RestWindow, takes_the_mean_of_a_second_at_rest_and_says_the_spread) {
     SeededRandom random(3);
     RestWindow window(4e-3);
     window.start(0.0);
@@ -126,7 +126,7 @@ TEST(RestWindow, TakesTheMeanOfASecondAtRestAndSaysTheSpread) {
     EXPECT_NEAR(window.spread_m(), std::sqrt(3.0) * 1e-3, 0.8e-3);
 }
 
-TEST(RestWindow, ASampleThatIsRepeatedOrNoNumberIsNotCountedAndSilenceBeginsAnew) {
+TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silence_begins_anew) {
     RestWindow window(2e-3);
     window.start(0.0);
     const Vec3 at(0.1, 0.0, 0.0);
@@ -145,12 +145,12 @@ TEST(RestWindow, ASampleThatIsRepeatedOrNoNumberIsNotCountedAndSilenceBeginsAnew
     EXPECT_NE(window.words("the wand").find("nothing is heard"), std::string::npos);
 }
 
-TEST(Calibration, FindsScreenAndWorkspaceFromNoisyTouchesAndItsResidualIsOfTheNoise) {
+TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual_is_of_the_noise) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
     touch_screen(person, calibration, lab);
-    EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
     // 1 mm an axis, the mean of some fifty: a seventh of it.
     EXPECT_LT(calibration.marks().fit.residual_m_rms, 0.6e-3);
     EXPECT_GT(calibration.marks().fit.residual_m_rms, 0.02e-3);
@@ -174,14 +174,14 @@ TEST(Calibration, FindsScreenAndWorkspaceFromNoisyTouchesAndItsResidualIsOfTheNo
             person.touch(at_screen_m, lab.T_screen_world.inverse() * at_screen_m);
         }
         EXPECT_EQ(calibration.marks().taken(), kMarks);
-        EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
         EXPECT_LT((calibration.draft().T_screen_world.p_m - lab.T_screen_world.p_m).norm(), 1.5e-3);
         EXPECT_LT(apart_rad(calibration.draft().T_screen_world.q, lab.T_screen_world.q), 0.01);
         EXPECT_TRUE(calibration.draft().in_workspace);
     }
 }
 
-TEST(Calibration, AMarkThatWasMissedIsNamedAndTakenAgainItIsGreen) {
+TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
     const Lab lab;
     for (const std::size_t missed : {std::size_t{0}, std::size_t{3}, std::size_t{4}}) {
         Calibration calibration(start_of(lab));
@@ -191,11 +191,11 @@ TEST(Calibration, AMarkThatWasMissedIsNamedAndTakenAgainItIsGreen) {
         const ScreenPlace before = calibration.draft().screen;
         for (std::size_t i = 0; i < kMarks; ++i)
             person.touch(lab.mark_screen_m(i) + (i == missed ? Vec3(0.02, -0.02, 0.03) : Vec3(Vec3::Zero())));
-        EXPECT_EQ(calibration.marks().outlier(), missed) << calibration.verdict().words;
-        EXPECT_NE(calibration.verdict().grade, FitGrade::green);
-        EXPECT_NE(calibration.verdict().words.find("Point " + std::to_string(missed + 1)), std::string::npos)
-            << calibration.verdict().words;
-        if (missed < kMarksMin && calibration.verdict().grade == FitGrade::red) {
+        EXPECT_EQ(calibration.marks().outlier(), missed) << calibration.status().words;
+        EXPECT_NE(calibration.status().grade, FitGrade::green);
+        EXPECT_NE(calibration.status().words.find("Point " + std::to_string(missed + 1)), std::string::npos)
+            << calibration.status().words;
+        if (missed < kMarksMin && calibration.status().grade == FitGrade::red) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
         EXPECT_EQ(calibration.glass_words(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
@@ -204,13 +204,13 @@ TEST(Calibration, AMarkThatWasMissedIsNamedAndTakenAgainItIsGreen) {
         EXPECT_EQ(calibration.marks().current, missed);
         EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
-        EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
         EXPECT_FALSE(calibration.marks().outlier());
         EXPECT_EQ(calibration.glass_words(), "ALL POINTS ARE TAKEN");
     }
 }
 
-TEST(Calibration, GoodMarksHaveNoOutlier) {
+TEST(Calibration, good_marks_have_no_outlier) {
     const Lab lab;
     int named = 0;
     SeededRandom random(21);
@@ -225,7 +225,7 @@ TEST(Calibration, GoodMarksHaveNoOutlier) {
     EXPECT_LE(named, 15);
 }
 
-TEST(Calibration, DegeneratePointsAreRefusedInWordsAndChangeNothing) {
+TEST(Calibration, degenerate_points_are_refused_in_words_and_change_nothing) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -233,18 +233,18 @@ TEST(Calibration, DegeneratePointsAreRefusedInWordsAndChangeNothing) {
     calibration.go(CalibrationStep::workspace);
     calibration.set_workspace_by_wand(true);
     for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.0));
-    EXPECT_EQ(calibration.verdict().grade, FitGrade::red);
-    EXPECT_NE(calibration.verdict().words.find("of each other"), std::string::npos)
-        << calibration.verdict().words;
+    EXPECT_EQ(calibration.status().grade, FitGrade::red);
+    EXPECT_NE(calibration.status().words.find("of each other"), std::string::npos)
+        << calibration.status().words;
     calibration.clear();
     for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1 * i, 0.0, 0.0), Vec3(0.0, 0.1 * i, 0.0));
-    EXPECT_EQ(calibration.verdict().grade, FitGrade::red);
-    EXPECT_NE(calibration.verdict().words.find("on a line"), std::string::npos);
+    EXPECT_EQ(calibration.status().grade, FitGrade::red);
+    EXPECT_NE(calibration.status().words.find("on a line"), std::string::npos);
     EXPECT_EQ(before.p_m, calibration.draft().T_screen_world.p_m);
     EXPECT_FALSE(calibration.draft().in_workspace);
 }
 
-TEST(Calibration, AWrongSizeIsToldAndTheMeasuredOneCanBeTaken) {
+TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -252,16 +252,16 @@ TEST(Calibration, AWrongSizeIsToldAndTheMeasuredOneCanBeTaken) {
     calibration.set_picture_size(1.02 * lab.width_m, 0.98 * lab.height_m);
     calibration.go(CalibrationStep::screen);
     for (std::size_t i = 0; i < kMarks; ++i) person.touch(lab.mark_screen_m(i));
-    EXPECT_NE(calibration.verdict().grade, FitGrade::green);
-    EXPECT_NE(calibration.verdict().words.find("off what was typed"), std::string::npos)
-        << calibration.verdict().words;
+    EXPECT_NE(calibration.status().grade, FitGrade::green);
+    EXPECT_NE(calibration.status().words.find("off what was typed"), std::string::npos)
+        << calibration.status().words;
     calibration.use_measured_size();
-    EXPECT_EQ(calibration.verdict().grade, FitGrade::green) << calibration.verdict().words;
+    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
     EXPECT_NEAR(calibration.draft().screen.width_m(), lab.width_m, 1e-3);
     EXPECT_NEAR(calibration.draft().screen.height_m(), lab.height_m, 1e-3);
 }
 
-TEST(Calibration, AHandThatMovesOrATrackerThatIsLostIsWaitedForAndGivenUpInWords) {
+TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_given_up_in_words) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -295,7 +295,7 @@ TEST(Calibration, AHandThatMovesOrATrackerThatIsLostIsWaitedForAndGivenUpInWords
     EXPECT_FALSE(calibration.stylus_screen_m());
 }
 
-TEST(Calibration, StylusAndWandHaveToRestTogether) {
+TEST(Calibration, stylus_and_wand_have_to_rest_together) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -309,7 +309,7 @@ TEST(Calibration, StylusAndWandHaveToRestTogether) {
     EXPECT_EQ(calibration.marks().taken(), 1U);
 }
 
-TEST(Calibration, NothingIsAskedForOnTheGlassBeforeItCanBeDone) {
+TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -343,7 +343,7 @@ TEST(Calibration, NothingIsAskedForOnTheGlassBeforeItCanBeDone) {
     EXPECT_EQ(calibration.glass_words(), "NOTHING IS HEARD OF THE STYLUS");
 }
 
-TEST(Calibration, TheStylusButtonTakesOncePerPress) {
+TEST(Calibration, the_stylus_button_takes_once_per_press) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -357,7 +357,7 @@ TEST(Calibration, TheStylusButtonTakesOncePerPress) {
     EXPECT_FALSE(calibration.measuring());
 }
 
-TEST(Calibration, TheTipOfTheWandIsFoundByTurningAboutIt) {
+TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
     const Lab lab;
     Calibration calibration{StageSettings{}};
     Person person(lab, calibration);
@@ -379,7 +379,7 @@ TEST(Calibration, TheTipOfTheWandIsFoundByTurningAboutIt) {
     }
 }
 
-TEST(Calibration, WhatIsTypedIsChecked) {
+TEST(Calibration, what_is_typed_is_checked) {
     Calibration calibration{StageSettings{}};
     calibration.set_picture_size(NAN, 0.3);
     EXPECT_FALSE(calibration.draft().screen_measured);
@@ -433,7 +433,7 @@ void same(const StageSettings& a, const StageSettings& b) {
     close(a.wand_tip_sensor_m, b.wand_tip_sensor_m);
 }
 
-TEST_F(StageFileWritten, IsReadBackAsTheSameStageAndTheOldOneIsKept) {
+TEST_F(StageFileWritten, is_read_back_as_the_same_stage_and_the_old_one_is_kept) {
     const Lab lab;
     StageSettings s = start_of(lab);
     s.mode = StereoMode::two_windows;
@@ -460,7 +460,7 @@ TEST_F(StageFileWritten, IsReadBackAsTheSameStageAndTheOldOneIsKept) {
     EXPECT_EQ(files(), 4);  // and nothing that is half written
 }
 
-TEST_F(StageFileWritten, WhatCannotBeReadAgainIsNotWrittenAndAFolderThatIsNotThereIsTold) {
+TEST_F(StageFileWritten, what_cannot_be_read_again_is_not_written_and_a_folder_that_is_not_there_is_told) {
     StageSettings s;
     const auto path = folder_ / "lab.toml";
     std::ofstream(path) << "mode = \"anaglyph\"\n";
@@ -471,7 +471,7 @@ TEST_F(StageFileWritten, WhatCannotBeReadAgainIsNotWrittenAndAFolderThatIsNotThe
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(StageFileWritten, WhereThereIsNoRoomTheFolderStaysAsItWas) {
+TEST_F(StageFileWritten, where_there_is_no_room_the_folder_stays_as_it_was) {
     const auto path = folder_ / "lab.toml";
     std::ofstream(path) << "mode = \"anaglyph\"\n";
     rlimit before{};
@@ -492,7 +492,7 @@ TEST_F(StageFileWritten, WhereThereIsNoRoomTheFolderStaysAsItWas) {
     EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
 }
 
-TEST(TestPicture, ItsStepsStandWhereTheySayAndTheToolIsWhereTheHandIs) {
+TEST(TestPicture, its_steps_stand_where_they_say_and_the_tool_is_where_the_hand_is) {
     const GlassSize glass{530.0, 300.0, 0.28};
     const auto depths = stair_depths_mm(glass);
     EXPECT_DOUBLE_EQ(depths[2], 0.0);
@@ -521,7 +521,7 @@ TEST(TestPicture, ItsStepsStandWhereTheySayAndTheToolIsWhereTheHandIs) {
     EXPECT_NE(plain.size(), right.size());
 }
 
-TEST(TestPicture, TheWordsOfTheEyesStandWithinTheCircleAndApart) {
+TEST(TestPicture, the_words_of_the_eyes_stand_within_the_circle_and_apart) {
     for (const GlassSize& glass : {GlassSize{530.0, 300.0, 0.28}, GlassSize{400.0, 400.0, 2.0}}) {
         const auto inks_of = [&](std::size_t eye) {
             std::set<std::array<int, 3>> inks;

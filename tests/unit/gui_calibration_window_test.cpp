@@ -17,7 +17,7 @@
 #include "hal/sim/sim_tracker.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
-#include "rt/loop/head_feed.hpp"
+#include "rt/threads/head_feed.hpp"
 #include "tests/unit/gui_wait.hpp"
 
 namespace tact {
@@ -154,7 +154,7 @@ protected:
     std::unique_ptr<launch::Child> gui_;
 };
 
-TEST_F(CalibrationWindow, IsRehearsedWithEmulatedDevicesFromTheFirstKeyToTheFile) {
+TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_to_the_file) {
     const std::string file = folder_ + "/lab.toml";
     // The picture's size from a ruler; where it stands is not known yet.
     std::ofstream(file)

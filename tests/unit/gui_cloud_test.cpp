@@ -33,7 +33,7 @@ std::vector<Particle> slab(Matter matter, int layers) {
     return all;
 }
 
-TEST(ParticleDots, GrainsComeFirstAndWhatIsWetHasABox) {
+TEST(ParticleDots, grains_come_first_and_what_is_wet_has_a_box) {
     const std::vector<Particle> particles{
         particle(Matter::water, 1, 2, 3), particle(Matter::dust, 90, 90, 90),
         particle(Matter::blood, -4, 5, 6), particle(Matter::paste, 7, 8, 9)};
@@ -48,7 +48,7 @@ TEST(ParticleDots, GrainsComeFirstAndWhatIsWetHasABox) {
     EXPECT_TRUE(dots.empty());
 }
 
-TEST(ParticlePace, GivesWayAtOnceAndComesBackSlowlyAndDoesNotFallForWhatPixelsCost) {
+TEST(ParticlePace, gives_way_at_once_and_comes_back_slowly_and_does_not_fall_for_what_pixels_cost) {
     ParticlePace pace;
     EXPECT_EQ(pace.most(), 12000U);
     for (int i = 0; i < 10; ++i) pace.took(1000, 0.005);  // all but one of it for pixels
@@ -123,9 +123,9 @@ protected:
     ParticleCloud::View view_;
 };
 
-TEST_F(GuiCloud, NothingIsDrawnOfNothing) { EXPECT_EQ(touched(picture({})), 0U); }
+TEST_F(GuiCloud, nothing_is_drawn_of_nothing) { EXPECT_EQ(touched(picture({})), 0U); }
 
-TEST_F(GuiCloud, BloodHidesWhatLiesBehindAndWaterDoesNot) {
+TEST_F(GuiCloud, blood_hides_what_lies_behind_and_water_does_not) {
     const auto blood = middle(picture(slab(Matter::blood, 3))),
                water = middle(picture(slab(Matter::water, 3)));
     EXPECT_GT(blood[0], 50);
@@ -140,7 +140,7 @@ TEST_F(GuiCloud, BloodHidesWhatLiesBehindAndWaterDoesNot) {
     EXPECT_GT(paste[1], 80);
 }
 
-TEST_F(GuiCloud, WhatLiesBehindTheSceneIsNotDrawn) {
+TEST_F(GuiCloud, what_lies_behind_the_scene_is_not_drawn) {
     for (const Matter matter : {Matter::dust, Matter::water, Matter::blood, Matter::paste}) {
         const std::vector<Particle> particles = slab(matter, 2);
         EXPECT_GT(touched(picture(particles, depth_at(-6.0F))), 2000U) << static_cast<int>(matter);
@@ -148,7 +148,7 @@ TEST_F(GuiCloud, WhatLiesBehindTheSceneIsNotDrawn) {
     }
 }
 
-TEST_F(GuiCloud, DropsThatTouchAreOneBodyAndFarOnesAreNot) {
+TEST_F(GuiCloud, drops_that_touch_are_one_body_and_far_ones_are_not) {
     const auto gap = [&](float apart) {
         const std::array drops{particle(Matter::blood, -0.5F * apart, 0, 0),
                                particle(Matter::blood, 0.5F * apart, 0, 0)};
@@ -158,7 +158,7 @@ TEST_F(GuiCloud, DropsThatTouchAreOneBodyAndFarOnesAreNot) {
     EXPECT_EQ(gap(8.0F), 255);
 }
 
-TEST_F(GuiCloud, AViewOfAnotherSizeOrFromCloseByDoesNoHarm) {
+TEST_F(GuiCloud, a_view_of_another_size_or_from_close_by_does_no_harm) {
     const std::vector<Particle> particles = slab(Matter::water, 2);
     view_.x_px = 40;
     view_.y_px = 30;
@@ -171,7 +171,7 @@ TEST_F(GuiCloud, AViewOfAnotherSizeOrFromCloseByDoesNoHarm) {
     EXPECT_EQ(touched(picture(particles)), 0U);
 }
 
-TEST_F(GuiCloud, ASceneShowsNoMoreParticlesThanThereMayBeWhetherTheyAreGivenUpYetOrNot) {
+TEST_F(GuiCloud, a_scene_shows_no_more_particles_than_there_may_be_whether_they_are_given_up_yet_or_not) {
     BoneBricks bricks;
     bricks.size = {32, 32, 32};
     bricks.voxel_m = 3e-4;

@@ -30,7 +30,7 @@ std::shared_ptr<SceneContent> ball(std::uint32_t size) {
     return content;
 }
 
-TEST(ContourExtract, LiesWhereTheLevelIsAndFacesOutwards) {
+TEST(ContourExtract, lies_where_the_level_is_and_faces_outwards) {
     const DensityGrid grid = ball(33)->grid;
     for (const std::uint32_t stride : {1U, 2U, 4U}) {
         const PlainMesh mesh = extract_contour(thinned(grid, stride), -0.6);
@@ -46,7 +46,7 @@ TEST(ContourExtract, LiesWhereTheLevelIsAndFacesOutwards) {
     EXPECT_TRUE(extract_contour(grid, 5.0).empty());
 }
 
-TEST(ContourExtract, AThinnedGridHasEveryNthVoxelInItsPlace) {
+TEST(ContourExtract, a_thinned_grid_has_every_nth_voxel_in_its_place) {
     const DensityGrid grid =
         test::sampled(11, [](const Vec3& p) { return p.x() + 10.0 * p.y() + 100.0 * p.z(); });
     const DensityGrid thin = thinned(grid, 3);
@@ -58,7 +58,7 @@ TEST(ContourExtract, AThinnedGridHasEveryNthVoxelInItsPlace) {
         }
 }
 
-TEST(ContourExtract, TheStrideFollowsTimeAndVerticesAndComesBack) {
+TEST(ContourExtract, the_stride_follows_time_and_vertices_and_comes_back) {
     DensityGrid grid;
     grid.size = {100, 100, 100};
     StrideLimits limits;
@@ -88,7 +88,7 @@ ContourOutcome take_until(ContourWorker& worker, std::size_t contour, F&& fits) 
     return outcome;
 }
 
-TEST(ContourWorker, ShowsTheNewestLevelThenRefinesItOnce) {
+TEST(ContourWorker, shows_the_newest_level_then_refines_it_once) {
     std::vector<double> refined;  // written by the worker's thread, read after it has ended
     ContourOutcome last;
     {
@@ -100,7 +100,7 @@ TEST(ContourWorker, ShowsTheNewestLevelThenRefinesItOnce) {
                     make_progressive(isosurface(ball(25)->grid, level)));
             },
             std::chrono::milliseconds(1));
-        for (int i = 0; i <= 40; ++i) worker.wish(2, (-30 - i) / 100.0);
+        for (int i = 0; i <= 40; ++i) worker.request(2, (-30 - i) / 100.0);
         last = take_until(worker, 2, [](const ContourOutcome& o) { return o.mesh && o.level == -0.7; });
         EXPECT_FALSE(worker.take(0));
     }
@@ -111,7 +111,7 @@ TEST(ContourWorker, ShowsTheNewestLevelThenRefinesItOnce) {
     EXPECT_EQ(std::count(refined.begin(), refined.end(), -0.7), 1);
 }
 
-TEST(ContourWorker, AWishStopsTheRefinementBeforeIt) {
+TEST(ContourWorker, a_wish_stops_the_refinement_before_it) {
     std::atomic<int> begun{0}, stopped{0};
     ContourWorker worker(
         ball(15),
@@ -122,38 +122,38 @@ TEST(ContourWorker, AWishStopsTheRefinementBeforeIt) {
             throw Cancelled{};
         },
         Duration::zero());
-    worker.wish(0, -0.5);
+    worker.request(0, -0.5);
     ASSERT_TRUE(wait_for([&] { return begun == 1; }));
-    worker.wish(1, -0.6);  // of another contour: the one under way waits
+    worker.request(1, -0.6);  // of another contour: the one under way waits
     (void)take_until(worker, 1, [](const ContourOutcome& o) { return o.plain != nullptr; });
     EXPECT_GE(stopped, 1);
     ASSERT_TRUE(wait_for([&] { return begun >= 2; }));  // taken up again; ended by the destructor
 }
 
-TEST(ContourWorker, TellsWhatWentWrongAndIsNotStuck) {
+TEST(ContourWorker, tells_what_went_wrong_and_is_not_stuck) {
     ContourWorker worker(
         ball(15),
         [](double, const std::function<bool()>&) -> std::shared_ptr<const ProgressiveMesh> {
             throw StartupError("refining", "no such luck", "none");
         },
         Duration::zero());
-    worker.wish(0, -0.5);
+    worker.request(0, -0.5);
     const auto bad = take_until(worker, 0, [](const ContourOutcome& o) { return !o.error.empty(); });
     EXPECT_NE(bad.error.find("no such luck"), std::string::npos);
-    worker.wish(0, std::nan(""));  // no wish
-    worker.wish(9, 1.0);           // no contour
-    worker.wish(0, -0.4);
+    worker.request(0, std::nan(""));  // no wish
+    worker.request(9, 1.0);           // no contour
+    worker.request(0, -0.4);
     (void)take_until(worker, 0, [](const ContourOutcome& o) { return o.plain && o.level == -0.4; });
 }
 
-TEST(ContourWorker, KeepsToTheVerticesItMayUse) {
+TEST(ContourWorker, keeps_to_the_vertices_it_may_use) {
     const auto content = ball(65);
     ContourWorker worker(content, {}, Duration::zero());
     const std::size_t all = extract_contour(content->grid, -0.8).vertex.size();
     const auto most = static_cast<std::uint32_t>(all / 5);
     worker.set_vertices_max(most);
     for (int i = 0; i < 6; ++i) {
-        worker.wish(0, -0.8 + 1e-6 * i);
+        worker.request(0, -0.8 + 1e-6 * i);
         const auto outcome =
             take_until(worker, 0, [](const ContourOutcome& o) { return o.plain != nullptr; });
         if (i == 5) {
@@ -190,7 +190,7 @@ protected:
     std::shared_ptr<const SceneContent> content_;
 };
 
-TEST_F(ContourChild, BringsTheSurfaceOfThisSceneAtThisLevel) {
+TEST_F(ContourChild, brings_the_surface_of_this_scene_at_this_level) {
     const double level = 1.3 * content_->meta.contour;
     const auto mesh = refine_by_child(content_, TACT_PREP)(level, [] { return false; });
     const TriangleMesh expected = isosurface(content_->grid, level);
@@ -198,7 +198,7 @@ TEST_F(ContourChild, BringsTheSurfaceOfThisSceneAtThisLevel) {
     EXPECT_EQ(mesh->triangles(), expected.triangles());
 }
 
-TEST_F(ContourChild, FailuresAreWordsNeverCrashes) {
+TEST_F(ContourChild, failures_are_words_never_crashes) {
     EXPECT_NE(
         failure(refine_by_child(content_, program("echo out of luck >&2; exit 3\n"))).find("out of luck"),
         std::string::npos);
@@ -212,7 +212,7 @@ TEST_F(ContourChild, FailuresAreWordsNeverCrashes) {
                  Cancelled);
 }
 
-TEST(ScratchFolder, GoesWithItsOwnerAndWhereThatWasKilledWithTheNextOne) {
+TEST(ScratchFolder, goes_with_its_owner_and_where_that_was_killed_with_the_next_one) {
     char name[] = "/tmp/tact-scratch-test-XXXXXX";
     const std::filesystem::path parent = mkdtemp(name);
     const auto folders = [&] {
@@ -261,7 +261,7 @@ TEST(ScratchFolder, GoesWithItsOwnerAndWhereThatWasKilledWithTheNextOne) {
     std::filesystem::remove_all(parent);
 }
 
-TEST(ContourOption, SaysLevelColourOpacityAndStyle) {
+TEST(ContourOption, says_level_colour_opacity_and_style) {
     const ContourOption o = read_contour_option("2.5s:ff8000:0.25:wire");
     EXPECT_EQ(o.unit, LevelUnit::sigma);
     EXPECT_EQ(o.value, 2.5);

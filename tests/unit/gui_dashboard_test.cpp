@@ -28,40 +28,40 @@ struct Late {
     }
 };
 
-TEST(LatenessWindow, TheWholeRunHasTheControllersOwnFiguresAndTheMinuteThoseOfAMinute) {
+TEST(LatenessWindow, the_whole_run_has_the_controllers_own_figures_and_the_minute_those_of_a_minute) {
     Late late;
     LatenessWindow window;
     EXPECT_TRUE(window.empty());
     late.second(900'000);  // one bad second, long ago
     window.add(late.topic());
-    EXPECT_EQ(window.recent_figures().cycles, 0U);  // nothing to compare with yet
+    EXPECT_EQ(window.recent_metrics().cycles, 0U);  // nothing to compare with yet
     for (int s = 0; s < 100; ++s) {
         late.second(s == 70 ? 40'000 : 5'000);
         window.add(late.topic());
     }
-    EXPECT_EQ(window.whole_figures().cycles, 101'000U);
-    for (const auto& [p, shown] : {std::pair{0.5, window.whole_figures().p50_ns},
-                                   {0.99, window.whole_figures().p99_ns},
-                                   {0.999, window.whole_figures().p999_ns}})
+    EXPECT_EQ(window.whole_metrics().cycles, 101'000U);
+    for (const auto& [p, shown] : {std::pair{0.5, window.whole_metrics().p50_ns},
+                                   {0.99, window.whole_metrics().p99_ns},
+                                   {0.999, window.whole_metrics().p999_ns}})
         EXPECT_EQ(static_cast<std::uint64_t>(shown), late.histogram.percentile_ns(p));
-    EXPECT_EQ(window.whole_figures().max_ns, 900'000);
+    EXPECT_EQ(window.whole_metrics().max_ns, 900'000);
     EXPECT_NEAR(window.recent_s(), 60.0, 1e-9);
-    EXPECT_EQ(window.recent_figures().cycles, 60'000U);
-    EXPECT_NEAR(static_cast<double>(window.recent_figures().p50_ns), 5'000.0, 400.0);
-    EXPECT_NEAR(static_cast<double>(window.recent_figures().max_ns), 40'000.0, 0.07 * 40'000.0);
+    EXPECT_EQ(window.recent_metrics().cycles, 60'000U);
+    EXPECT_NEAR(static_cast<double>(window.recent_metrics().p50_ns), 5'000.0, 400.0);
+    EXPECT_NEAR(static_cast<double>(window.recent_metrics().max_ns), 40'000.0, 0.07 * 40'000.0);
 }
 
-TEST(LatenessWindow, AMostLateCycleWithinTheMinuteIsSaidToTheNanosecond) {
+TEST(LatenessWindow, a_most_late_cycle_within_the_minute_is_said_to_the_nanosecond) {
     Late late;
     LatenessWindow window;
     for (int s = 0; s < 5; ++s) {
         late.second(s == 3 ? 123'457 : 1'000);
         window.add(late.topic());
     }
-    EXPECT_EQ(window.recent_figures().max_ns, 123'457);
+    EXPECT_EQ(window.recent_metrics().max_ns, 123'457);
 }
 
-TEST(LatenessWindow, AnotherRunBeginsAnewAndNothingGrows) {
+TEST(LatenessWindow, another_run_begins_anew_and_nothing_grows) {
     Late late;
     LatenessWindow window;
     const std::size_t before = window.memory_bytes();
@@ -75,11 +75,11 @@ TEST(LatenessWindow, AnotherRunBeginsAnewAndNothingGrows) {
     other.second(7'000, 3);
     other.now_ns = late.now_ns + 1;
     window.add(other.topic());
-    EXPECT_EQ(window.whole_figures().cycles, 3U);
-    EXPECT_EQ(window.recent_figures().cycles, 0U);
+    EXPECT_EQ(window.whole_metrics().cycles, 3U);
+    EXPECT_EQ(window.recent_metrics().cycles, 0U);
 }
 
-TEST(LatenessBars, HoldEveryCycleAtItsPlace) {
+TEST(LatenessBars, hold_every_cycle_at_its_place) {
     Late late;
     late.second(100, 7);
     late.second(60'000, 5);
@@ -102,7 +102,7 @@ TEST(LatenessBars, HoldEveryCycleAtItsPlace) {
     EXPECT_EQ(bars.last, LatenessBars::kBars - 1);
 }
 
-TEST(CounterRate, IsOfTheLastSecondAndOfOneRun) {
+TEST(CounterRate, is_of_the_last_second_and_of_one_run) {
     CounterRate rate;
     EXPECT_FALSE(rate.known());
     for (int i = 0; i < 50; ++i)
@@ -116,7 +116,7 @@ TEST(CounterRate, IsOfTheLastSecondAndOfOneRun) {
     EXPECT_NEAR(rate.per_s(), 20.0, 1e-6);
 }
 
-TEST(KnobChanges, OfOneReasonInARowAreOneAndEachSaysWhy) {
+TEST(KnobChanges, of_one_reason_in_a_row_are_one_and_each_says_why) {
     KnobChanges log;
     log.add(1.0, 0, 0.8, LevelReason::rate_low);
     log.add(1.1, 1, 0.5, LevelReason::rate_low);
@@ -140,7 +140,7 @@ TEST(KnobChanges, OfOneReasonInARowAreOneAndEachSaysWhy) {
     EXPECT_EQ(log.size(), 4U);
 }
 
-TEST(KnobChanges, WhatCannotBeIsLeftOutAndWhatIsForgottenIsCounted) {
+TEST(KnobChanges, what_cannot_be_is_left_out_and_what_is_forgotten_is_counted) {
     KnobChanges log;
     log.add(std::nan(""), 0, 0.5, LevelReason::hold);
     log.add(1.0, kPathsMax, 0.5, LevelReason::hold);

@@ -86,7 +86,7 @@ Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
     return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
 }
 
-TEST_F(GuiDraw, ASphereCoversItsOutlineAndHasItsDepthInEveryPixel) {
+TEST_F(GuiDraw, a_sphere_covers_its_outline_and_has_its_depth_in_every_pixel) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = camera_.view();
     for (const Sphere& sphere :
@@ -103,7 +103,7 @@ TEST_F(GuiDraw, ASphereCoversItsOutlineAndHasItsDepthInEveryPixel) {
     }
 }
 
-TEST_F(GuiDraw, AStickCoversItsOutlineAndHasItsDepthInEveryPixel) {
+TEST_F(GuiDraw, a_stick_covers_its_outline_and_has_its_depth_in_every_pixel) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = camera_.view();
     const Eigen::Vector3f towards = camera_.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 12.0F);
@@ -126,7 +126,7 @@ TEST_F(GuiDraw, AStickCoversItsOutlineAndHasItsDepthInEveryPixel) {
     }
 }
 
-TEST_F(GuiDraw, WhatReachesTheEyeIsLeftOutAndDoesNoHarm) {
+TEST_F(GuiDraw, what_reaches_the_eye_is_left_out_and_does_no_harm) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = Eigen::Matrix4f::Identity();
     ImpostorShapes spheres, sticks;
@@ -139,7 +139,7 @@ TEST_F(GuiDraw, WhatReachesTheEyeIsLeftOutAndDoesNoHarm) {
     for (const float d : depths()) ASSERT_EQ(d, 1.0F);
 }
 
-TEST_F(GuiDraw, HazeEndsInTheBackgroundAndIsNothingBeforeItBegins) {
+TEST_F(GuiDraw, haze_ends_in_the_background_and_is_nothing_before_it_begins) {
     ImpostorPrograms programs;
     haze_.strength = 1.0F;
     haze_.top = Eigen::Vector3f(0.2F, 0.4F, 0.6F);
@@ -178,7 +178,7 @@ Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelAr
     return count > 0.0 ? Eigen::Vector2d(sum / count) : Eigen::Vector2d(-1.0, -1.0);
 }
 
-TEST_F(GuiDraw, APlaceInTheRoomLandsOnThePredictedPixelOfEachEyeInEveryMode) {
+TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_every_mode) {
     constexpr int kOutputWidth = 900, kOutputHeight = 600;
     constexpr float kRadiusA = 0.7F;
     ImpostorPrograms programs;
@@ -272,7 +272,7 @@ protected:
     std::optional<DrawnHand> second_hand_;
 };
 
-TEST_F(GuiDrawScene, EachStyleDrawsSomethingOfItsOwn) {
+TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
     std::set<std::string> pictures;
     for (const auto style :
          {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
@@ -285,7 +285,7 @@ TEST_F(GuiDrawScene, EachStyleDrawsSomethingOfItsOwn) {
     EXPECT_EQ(pictures.size(), 8U);
 }
 
-TEST_F(GuiDrawScene, CopiesAreDrawnWhereTheyAreHiddenAndUnknownOnesNotAtAll) {
+TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not_at_all) {
     view_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
     const std::size_t one = drawn(picture(std::array{home_}));
     DrawnBody copy = home_;
@@ -299,7 +299,7 @@ TEST_F(GuiDrawScene, CopiesAreDrawnWhereTheyAreHiddenAndUnknownOnesNotAtAll) {
     EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
 }
 
-TEST_F(GuiDrawScene, ASecondHandIsDrawnWhereItIsWithItsForceAndTheWallItTouches) {
+TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_wall_it_touches) {
     EXPECT_EQ(drawn(picture({})), 0U);
     const auto in_half = [](const Image& image, bool right) {
         std::size_t count = 0;
@@ -338,7 +338,7 @@ TEST_F(GuiDrawScene, ASecondHandIsDrawnWhereItIsWithItsForceAndTheWallItTouches)
     EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
 }
 
-TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {
+TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
     DrawnBody copy = home_;
     copy.id = 2;
     view_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
@@ -351,7 +351,7 @@ TEST_F(GuiDrawScene, ALookBelongsToOneBodyAndALimitTurnsSpheresIntoTubes) {
     EXPECT_EQ(view_->molecules().left_out(), 1U);
 }
 
-TEST_F(GuiDrawScene, ASurfaceFollowsItsLevelAtOnceHoweverShortTheFrame) {
+TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame) {
     const std::string path = folder_ + "/fine.tact";
     fake::write_helix_scene(path, 64);
     content_ = load_scene(path);
@@ -367,7 +367,7 @@ TEST_F(GuiDrawScene, ASurfaceFollowsItsLevelAtOnceHoweverShortTheFrame) {
     }
 }
 
-TEST_F(GuiDrawScene, ContoursShareTheVerticesAndStayUntilBetterOnesCome) {
+TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come) {
     const auto refine = [this](double level, const std::function<bool()>&) {
         return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
     };
@@ -406,7 +406,7 @@ TEST_F(GuiDrawScene, ContoursShareTheVerticesAndStayUntilBetterOnesCome) {
     EXPECT_EQ(picture({}).rgb, alone.rgb);
 }
 
-TEST_F(GuiDrawScene, AMovedContourIsSeenAtEveryStyleAndOpacity) {
+TEST_F(GuiDrawScene, a_moved_contour_is_seen_at_every_style_and_opacity) {
     options_.surface = true;
     std::set<std::string> pictures;
     Contour contour;

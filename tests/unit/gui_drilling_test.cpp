@@ -70,7 +70,7 @@ DrillTopic tools(double x_m) {
     return t;
 }
 
-TEST(StructureWatch, TellsDistanceFromTheHeadAndHowFastItComesNearer) {
+TEST(StructureWatch, tells_distance_from_the_head_and_how_fast_it_comes_nearer) {
     Ear ear;
     StructureWatch watch(ear.fields, 1.0);
     DrillTopic t = tools(3e-3);
@@ -93,7 +93,7 @@ TEST(StructureWatch, TellsDistanceFromTheHeadAndHowFastItComesNearer) {
     EXPECT_NEAR(watch.look(t, 0)[0].distance_m, -1e-3, 2e-5);
 }
 
-TEST(StructureWatch, ALongHeadIsMeasuredAlongItsAxis) {
+TEST(StructureWatch, a_long_head_is_measured_along_its_axis) {
     Ear ear;
     DrillTopic t = tools(5e-3);
     DrillHand& burr = t.hand[0];
@@ -110,27 +110,27 @@ TEST(StructureWatch, ALongHeadIsMeasuredAlongItsAxis) {
     EXPECT_NEAR(distance_m(ear.fields[0], head_balls(tools(5e-3).hand[0], 2.0), 2.0), 8e-3, 4e-5);
 }
 
-TEST(Strokes, AreCountedFromTurningPointToTurningPoint) {
+TEST(Strokes, are_counted_from_turning_point_to_turning_point) {
     Strokes strokes;
     const auto at = [](double t) { return Vec3(5e-3 * std::sin(2.0 * std::numbers::pi * t), 1e-4 * t, 0.0); };
     for (int i = 0; i <= 4250; ++i) strokes.step(1e-3 * i, at(1e-3 * i), true);
     // From the middle to one end, eight times from end to end, and one that is under way.
-    const StrokeFigures f = strokes.figures();
+    const StrokeMetrics f = strokes.metrics();
     EXPECT_EQ(f.count, 9U);
     EXPECT_NEAR(f.length_m, 5e-3 + 8 * 10e-3, 1e-3);
     EXPECT_NEAR(f.mean_speed_m_s(), 0.02, 2e-3);
 }
 
-TEST(Strokes, EndWhereNothingIsCutForAWhileAndShortOnesAreNone) {
+TEST(Strokes, end_where_nothing_is_cut_for_a_while_and_short_ones_are_none) {
     Strokes strokes;
     for (int i = 0; i < 1000; ++i) strokes.step(1e-3 * i, Vec3(2e-5 * i, 0, 0), i < 300);
-    EXPECT_EQ(strokes.figures().count, 1U);
-    EXPECT_NEAR(strokes.figures().length_m, 2e-5 * 450,
+    EXPECT_EQ(strokes.metrics().count, 1U);
+    EXPECT_NEAR(strokes.metrics().length_m, 2e-5 * 450,
                 1e-4);  // the pause belongs to it until it is known as one
     Strokes trembling;
     for (int i = 0; i < 1000; ++i) trembling.step(1e-3 * i, Vec3(3e-4 * std::sin(0.1 * i), 0, 0), true);
-    EXPECT_EQ(trembling.figures().count, 0U);
-    EXPECT_EQ(Strokes().figures().mean_length_m(), 0.0);
+    EXPECT_EQ(trembling.metrics().count, 0U);
+    EXPECT_EQ(Strokes().metrics().mean_length_m(), 0.0);
 }
 
 TraceTopic cycle(int ms, double x_m, double force_n, std::uint32_t flags) {
@@ -143,7 +143,7 @@ TraceTopic cycle(int ms, double x_m, double force_n, std::uint32_t flags) {
     return t;
 }
 
-TEST(DrillMetrics, CountTimesForcesAndNearnessOfEveryCycle) {
+TEST(DrillMetrics, count_times_forces_and_nearness_of_every_cycle) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
     m.tools(tools(5e-3));
@@ -159,7 +159,7 @@ TEST(DrillMetrics, CountTimesForcesAndNearnessOfEveryCycle) {
     m.unseen(10000);
     for_ms(1, 7.5e-3, 1.0, kTraceBurrTurns);
     m.cycle(cycle(++ms, std::nan(""), 1.0, kTraceBurrTurns));  // no number is not used
-    const DrillFigures f = m.figures();
+    const DrillMetricsRow f = m.metrics();
     EXPECT_NEAR(f.seen_s, 2.75, 0.003);
     EXPECT_NEAR(f.drilling_s, 1.75, 0.003);
     EXPECT_NEAR(f.cutting_s, 1.25, 0.003);
@@ -179,7 +179,7 @@ struct Brick {
     std::vector<std::uint8_t> before = std::vector<std::uint8_t>(BoneBricks::kVoxels, 200), after = before;
 };
 
-TEST(DrillMetrics, TellBoneByStructureByNearnessAndWhatIsInjured) {
+TEST(DrillMetrics, tell_bone_by_structure_by_nearness_and_what_is_injured) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
     // The third brick along x: voxels 16 to 23, of which 20 to 23 are the nerve, whose surface is at 10 mm.
@@ -201,7 +201,7 @@ TEST(DrillMetrics, TellBoneByStructureByNearnessAndWhatIsInjured) {
     d.after[1] = 255;
     EXPECT_EQ(m.brick(3, d.before, d.after, true), 0);
     EXPECT_EQ(m.brick(1000, d.before, d.after, true), 0);
-    const DrillFigures f = m.figures();
+    const DrillMetricsRow f = m.metrics();
     EXPECT_EQ(f.structure[0].removed_levels, 150U);
     EXPECT_EQ(f.structure[1].removed_levels, 40U);
     EXPECT_EQ(f.structure[3].removed_levels, 200U);
@@ -212,11 +212,11 @@ TEST(DrillMetrics, TellBoneByStructureByNearnessAndWhatIsInjured) {
     EXPECT_GE(f.near_levels[1], f.near_levels[0]);
 }
 
-TEST(DrillReport, HoldsWhatWasCountedAndNullWhereNothingIsKnown) {
+TEST(DrillReport, holds_what_was_counted_and_null_where_nothing_is_known) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
     m.tools(tools(5e-3));
-    nlohmann::json j = drill_report(m.figures(), ear.labels, {});
+    nlohmann::json j = drill_report(m.metrics(), ear.labels, {});
     EXPECT_TRUE(j["force"]["mean_cutting_n"].is_null());
     EXPECT_TRUE(j["strokes"]["mean_length_mm"].is_null());
     EXPECT_TRUE(j["structures"][0]["nearest_mm"].is_null());
@@ -226,7 +226,7 @@ TEST(DrillReport, HoldsWhatWasCountedAndNullWhereNothingIsKnown) {
     Brick b;
     b.after[5] = 145;  // 55 levels of the nerve
     (void)m.brick(2, b.before, b.after, true);
-    j = drill_report(m.figures(), ear.labels, BurrVisibility{8.0, 6.0});
+    j = drill_report(m.metrics(), ear.labels, BurrVisibility{8.0, 6.0});
     EXPECT_NEAR(j["drilling_s"].get<double>(), 0.999, 1e-3);
     EXPECT_NEAR(j["removed_mm3"].get<double>(), 55.0 / 255.0 * 0.125, 1e-9);
     EXPECT_EQ(j["burr_visible_share"], 0.75);
@@ -238,14 +238,14 @@ TEST(DrillReport, HoldsWhatWasCountedAndNullWhereNothingIsKnown) {
     const BoneLabelsView none;
     DrillMetrics bare(ear.bricks, none, {}, ear.meta);
     (void)bare.brick(2, b.before, b.after, true);
-    j = drill_report(bare.figures(), none, BurrVisibility{});
+    j = drill_report(bare.metrics(), none, BurrVisibility{});
     EXPECT_TRUE(j["burr_visible_share"].is_null());  // it never turned
     EXPECT_TRUE(j["near_critical"].is_null());
     EXPECT_TRUE(j["injuries"].is_null());
     EXPECT_NEAR(j["removed_bone_mm3"].get<double>(), 55.0 / 255.0 * 0.125, 1e-9);
 }
 
-TEST(DrillReport, IsWrittenWholeOrNotAtAll) {
+TEST(DrillReport, is_written_whole_or_not_at_all) {
     const auto path =
         std::filesystem::temp_directory_path() / ("drilling-" + std::to_string(getpid()) + ".json");
     write_drill_report(path, {{"a", 1}});

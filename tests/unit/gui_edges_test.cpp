@@ -54,7 +54,7 @@ double error(const Edge& edge, const Image& image) {
     return std::sqrt(sum / std::max(count, 1));
 }
 
-TEST_F(EdgesDrawn, OfStairsAreNearTheEdgeThatWasMeant) {
+TEST_F(EdgesDrawn, of_stairs_are_near_the_edge_that_was_meant) {
     EdgeSmoothing edges;
     for (const Edge edge : {Edge{30.3, 0.13, false}, Edge{30.3, 0.37, false}, Edge{90.8, -0.21, false},
                             Edge{30.6, 0.18, true}, Edge{100.1, -0.33, true}}) {
@@ -67,7 +67,7 @@ TEST_F(EdgesDrawn, OfStairsAreNearTheEdgeThatWasMeant) {
     }
 }
 
-TEST_F(EdgesDrawn, ChangeNothingElse) {
+TEST_F(EdgesDrawn, change_nothing_else) {
     const Edge edge{40.0, 0.25, false};
     edge.draw();
     const Image before = read_pixels(kSize, kSize);

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/isosurface.hpp"
-#include "ipc/assets/progressive_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/isosurface.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/topics/regions.hpp"
 #include "prep/mesh/progressive.hpp"

@@ -28,11 +28,11 @@ std::shared_ptr<SceneContent> content() {
 
 std::vector<FitBody> at_home(const SceneContent& c) { return {{1, 0, c.bodies[0].home()}}; }
 
-TEST(FitWorker, GivesTheNumbersOfTheNewestPlace) {
+TEST(FitWorker, gives_the_numbers_of_the_newest_place) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     const std::vector<FitBody> home = at_home(*c);
-    worker.wish(home);
+    worker.request(home);
     const FitOutcome first = next(worker, {});
     ASSERT_TRUE(first.good) << first.error;
     const PlacedStructure placed[] = {{&c->bodies[0], home[0].T_model_body}};
@@ -44,20 +44,20 @@ TEST(FitWorker, GivesTheNumbersOfTheNewestPlace) {
 
     std::vector<FitBody> away = home;
     away[0].T_model_body.p_m.x() += 8e-10;
-    worker.wish(away);
+    worker.request(away);
     const FitOutcome moved_away = next(worker, first);
     ASSERT_TRUE(moved_away.good);
     EXPECT_EQ(moved_away.number, first.number + 1);
     EXPECT_LT(moved_away.all.cc_mean, first.all.cc_mean);
 }
 
-TEST(FitWorker, MeasuresEachBodyAndLeavesOutWhatTheSceneDoesNotHave) {
+TEST(FitWorker, measures_each_body_and_leaves_out_what_the_scene_does_not_have) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     std::vector<FitBody> three = at_home(*c);
     three.push_back({7, 0, {three[0].T_model_body.p_m + Vec3(6e-10, 0.0, 0.0), Quat::Identity()}});
     three.push_back({8, 1, three[0].T_model_body});  // no such structure
-    worker.wish(three);
+    worker.request(three);
     const FitOutcome outcome = next(worker, {});
     ASSERT_TRUE(outcome.good) << outcome.error;
     ASSERT_EQ(outcome.body.size(), 2U);
@@ -66,32 +66,32 @@ TEST(FitWorker, MeasuresEachBodyAndLeavesOutWhatTheSceneDoesNotHave) {
     EXPECT_GT(outcome.of[0].cc_mean, outcome.of[1].cc_mean);
 }
 
-TEST(FitWorker, RestsWhileNothingMoves) {
+TEST(FitWorker, rests_while_nothing_moves) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     const std::vector<FitBody> home = at_home(*c);
-    worker.wish(home);
+    worker.request(home);
     FitOutcome outcome = next(worker, {});
     for (int i = 0; i < 50; ++i) {
-        worker.wish(home);
+        worker.request(home);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     EXPECT_FALSE(worker.take(outcome));
 }
 
-TEST(FitWorker, SaysWhenItHadToAssumeTheResolution) {
+TEST(FitWorker, says_when_it_had_to_assume_the_resolution) {
     const auto c = content();
     c->meta.resolution_m = 0.0;
     FitWorker worker(c, Duration(0));
-    worker.wish(at_home(*c));
+    worker.request(at_home(*c));
     const FitOutcome outcome = next(worker, {});
     EXPECT_TRUE(outcome.resolution_assumed);
     EXPECT_NEAR(outcome.resolution_m, 3.0 * 40.0 / 23.0 * 1e-10, 1e-15);
 }
 
-TEST(FitWorker, EndsAtOnceWithoutAWish) { const FitWorker worker(content()); }
+TEST(FitWorker, ends_at_once_without_a_wish) { const FitWorker worker(content()); }
 
-TEST(Moved, IsAboutWhatCanBeSeenInTheNumbers) {
+TEST(Moved, is_about_what_can_be_seen_in_the_numbers) {
     const std::vector<FitBody> a(1), none;
     std::vector<FitBody> b(1);
     EXPECT_FALSE(moved(a, b));

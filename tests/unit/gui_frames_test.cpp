@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(FrameClock, AFrameMoreThanHalfAPeriodOverdueIsLate) {
+TEST(FrameClock, a_frame_more_than_half_a_period_overdue_is_late) {
     FrameClock clock;
     for (int i = 0; i < 3; ++i) {
         clock.begin(0.001);  // due in a millisecond, and takes five
@@ -23,7 +23,7 @@ TEST(FrameClock, AFrameMoreThanHalfAPeriodOverdueIsLate) {
         clock.begin(0.0);  // none is due
         std::this_thread::sleep_for(milliseconds(2));
     }
-    FrameFigures f{};
+    FrameMetrics f{};
     clock.fill(f);
     EXPECT_EQ(f.frames, 8U);  // the last one has not ended
     EXPECT_EQ(f.late, 3U);
@@ -49,18 +49,18 @@ protected:
         }
         clock.end_frame();
     }
-    static PassFigures of(const PassClock& clock, Pass pass) {
-        FrameFigures f{};
+    static PassMetrics of(const PassClock& clock, Pass pass) {
+        FrameMetrics f{};
         clock.fill(f);
         EXPECT_TRUE(plausible(f));
         return f.pass[static_cast<std::size_t>(pass)];
     }
 };
 
-TEST_F(GuiFrames, ProcessorTimeIsOfEachPassAndOfThePathsItBelongsTo) {
+TEST_F(GuiFrames, processor_time_is_of_each_pass_and_of_the_paths_it_belongs_to) {
     PassClock clock(PassClock::Drawn::unknown);
     for (int i = 0; i < 5; ++i) frame(clock, 1);
-    FrameFigures f{};
+    FrameMetrics f{};
     clock.fill(f);
     EXPECT_GE(of(clock, Pass::motion).work_p50_s, 0.001F);
     EXPECT_GT(of(clock, Pass::marks).work_p50_s, 0.0F);
@@ -71,7 +71,7 @@ TEST_F(GuiFrames, ProcessorTimeIsOfEachPassAndOfThePathsItBelongsTo) {
     EXPECT_LT(f.path[2].drawn_p99_s, 0.0F);
 }
 
-TEST_F(GuiFrames, OneFrameInManyIsFinishedWhereTheProcessorDraws) {
+TEST_F(GuiFrames, one_frame_in_many_is_finished_where_the_processor_draws) {
     EXPECT_EQ(PassClock::possible(true), PassClock::Drawn::finished);
     PassClock clock(PassClock::Drawn::finished);
     for (int i = 0; i < 8; ++i) frame(clock, 1);
@@ -81,7 +81,7 @@ TEST_F(GuiFrames, OneFrameInManyIsFinishedWhereTheProcessorDraws) {
     EXPECT_GE(of(clock, Pass::motion).drawn_p50_s, 0.001F);
 }
 
-TEST_F(GuiFrames, StampsAreReadOnceTheyAreThere) {
+TEST_F(GuiFrames, stamps_are_read_once_they_are_there) {
     if (PassClock::possible(false) != PassClock::Drawn::stamped) GTEST_SKIP() << "this driver stamps nothing";
     PassClock clock(PassClock::Drawn::stamped);
     const std::uint32_t held = gl_names_held();
@@ -98,7 +98,7 @@ TEST_F(GuiFrames, StampsAreReadOnceTheyAreThere) {
     EXPECT_LT(of(clock, Pass::swap).drawn_p50_s, 0.0F);
 }
 
-TEST_F(GuiFrames, NamesThatAreGivenBackAreCounted) {
+TEST_F(GuiFrames, names_that_are_given_back_are_counted) {
     const std::uint32_t before = gl_names_held();
     {
         GlBuffer buffer;
@@ -116,9 +116,9 @@ TEST_F(GuiFrames, NamesThatAreGivenBackAreCounted) {
     EXPECT_EQ(gl_names_held(), before);
 }
 
-TEST(FrameReport, TellsTheMemoryAndRefusesAPathThatCannotBeWritten) {
-    EXPECT_THROW(write_frame_report("/nowhere/at/all.json", FrameFigures{}), StartupError);
-    write_frame_report("", FrameFigures{});  // nobody asked
+TEST(FrameReport, tells_the_memory_and_refuses_a_path_that_cannot_be_written) {
+    EXPECT_THROW(write_frame_report("/nowhere/at/all.json", FrameMetrics{}), StartupError);
+    write_frame_report("", FrameMetrics{});  // nobody asked
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Scene {
         look();
     }
     // The hand goes on for some frames before the controller obeys, one command after the other.
-    void obey(const FitHistory::Places& moves) {
+    void apply(const FitHistory::Places& moves) {
         const auto before = x_a;
         for (auto& [id, x] : x_a) x += 0.3;
         look();
@@ -48,26 +48,26 @@ struct Scene {
     }
 };
 
-TEST(FitHistory, UndoGoesBackOneGestureAndRedoForthAgain) {
+TEST(FitHistory, undo_goes_back_one_gesture_and_redo_forth_again) {
     Scene s;
     s.drag(1, 3.0);
     s.drag(1, 5.0);
     s.grip();
     s.drag(1, 9.0);  // under way
     EXPECT_EQ(s.history.undoable(), 2U);
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 5.0, 1e-9);
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
     EXPECT_EQ(s.history.undoable(), 0U);
     EXPECT_TRUE(s.history.undo().empty());
-    s.obey(s.history.redo());
-    s.obey(s.history.redo());
+    s.apply(s.history.redo());
+    s.apply(s.history.redo());
     EXPECT_NEAR(s.x_a[1], 9.0, 1e-9);
     EXPECT_EQ(s.history.redoable(), 0U);
 }
 
-TEST(FitHistory, TwoUndosBeforeTheControllerObeyedTheFirstAreTwo) {
+TEST(FitHistory, two_undos_before_the_controller_obeyed_the_first_are_two) {
     Scene s;
     for (const double x : {3.0, 6.0}) {
         s.drag(1, x);
@@ -76,13 +76,13 @@ TEST(FitHistory, TwoUndosBeforeTheControllerObeyedTheFirstAreTwo) {
     FitHistory::Places moves = s.history.undo();
     for (const Move& m : s.history.undo()) moves.push_back(m);
     ASSERT_EQ(moves.size(), 2U);
-    s.obey(moves);
+    s.apply(moves);
     EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
     EXPECT_EQ(s.history.undoable(), 0U);
     EXPECT_EQ(s.history.redoable(), 2U);
 }
 
-TEST(FitHistory, AGripWithoutAMoveIsNoGesture) {
+TEST(FitHistory, a_grip_without_a_move_is_no_gesture) {
     Scene s;
     for (int i = 0; i < 5; ++i) s.grip();
     s.drag(1, 0.005);  // less than can be seen
@@ -90,36 +90,36 @@ TEST(FitHistory, AGripWithoutAMoveIsNoGesture) {
     EXPECT_EQ(s.history.undoable(), 0U);
 }
 
-TEST(FitHistory, AHandThatGoesOnHoldingCanUndoTwiceAndRedo) {
+TEST(FitHistory, a_hand_that_goes_on_holding_can_undo_twice_and_redo) {
     Scene s;
     s.drag(1, 10.0);
     s.grip();
     s.drag(1, 20.0);
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     s.drag(1, 10.3);  // it trembles
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
     s.drag(1, -0.4);
     EXPECT_EQ(s.history.redoable(), 2U);
-    s.obey(s.history.redo());
+    s.apply(s.history.redo());
     EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
     s.drag(1, 14.0);  // this is meant
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
 }
 
-TEST(FitHistory, AnotherGestureEndsWhatCouldBeRedone) {
+TEST(FitHistory, another_gesture_ends_what_could_be_redone) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_EQ(s.history.redoable(), 1U);
     s.drag(1, 7.0);
     s.grip();
     EXPECT_EQ(s.history.redoable(), 0U);
 }
 
-TEST(FitHistory, RevertLeadsToWhatWasAcceptedAndCanBeUndone) {
+TEST(FitHistory, revert_leads_to_what_was_accepted_and_can_be_undone) {
     Scene s;
     s.drag(1, 3.0);
     s.history.accept();
@@ -128,27 +128,27 @@ TEST(FitHistory, RevertLeadsToWhatWasAcceptedAndCanBeUndone) {
     s.drag(1, 5.0);
     s.grip();
     s.drag(2, 4.0);
-    s.obey(s.history.revert());
+    s.apply(s.history.revert());
     EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
     EXPECT_NEAR(s.x_a[2], 0.0, 1e-9);
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 5.0, 1e-9);
     EXPECT_NEAR(s.x_a[2], 4.0, 1e-9);
 }
 
-TEST(FitHistory, SnapshotsAreGoneBackToByName) {
+TEST(FitHistory, snapshots_are_gone_back_to_by_name) {
     Scene s;
     s.drag(1, 3.0);
     EXPECT_TRUE(s.history.snapshot("a"));
     EXPECT_FALSE(s.history.snapshot("a"));
     s.drag(1, 8.0);
     EXPECT_TRUE(s.history.restore("b").empty());
-    s.obey(s.history.restore("a"));
+    s.apply(s.history.restore("a"));
     EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
     EXPECT_EQ(s.history.snapshots(), std::vector<std::string>{"a"});
 }
 
-TEST(FitHistory, BodiesThatCameOrWentAreLeftAlone) {
+TEST(FitHistory, bodies_that_came_or_went_are_left_alone) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
@@ -161,7 +161,7 @@ TEST(FitHistory, BodiesThatCameOrWentAreLeftAlone) {
     EXPECT_EQ(moves[0].id, 1U);
 }
 
-TEST(FitHistory, AnotherControllerBeginsAnew) {
+TEST(FitHistory, another_controller_begins_anew) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
@@ -171,18 +171,18 @@ TEST(FitHistory, AnotherControllerBeginsAnew) {
     EXPECT_TRUE(s.history.revert().empty());
 }
 
-TEST(FitHistory, ARefusedMoveIsNotWaitedForForever) {
+TEST(FitHistory, a_refused_move_is_not_waited_for_forever) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
     static_cast<void>(s.history.undo());  // and nobody obeys
     for (int i = 0; i < FitHistory::kPatience; ++i) s.look();
     s.drag(1, 5.0);
-    s.obey(s.history.undo());
+    s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 3.0, 1e-9);
 }
 
-TEST(FitHistory, MemoryIsBounded) {
+TEST(FitHistory, memory_is_bounded) {
     Scene s;
     for (int i = 1; i < 1000; ++i) {
         s.drag(1, i);
@@ -193,7 +193,7 @@ TEST(FitHistory, MemoryIsBounded) {
     EXPECT_EQ(s.history.snapshots().size(), FitHistory::kSnapshotsMax);
 }
 
-RC_GTEST_PROP(FitHistory, AnySequenceIsWhatAListOfStatesDoes, ()) {
+RC_GTEST_PROP(FitHistory, any_sequence_is_what_a_list_of_states_does, ()) {
     Scene s;
     std::vector<double> done, undone;  // of body 1, before each gesture
     double at = 0.0;
@@ -207,10 +207,10 @@ RC_GTEST_PROP(FitHistory, AnySequenceIsWhatAListOfStatesDoes, ()) {
             undone.clear();
             at = drags;
         } else if (step == 1) {
-            s.obey(s.history.undo());
+            s.apply(s.history.undo());
             if (!done.empty()) undone.push_back(at), at = done.back(), done.pop_back();
         } else {
-            s.obey(s.history.redo());
+            s.apply(s.history.redo());
             if (!undone.empty()) done.push_back(at), at = undone.back(), undone.pop_back();
         }
         RC_ASSERT(std::abs(s.x_a[1] - at) < 1e-9);

@@ -109,7 +109,7 @@ protected:
     LatenessTopic lateness_{};
 };
 
-TEST_F(Hours, TakeNoMoreMemoryThanTheFirstMinutes) {
+TEST_F(Hours, take_no_more_memory_than_the_first_minutes) {
     test::Desk desk(1280.0F, 720.0F, 1.0F);
     desk.state.have_levels = true;
     desk.state.levels = levels_;
@@ -130,7 +130,7 @@ TEST_F(Hours, TakeNoMoreMemoryThanTheFirstMinutes) {
     EXPECT_GT(desk.state.history.knobs.forgotten(), 1000U);
 }
 
-TEST_F(Hours, NoAllocationForASampleOnceItRuns) {
+TEST_F(Hours, no_allocation_for_a_sample_once_it_runs) {
     auto state = std::make_unique<DashboardState>();
     for (int i = 0; i < 600; ++i) tick(*state);
     const long long before = allocations;

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <thread>
 
-#include "gui/app/browser_desk.hpp"
-#include "ipc/assets/scene_hand_over.hpp"
+#include "gui/app/browser_controller.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact {
 namespace {
@@ -25,13 +25,13 @@ protected:
         std::ofstream(folder_ / "wrong.ply") << "no mesh";
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
-    void until_done(BrowserDesk& desk) {
+    void until_done(BrowserController& desk) {
         const Instant until = Monotonic::now() + std::chrono::minutes(2);
         do {
-            desk.follow(facts_);
+            desk.follow(state_);
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        } while (facts_.importing && Monotonic::now() < until);
-        EXPECT_FALSE(facts_.importing);
+        } while (state_.importing && Monotonic::now() < until);
+        EXPECT_FALSE(state_.importing);
     }
     [[nodiscard]] std::size_t scenes() const {
         std::error_code none;
@@ -41,113 +41,113 @@ protected:
         return n;
     }
     std::filesystem::path folder_;
-    BrowserFacts facts_;
+    BrowserState state_;
 };
 
-TEST_F(Import, AMeshIsBakedIntoTheCacheAndItsSceneAskedFor) {
-    const auto hand_over = folder_ / "hand-over";
-    std::filesystem::create_directory(hand_over);
-    BrowserDesk desk(hand_over);
-    desk.drop({folder_ / "tetra.obj"}, facts_);
+TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
+    const auto scene_switch = folder_ / "hand-over";
+    std::filesystem::create_directory(scene_switch);
+    BrowserController desk(scene_switch);
+    desk.drop({folder_ / "tetra.obj"}, state_);
     until_done(desk);
-    const auto asked = take_asked_scene(hand_over);
-    ASSERT_TRUE(asked) << facts_.said;
+    const auto asked = take_asked_scene(scene_switch);
+    ASSERT_TRUE(asked) << state_.said;
     EXPECT_EQ(asked->parent_path(), folder_ / "cache" / "tact");
     EXPECT_TRUE(std::filesystem::exists(*asked));
-    refuse_scene(hand_over, "not now");
-    desk.follow(facts_);
-    EXPECT_EQ(facts_.said, "not now");
-    EXPECT_EQ(facts_.said_grade, Grade::bad);
+    refuse_scene(scene_switch, "not now");
+    desk.follow(state_);
+    EXPECT_EQ(state_.said, "not now");
+    EXPECT_EQ(state_.said_grade, Grade::bad);
 }
 
-TEST_F(Import, RowsThatArePressedAreMarkedAndImportedTogether) {
-    BrowserDesk desk({});
-    facts_.open = true;
-    facts_.folder = folder_;
+TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
+    BrowserController desk({});
+    state_.open = true;
+    state_.folder = folder_;
     const auto row = [&](const char* name) -> SceneRow& {
-        const auto found = std::find_if(facts_.here.begin(), facts_.here.end(),
+        const auto found = std::find_if(state_.here.begin(), state_.here.end(),
                                         [&](const SceneRow& each) { return each.name == name; });
-        EXPECT_NE(found, facts_.here.end()) << name;
+        EXPECT_NE(found, state_.here.end()) << name;
         return *found;
     };
     const auto press = [&](const std::string& file) {
-        facts_.mark_wanted = file;
-        desk.follow(facts_);
+        state_.mark_wanted = file;
+        desk.follow(state_);
     };
-    desk.follow(facts_);
-    while (facts_.reading) desk.follow(facts_);
-    ASSERT_FALSE(facts_.here.empty());
-    EXPECT_TRUE(facts_.marks_say.empty());
+    desk.follow(state_);
+    while (state_.reading) desk.follow(state_);
+    ASSERT_FALSE(state_.here.empty());
+    EXPECT_TRUE(state_.marks_say.empty());
     press(folder_ / "tetra.obj");
-    EXPECT_TRUE(row("tetra.obj").marked && facts_.marks_import);
-    EXPECT_EQ(facts_.marks_say, "Touch tetra.obj.");
+    EXPECT_TRUE(row("tetra.obj").marked && state_.marks_import);
+    EXPECT_EQ(state_.marks_say, "Touch tetra.obj.");
     press(folder_ / "wrong.ply");
-    EXPECT_TRUE(row("wrong.ply").marked && !facts_.marks_import);
-    EXPECT_EQ(facts_.marks_say, "2 marked. One scene, mesh or scan at a time.");
-    facts_.import_wanted = true;  // the button is not to be pressed now
-    desk.follow(facts_);
-    EXPECT_FALSE(facts_.importing);
+    EXPECT_TRUE(row("wrong.ply").marked && !state_.marks_import);
+    EXPECT_EQ(state_.marks_say, "2 marked. One scene, mesh or scan at a time.");
+    state_.import_wanted = true;  // the button is not to be pressed now
+    desk.follow(state_);
+    EXPECT_FALSE(state_.importing);
     press(folder_ / "wrong.ply");
     EXPECT_TRUE(!row("wrong.ply").marked && row("tetra.obj").marked);
-    facts_.import_wanted = true;
-    desk.follow(facts_);
-    EXPECT_TRUE(facts_.marks_say.empty() && !row("tetra.obj").marked);
+    state_.import_wanted = true;
+    desk.follow(state_);
+    EXPECT_TRUE(state_.marks_say.empty() && !row("tetra.obj").marked);
     until_done(desk);
-    EXPECT_EQ(scenes(), 1U) << facts_.said;
+    EXPECT_EQ(scenes(), 1U) << state_.said;
     for (std::size_t i = 0; i < 3 * kDroppedMost; ++i)
         press(std::string("/a/").append(std::to_string(i)).append(".pdb"));
-    EXPECT_EQ(facts_.marks_say.substr(0, 3), "18 ") << facts_.marks_say;
-    facts_.clear_wanted = true;
-    desk.follow(facts_);
-    EXPECT_TRUE(facts_.marks_say.empty());
+    EXPECT_EQ(state_.marks_say.substr(0, 3), "18 ") << state_.marks_say;
+    state_.clear_wanted = true;
+    desk.follow(state_);
+    EXPECT_TRUE(state_.marks_say.empty());
 }
 
-TEST_F(Import, WhatCanBeDroppedIsSaidOfWhatCannot) {
-    BrowserDesk desk({});
-    desk.drop({"/a/notes.txt"}, facts_);
-    EXPECT_TRUE(facts_.open);
-    EXPECT_NE(facts_.said.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
-        << facts_.said;
-    EXPECT_NE(facts_.said.find("What can be dropped: a scene"), std::string::npos) << facts_.said;
+TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
+    BrowserController desk({});
+    desk.drop({"/a/notes.txt"}, state_);
+    EXPECT_TRUE(state_.open);
+    EXPECT_NE(state_.said.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
+        << state_.said;
+    EXPECT_NE(state_.said.find("What can be dropped: a scene"), std::string::npos) << state_.said;
 }
 
-TEST_F(Import, WhatTactPrepSaysOfAWrongFileIsShownAsItIs) {
-    BrowserDesk desk({});
-    desk.drop({folder_ / "wrong.ply"}, facts_);
+TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {
+    BrowserController desk({});
+    desk.drop({folder_ / "wrong.ply"}, state_);
     until_done(desk);
-    EXPECT_TRUE(facts_.said.starts_with("tact-prep: ")) << facts_.said;
-    EXPECT_NE(facts_.said.find("mend:"), std::string::npos);
+    EXPECT_TRUE(state_.said.starts_with("tact-prep: ")) << state_.said;
+    EXPECT_NE(state_.said.find("mend:"), std::string::npos);
     EXPECT_EQ(scenes(), 0U);
 }
 
-TEST_F(Import, ACancelledImportLeavesNothing) {
-    BrowserDesk desk({});
-    desk.drop({folder_ / "tetra.obj"}, facts_);
-    facts_.cancel_wanted = true;
+TEST_F(Import, a_cancelled_import_leaves_nothing) {
+    BrowserController desk({});
+    desk.drop({folder_ / "tetra.obj"}, state_);
+    state_.cancel_wanted = true;
     until_done(desk);
-    EXPECT_NE(facts_.said.find("cancelled"), std::string::npos) << facts_.said;
+    EXPECT_NE(state_.said.find("cancelled"), std::string::npos) << state_.said;
     EXPECT_EQ(scenes(), 0U);
 }
 
-TEST_F(Import, AListOfScenesThatCannotBeReadIsKeptAside) {
+TEST_F(Import, a_list_of_scenes_that_cannot_be_read_is_kept_aside) {
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
     const auto list = folder_ / "state" / "tact" / "recent.json";
     std::filesystem::create_directories(list.parent_path());
     std::ofstream(list) << "by hand, and wrong";
     {
-        BrowserDesk desk(folder_);
-        desk.used("/a/b.tact", facts_);
+        BrowserController desk(folder_);
+        desk.used("/a/b.tact", state_);
     }  // waits for the disk
     EXPECT_EQ(read_recents(list).at(0).path, "/a/b.tact");
     std::ifstream aside(list.string() + ".damaged");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), "by hand, and wrong");
 }
 
-TEST_F(Import, WithoutALauncherTheWindowSaysHowToOpenAScene) {
-    BrowserDesk desk({});
-    desk.drop({"/a/b.tact"}, facts_);
-    EXPECT_TRUE(facts_.open);
-    EXPECT_NE(facts_.said.find("tact run /a/b.tact"), std::string::npos) << facts_.said;
+TEST_F(Import, without_a_launcher_the_window_says_how_to_open_a_scene) {
+    BrowserController desk({});
+    desk.drop({"/a/b.tact"}, state_);
+    EXPECT_TRUE(state_.open);
+    EXPECT_NE(state_.said.find("tact run /a/b.tact"), std::string::npos) << state_.said;
 }
 
 }  // namespace

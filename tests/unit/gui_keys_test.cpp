@@ -20,7 +20,7 @@ KeySituation where_applies(KeyWhen when) {
     return now;
 }
 
-TEST(Keys, EveryRowIsFoundByItsStrokeWhereItAppliesAndByNoOther) {
+TEST(Keys, every_row_is_found_by_its_stroke_where_it_applies_and_by_no_other) {
     for (const KeyRow& row : key_rows()) {
         if (row.act == KeyAct::none) continue;
         const char last = row.last != '\0' ? row.last : row.stroke.character;
@@ -39,7 +39,7 @@ TEST(Keys, EveryRowIsFoundByItsStrokeWhereItAppliesAndByNoOther) {
     }
 }
 
-TEST(Keys, NoTwoRowsThatMayApplyAtOnceShareAStroke) {
+TEST(Keys, no_two_rows_that_may_apply_at_once_share_a_stroke) {
     for (const KeyRow& a : key_rows())
         for (const KeyRow& b : key_rows())
             if (&a != &b) {
@@ -54,7 +54,7 @@ TEST(Keys, NoTwoRowsThatMayApplyAtOnceShareAStroke) {
     EXPECT_FALSE(collide(digits, in_bone));
 }
 
-TEST(Keys, EveryActHasAKeyAndEveryRowWords) {
+TEST(Keys, every_act_has_a_key_and_every_row_words) {
     std::set<KeyAct> acts;
     for (const KeyRow& row : key_rows()) {
         acts.insert(row.act);
@@ -64,14 +64,14 @@ TEST(Keys, EveryActHasAKeyAndEveryRowWords) {
     EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAct::count));
 }
 
-TEST(Keys, ALongSheetHasTwoColumnsWhereBothHaveRoom) {
+TEST(Keys, a_long_sheet_has_two_columns_where_both_have_room) {
     EXPECT_EQ(sheet_columns(13, 40, 2), 1);  // a short one stays together
     EXPECT_EQ(sheet_columns(24, 40, 2), 2);
     EXPECT_EQ(sheet_columns(24, 40, 1), 1);  // a second one would be cut off at the sides
     EXPECT_EQ(sheet_columns(13, 8, 2), 2);   // too high for the view, though short
 }
 
-TEST(Keys, TheSheetTakesEscBeforeTheBodiesDo) {
+TEST(Keys, the_sheet_takes_esc_before_the_bodies_do) {
     KeySituation now = where_applies(KeyWhen::bodies);
     const KeyStroke escape{KeyCode::escape, '\0', false, false};
     EXPECT_EQ(find_key(escape, now).row->act, KeyAct::revert);

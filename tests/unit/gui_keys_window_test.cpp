@@ -140,7 +140,7 @@ std::string name_for_x(const KeyStroke& stroke) {
     }
 }
 
-TEST_F(KeysInTheWindow, EveryRowOfADockingSceneIsPressedAndTaken) {
+TEST_F(KeysInTheWindow, every_row_of_a_docking_scene_is_pressed_and_taken) {
     const KeySituation now{.sheet = false, .bodies = true, .bone = false, .stereo = true, .controller = true};
     const KeyRow* close = nullptr;
     std::size_t pressed = 0;
@@ -164,7 +164,7 @@ TEST_F(KeysInTheWindow, EveryRowOfADockingSceneIsPressedAndTaken) {
         << log_text();
 }
 
-TEST_F(KeysInTheWindow, ArmIsSentFromReadyAloneAndDisarmAlways) {
+TEST_F(KeysInTheWindow, arm_is_sent_from_ready_alone_and_disarm_always) {
     be(RunState::off, nullptr);
     press("ctrl+Return");
     press("m");
@@ -189,7 +189,7 @@ TEST_F(KeysInTheWindow, ArmIsSentFromReadyAloneAndDisarmAlways) {
     ASSERT_TRUE(commanded(CommandKind::disarm)) << log_text();
 }
 
-TEST_F(KeysInTheWindow, ADigitTakesTheBodyOfThatNumber) {
+TEST_F(KeysInTheWindow, a_digit_takes_the_body_of_that_number) {
     press("0");
     ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
     EXPECT_EQ(last_.body, kNoBody);

@@ -12,7 +12,7 @@
 #include "gui/app/mesh_level.hpp"
 #include "gui/app/pose_predictor.hpp"
 #include "gui/app/region_checks.hpp"
-#include "gui/panels/verdict.hpp"
+#include "gui/panels/status_text.hpp"
 
 namespace tact {
 namespace {
@@ -25,7 +25,7 @@ BodiesTopic good_bodies() {
     return b;
 }
 
-TEST(RegionChecks, AcceptWhatAControllerWrites) {
+TEST(RegionChecks, accept_what_a_controller_writes) {
     EXPECT_TRUE(sensible(good_bodies()));
     EXPECT_TRUE(sensible(BodiesTopic{}));
     EXPECT_TRUE(sensible(HealthTopic{}));
@@ -35,7 +35,7 @@ TEST(RegionChecks, AcceptWhatAControllerWrites) {
     EXPECT_TRUE(sensible(tool));
 }
 
-TEST(RegionChecks, RefuseATouchThatCannotBe) {
+TEST(RegionChecks, refuse_a_touch_that_cannot_be) {
     TouchTopic good{};
     good.planes = 1;
     good.normal_model[0][1] = 1.0F;
@@ -60,7 +60,7 @@ TEST(RegionChecks, RefuseATouchThatCannotBe) {
     EXPECT_TRUE(refused([](TouchTopic& t) { t.state = static_cast<TouchState>(3); }));
 }
 
-TEST(RegionChecks, RefuseADrillThatCannotBe) {
+TEST(RegionChecks, refuse_a_drill_that_cannot_be) {
     DrillTopic good{};
     good.level_m3 = 1e-13;
     DrillHand& burr = good.hand[0];
@@ -84,10 +84,10 @@ TEST(RegionChecks, RefuseADrillThatCannotBe) {
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].quat_model_tool_xyzw[3] = 0.0; }));
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].suction = 1.5F; }));
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].depth = std::nanf(""); }));
-    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::sucker; }));  // of no size
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::suction_tube; }));  // of no size
 }
 
-TEST(RegionChecks, RefuseAHeadThatCannotBe) {
+TEST(RegionChecks, refuse_a_head_that_cannot_be) {
     HeadTopic good{};
     good.quat_screen_head_xyzw[3] = 1.0;
     good.state = 2;
@@ -106,7 +106,7 @@ TEST(RegionChecks, RefuseAHeadThatCannotBe) {
     refused([](HeadTopic& h) { h.quality = 1.5; });
 }
 
-TEST(RegionChecks, RefuseDevicesATrackerAndALatenessThatCannotBe) {
+TEST(RegionChecks, refuse_devices_a_tracker_and_a_lateness_that_cannot_be) {
     EXPECT_TRUE(sensible(DevicesTopic{}));
     EXPECT_TRUE(sensible(TrackerTopic{}));
     EXPECT_TRUE(sensible(LatenessTopic{}));
@@ -139,7 +139,7 @@ TEST(RegionChecks, RefuseDevicesATrackerAndALatenessThatCannotBe) {
     EXPECT_FALSE(sensible(late));
 }
 
-TEST(RegionChecks, RefuseBodiesThatCannotBe) {
+TEST(RegionChecks, refuse_bodies_that_cannot_be) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();
     b.count = 17;
@@ -164,15 +164,15 @@ TEST(RegionChecks, RefuseBodiesThatCannotBe) {
     EXPECT_TRUE(sensible(b));
 }
 
-TEST(RegionChecks, RefuseNumbersAndTextsThatCannotBe) {
+TEST(RegionChecks, refuse_numbers_and_texts_that_cannot_be) {
     HealthTopic h{};
     h.force_rate_hz = std::numeric_limits<double>::infinity();
     EXPECT_FALSE(sensible(h));
     h = {};
-    h.fresh_mean = 1.5F;
+    h.recomputed_fraction_mean = 1.5F;
     EXPECT_FALSE(sensible(h));
     h = {};
-    h.fresh_least = std::numeric_limits<float>::quiet_NaN();
+    h.recomputed_fraction_least = std::numeric_limits<float>::quiet_NaN();
     EXPECT_FALSE(sensible(h));
     h = {};
     h.lateness_max_ns = std::numeric_limits<std::int64_t>::min();
@@ -202,7 +202,7 @@ TEST(RegionChecks, RefuseNumbersAndTextsThatCannotBe) {
     EXPECT_FALSE(sensible(l));
 }
 
-TEST(RegionChecks, FindAPathByItsWholeName) {
+TEST(RegionChecks, find_a_path_by_its_whole_name) {
     LevelsTopic l{};
     l.count = 2;
     std::strcpy(l.path[0].path, "gui.mesh2");
@@ -213,7 +213,7 @@ TEST(RegionChecks, FindAPathByItsWholeName) {
     EXPECT_EQ(find_path(l, kMeshPath), nullptr);
 }
 
-TEST(MeshLevel, TakesTheGovernorsItemsWhenItKnowsThisMesh) {
+TEST(MeshLevel, takes_the_governors_items_when_it_knows_this_mesh) {
     PathLevel p{};
     p.level = 0.5F;
     p.items = 1234;
@@ -221,7 +221,7 @@ TEST(MeshLevel, TakesTheGovernorsItemsWhenItKnowsThisMesh) {
     EXPECT_EQ(vertices_for(p, 10, 10'000), 1234U);
 }
 
-TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
+TEST(MeshLevel, takes_the_level_as_a_share_otherwise_and_stays_within_the_mesh) {
     PathLevel p{};
     p.level = 0.25F;
     EXPECT_EQ(vertices_for(p, 10, 10'000), 2500U);
@@ -237,21 +237,21 @@ TEST(MeshLevel, TakesTheLevelAsAShareOtherwiseAndStaysWithinTheMesh) {
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
 }
 
-TEST(MeshLevel, ASurfaceIsNeverCoarserThanCanBeRecognized) {
+TEST(MeshLevel, a_surface_is_never_coarser_than_can_be_recognized) {
     EXPECT_EQ(fewest_shown(66, 60'000), 1000U);
     EXPECT_EQ(fewest_shown(66, 6000), 500U);
     EXPECT_EQ(fewest_shown(3000, 9000), 3000U);  // a base mesh cannot have fewer
     EXPECT_EQ(fewest_shown(0, 0), 0U);
 }
 
-TEST(MeshLevel, AdaptingTakesAtMostAQuarterOfAFrameAndNeverVeryLong) {
+TEST(MeshLevel, adapting_takes_at_most_a_quarter_of_a_frame_and_never_very_long) {
     EXPECT_EQ(adapt_budget_s(0.0), 0.002);  // the first frame
     EXPECT_EQ(adapt_budget_s(0.016), 0.004);
     EXPECT_EQ(adapt_budget_s(3.0), 0.05);
     EXPECT_EQ(adapt_budget_s(std::nan("")), 0.002);
 }
 
-TEST(PosePredictor, FollowsASteadyMotionToTheTimeOfThePicture) {
+TEST(PosePredictor, follows_a_steady_motion_to_the_time_of_the_picture) {
     PosePredictor predictor;
     const Vec3 speed(1e-8, -2e-8, 0.5e-8);
     const double spin = 1.5;
@@ -265,7 +265,7 @@ TEST(PosePredictor, FollowsASteadyMotionToTheTimeOfThePicture) {
     EXPECT_LT(seen.q.angularDistance(wanted.q), 1e-4);
 }
 
-TEST(PosePredictor, DoesNotRunAwayFromAControllerThatWentSilent) {
+TEST(PosePredictor, does_not_run_away_from_a_controller_that_went_silent) {
     PosePredictor predictor;
     for (int i = 0; i <= 100; ++i)
         predictor.add(1 + i * 1'000'000LL, {Vec3(1e-8 * i, 0, 0), Quat::Identity()});
@@ -277,7 +277,7 @@ TEST(PosePredictor, DoesNotRunAwayFromAControllerThatWentSilent) {
     EXPECT_EQ(predictor.at(9'010'000'000LL).p_m, Vec3::Zero());
 }
 
-TEST(CommandSender, NumbersCommandsAndTellsWhatBecameOfThem) {
+TEST(CommandSender, numbers_commands_and_tells_what_became_of_them) {
     OwnedRegion<GuiRegion> region;
     CommandSender sender(region->commands);
     using Stage = CommandSender::Stage;
@@ -307,109 +307,109 @@ TEST(CommandSender, NumbersCommandsAndTellsWhatBecameOfThem) {
     EXPECT_EQ(sender.sequence(), 2U);
 }
 
-TEST(Verdict, GradesTheRateAgainstItsGoal) {
-    EXPECT_EQ(rate_verdict(1000.0, 1000.0).grade, Grade::good);
-    EXPECT_EQ(rate_verdict(951.0, 1000.0).grade, Grade::good);
-    EXPECT_EQ(rate_verdict(940.0, 1000.0).grade, Grade::watch);
-    EXPECT_EQ(rate_verdict(700.0, 1000.0).grade, Grade::bad);
-    EXPECT_NE(rate_verdict(700.0, 1000.0).words.find("30 %"), std::string::npos);
-    EXPECT_EQ(rate_verdict(5.0, 0.0).grade, Grade::unknown);
+TEST(StatusText, grades_the_rate_against_its_goal) {
+    EXPECT_EQ(rate_status(1000.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_status(951.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_status(940.0, 1000.0).grade, Grade::watch);
+    EXPECT_EQ(rate_status(700.0, 1000.0).grade, Grade::bad);
+    EXPECT_NE(rate_status(700.0, 1000.0).words.find("30 %"), std::string::npos);
+    EXPECT_EQ(rate_status(5.0, 0.0).grade, Grade::unknown);
 }
 
-TEST(Verdicts, OfDevicesMotorsAndATrackerSayTheWorstOfWhatIsKnown) {
+TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known) {
     DeviceHand d{};
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::unknown);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::unknown);
     d.there = 1;
     d.state = 2;
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::good);
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).words, "powered");
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::good);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).words, "powered");
     BusCounts lossy;
     lossy.lost = 3;
-    EXPECT_EQ(device_verdict(d, lossy, DeviceNotice::none).grade, Grade::watch);
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::keep_still).grade, Grade::watch);
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::gone).grade, Grade::bad);
+    EXPECT_EQ(device_status(d, lossy, DeviceNotice::none).grade, Grade::watch);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::keep_still).grade, Grade::watch);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::gone).grade, Grade::bad);
     d.read = 1;
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::watch);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::watch);
     d.read = 2;
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).words, "lost");
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).words, "lost");
     d.read = 0;
     d.state = 4;
-    EXPECT_EQ(device_verdict(d, {}, DeviceNotice::none).grade, Grade::bad);
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::bad);
 
     DeviceHand m{};
-    EXPECT_EQ(motor_verdict(m).grade, Grade::unknown);
+    EXPECT_EQ(motor_status(m).grade, Grade::unknown);
     m.force_n_continuous = 1.4F;
     m.heat = 0.79F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::good);
+    EXPECT_EQ(motor_status(m).grade, Grade::good);
     m.heat = 0.81F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::watch);
+    EXPECT_EQ(motor_status(m).grade, Grade::watch);
     m.heat = 1.01F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::bad);
-    EXPECT_NE(motor_verdict(m).words.find("1.4 N"), std::string::npos);
+    EXPECT_EQ(motor_status(m).grade, Grade::bad);
+    EXPECT_NE(motor_status(m).words.find("1.4 N"), std::string::npos);
     m.winding_c_max = 100.0F;  // what the driver counts is nearer to the truth
     m.winding_c = 60.0F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::good);
+    EXPECT_EQ(motor_status(m).grade, Grade::good);
     m.winding_c = 90.0F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::watch);
+    EXPECT_EQ(motor_status(m).grade, Grade::watch);
     m.winding_c = 101.0F;
-    EXPECT_EQ(motor_verdict(m).grade, Grade::bad);
+    EXPECT_EQ(motor_status(m).grade, Grade::bad);
 
     TrackerTopic t{};
     t.link = 1;
     t.state = 2;
-    EXPECT_EQ(tracker_verdict(t).grade, Grade::good);
+    EXPECT_EQ(tracker_status(t).grade, Grade::good);
     t.state = 1;
-    EXPECT_EQ(tracker_verdict(t).grade, Grade::watch);
+    EXPECT_EQ(tracker_status(t).grade, Grade::watch);
     t.state = 0;
-    EXPECT_EQ(tracker_verdict(t).grade, Grade::bad);
+    EXPECT_EQ(tracker_status(t).grade, Grade::bad);
     t.link = 4;
-    EXPECT_EQ(tracker_verdict(t).words, "gone");
+    EXPECT_EQ(tracker_status(t).words, "gone");
     EXPECT_EQ(tracker_counts_text(t), "");
     t.missed = 2;
     t.bus_errors = 1;
     EXPECT_EQ(tracker_counts_text(t), "missed 2, bus errors 1");
 
-    EXPECT_EQ(picture_verdict(0.0, 30.0).grade, Grade::unknown);
-    EXPECT_EQ(picture_verdict(29.0, 30.0).grade, Grade::good);
-    EXPECT_EQ(picture_verdict(20.0, 30.0).grade, Grade::watch);
-    EXPECT_EQ(picture_verdict(10.0, 30.0).grade, Grade::bad);
-    EXPECT_EQ(picture_verdict(25.0, 0.0).grade, Grade::good);
-    EXPECT_EQ(picture_verdict(15.0, 0.0).grade, Grade::watch);
+    EXPECT_EQ(display_status(0.0, 30.0).grade, Grade::unknown);
+    EXPECT_EQ(display_status(29.0, 30.0).grade, Grade::good);
+    EXPECT_EQ(display_status(20.0, 30.0).grade, Grade::watch);
+    EXPECT_EQ(display_status(10.0, 30.0).grade, Grade::bad);
+    EXPECT_EQ(display_status(25.0, 0.0).grade, Grade::good);
+    EXPECT_EQ(display_status(15.0, 0.0).grade, Grade::watch);
 }
 
-TEST(Verdict, EveryGradeComesWithWords) {
+TEST(StatusText, every_grade_comes_with_words) {
     for (int state = 0; state < 7; ++state)
         for (int reason = 0; reason < 15; ++reason)
             EXPECT_FALSE(
-                state_verdict(static_cast<RunState>(state), static_cast<RunReason>(reason)).words.empty());
-    EXPECT_EQ(state_verdict(RunState::fault, RunReason::device_lost).grade, Grade::bad);
+                state_status(static_cast<RunState>(state), static_cast<RunReason>(reason)).words.empty());
+    EXPECT_EQ(state_status(RunState::fault, RunReason::device_lost).grade, Grade::bad);
     const auto overran = [](std::uint64_t overruns, std::uint64_t cycles) {
         HealthTopic h{};
         h.overruns = overruns;
         h.cycle = cycles;
         h.overrun_at_ns = overruns > 0 ? 1'000'000'000 : 0;
-        return overrun_verdict(h, 13'000'000'000);
+        return overrun_status(h, 13'000'000'000);
     };
     EXPECT_EQ(overran(0, 1000).grade, Grade::good);
     EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
     EXPECT_EQ(overran(1, 1'000'000).words, "the last 12 s ago");
     EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
-    EXPECT_EQ(lateness_verdict(50'000, 1'000'000).grade, Grade::good);
-    EXPECT_EQ(lateness_verdict(900'000, 1'000'000).grade, Grade::bad);
-    EXPECT_EQ(bus_verdict({.packets = 1000}).grade, Grade::good);
-    EXPECT_EQ(bus_verdict({.packets = 1000, .stalls = 1}).grade, Grade::watch);
-    EXPECT_EQ(bus_verdict({.packets = 1000, .checksum = 1, .refused = 2, .repeated = 3, .lost = 4}).words,
+    EXPECT_EQ(lateness_status(50'000, 1'000'000).grade, Grade::good);
+    EXPECT_EQ(lateness_status(900'000, 1'000'000).grade, Grade::bad);
+    EXPECT_EQ(bus_status({.packets = 1000}).grade, Grade::good);
+    EXPECT_EQ(bus_status({.packets = 1000, .stalls = 1}).grade, Grade::watch);
+    EXPECT_EQ(bus_status({.packets = 1000, .checksum = 1, .refused = 2, .repeated = 3, .lost = 4}).words,
               "6 bad, 4 lost");
     HealthTopic health{};
-    EXPECT_EQ(memory_verdict(health).grade, Grade::good);
+    EXPECT_EQ(memory_status(health).grade, Grade::good);
     health.page_faults = 2;
-    EXPECT_EQ(memory_verdict(health).grade, Grade::watch);
+    EXPECT_EQ(memory_status(health).grade, Grade::watch);
     health.allocations = 1;
-    EXPECT_EQ(memory_verdict(health).grade, Grade::bad);
-    EXPECT_NE(memory_verdict(health).words.find("1 allocation,"), std::string::npos);
+    EXPECT_EQ(memory_status(health).grade, Grade::bad);
+    EXPECT_NE(memory_status(health).words.find("1 allocation,"), std::string::npos);
 }
 
-TEST(CommandSender, CarriesTheBodyAndItsPlace) {
+TEST(CommandSender, carries_the_body_and_its_place) {
     Ring<CommandTopic, 64> ring;
     CommandSender sender(ring);
     Command place{.kind = CommandKind::place_body, .body = 7};
@@ -436,7 +436,7 @@ BodiesTopic topic_of(std::initializer_list<std::pair<std::uint32_t, std::uint16_
     return t;
 }
 
-TEST(BodyList, ShowsTheStructuresAtHomeUntilAControllerSpeaks) {
+TEST(BodyList, shows_the_structures_at_home_until_a_controller_speaks) {
     BodyList list;
     const std::vector<Pose> homes(3, {Vec3(0, 0, 4e-9), Quat::Identity()});
     list.start(homes);
@@ -447,7 +447,7 @@ TEST(BodyList, ShowsTheStructuresAtHomeUntilAControllerSpeaks) {
     EXPECT_EQ(list.bodies()[1].T_model_body.p_m.z(), 4e-9);
 }
 
-TEST(BodyList, FollowsBodiesByIdWhileOthersComeAndGo) {
+TEST(BodyList, follows_bodies_by_id_while_others_come_and_go) {
     BodyList list;
     list.start(std::vector<Pose>(2));
     BodiesTopic t = topic_of({{1, 0}, {2, 0}, {5, 1}});
@@ -466,7 +466,7 @@ TEST(BodyList, FollowsBodiesByIdWhileOthersComeAndGo) {
     EXPECT_EQ(list.find(5)->newest.p_m.x(), 5e-10);
 }
 
-TEST(BodyList, LeavesOutBodiesOfStructuresThatTheSceneDoesNotHave) {
+TEST(BodyList, leaves_out_bodies_of_structures_that_the_scene_does_not_have) {
     BodyList list;
     list.start(std::vector<Pose>(1));
     BodiesTopic t = topic_of({{1, 9}, {2, 0}});
@@ -477,55 +477,55 @@ TEST(BodyList, LeavesOutBodiesOfStructuresThatTheSceneDoesNotHave) {
     EXPECT_EQ(list.active(), 0U);  // its place among those that are shown
 }
 
-TEST(Verdicts, WhatStopsTheForceIsToldWithWhatAPersonIsToDo) {
+TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
     HealthTopic h{};
     for (const auto state : {RunState::off, RunState::ready, RunState::armed, RunState::active}) {
         h.state = static_cast<std::uint8_t>(state);
         EXPECT_TRUE(stop_notice(h).why.empty());
     }
     h.state = static_cast<std::uint8_t>(RunState::fault);
-    std::set<std::string> mends;
+    std::set<std::string> fixes;
     for (int reason = 0; reason < 256; ++reason) {
         h.reason = static_cast<std::uint8_t>(reason);
         const StopNotice notice = stop_notice(h);
         EXPECT_FALSE(notice.why.empty());
-        EXPECT_NE(notice.mend.find("Reset"), std::string::npos) << notice.mend;
+        EXPECT_NE(notice.fix.find("Reset"), std::string::npos) << notice.fix;
         EXPECT_EQ(notice.grade, Grade::bad);
-        mends.insert(notice.mend);
+        fixes.insert(notice.fix);
     }
-    EXPECT_GE(mends.size(), 10U);
+    EXPECT_GE(fixes.size(), 10U);
     // The lines' own reason comes first: it is what a hand can change.
     h.lines = static_cast<std::uint8_t>(LinesShown::stopped);
     h.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
     EXPECT_NE(stop_notice(h).why.find("emergency stop"), std::string::npos);
     h.state = static_cast<std::uint8_t>(RunState::ready);
-    EXPECT_NE(stop_notice(h).mend.find("turn the button free"), std::string::npos);
-    EXPECT_EQ(stop_notice(h).mend.find("Reset"), std::string::npos);
+    EXPECT_NE(stop_notice(h).fix.find("turn the button free"), std::string::npos);
+    EXPECT_EQ(stop_notice(h).fix.find("Reset"), std::string::npos);
     h.lines = static_cast<std::uint8_t>(LinesShown::permitted);
     EXPECT_TRUE(stop_notice(h).why.empty());
 }
 
-TEST(Verdicts, OfADistanceAreRedBelowOneMillimetreAmberBelowTwoAndLookAhead) {
-    EXPECT_EQ(distance_verdict(-1e-4, 0.0, false).words, "in it");
-    EXPECT_EQ(distance_verdict(-1e-4, 0.0, false).grade, Grade::bad);
-    EXPECT_EQ(distance_verdict(0.99e-3, 0.0, false).grade, Grade::bad);
-    EXPECT_EQ(distance_verdict(1.01e-3, 0.0, false).grade, Grade::watch);
-    EXPECT_EQ(distance_verdict(1.99e-3, 0.0, false).grade, Grade::watch);
-    EXPECT_EQ(distance_verdict(2.01e-3, 0.0, false).grade, Grade::good);
+TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and_look_ahead) {
+    EXPECT_EQ(distance_status(-1e-4, 0.0, false).words, "in it");
+    EXPECT_EQ(distance_status(-1e-4, 0.0, false).grade, Grade::bad);
+    EXPECT_EQ(distance_status(0.99e-3, 0.0, false).grade, Grade::bad);
+    EXPECT_EQ(distance_status(1.01e-3, 0.0, false).grade, Grade::watch);
+    EXPECT_EQ(distance_status(1.99e-3, 0.0, false).grade, Grade::watch);
+    EXPECT_EQ(distance_status(2.01e-3, 0.0, false).grade, Grade::good);
     // 4 mm away and 10 mm/s: at 1 mm in 0.3 s, if it turns.
-    EXPECT_EQ(distance_verdict(4e-3, 1e-2, true).words, "at 1 mm in 0.3 s");
-    EXPECT_EQ(distance_verdict(4e-3, 1e-2, true).grade, Grade::watch);
-    EXPECT_EQ(distance_verdict(4e-3, 1e-2, false).grade, Grade::good);
-    EXPECT_EQ(distance_verdict(4e-3, 2e-3, true).grade, Grade::good);
-    EXPECT_EQ(distance_verdict(4e-3, -1e-2, true).grade, Grade::good);
-    EXPECT_EQ(distance_verdict(std::nan(""), 0.0, true).grade, Grade::unknown);
+    EXPECT_EQ(distance_status(4e-3, 1e-2, true).words, "at 1 mm in 0.3 s");
+    EXPECT_EQ(distance_status(4e-3, 1e-2, true).grade, Grade::watch);
+    EXPECT_EQ(distance_status(4e-3, 1e-2, false).grade, Grade::good);
+    EXPECT_EQ(distance_status(4e-3, 2e-3, true).grade, Grade::good);
+    EXPECT_EQ(distance_status(4e-3, -1e-2, true).grade, Grade::good);
+    EXPECT_EQ(distance_status(std::nan(""), 0.0, true).grade, Grade::unknown);
 }
 
-TEST(Verdicts, OfTheForceOnABurrSayHowLongItWasTooMuch) {
-    EXPECT_EQ(force_verdict(1.0, 0.0).words, "never above 2 N");
-    EXPECT_EQ(force_verdict(1.0, 3.21).words, "above 2 N for 3.2 s");
-    EXPECT_EQ(force_verdict(1.0, 3.21).grade, Grade::good);
-    EXPECT_EQ(force_verdict(2.1, 3.21).grade, Grade::watch);
+TEST(StatusTexts, of_the_force_on_a_burr_say_how_long_it_was_too_much) {
+    EXPECT_EQ(force_status(1.0, 0.0).words, "never above 2 N");
+    EXPECT_EQ(force_status(1.0, 3.21).words, "above 2 N for 3.2 s");
+    EXPECT_EQ(force_status(1.0, 3.21).grade, Grade::good);
+    EXPECT_EQ(force_status(2.1, 3.21).grade, Grade::watch);
 }
 
 }  // namespace

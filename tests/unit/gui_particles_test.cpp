@@ -55,7 +55,7 @@ void settle(Particles& particles, int steps) {
     for (int i = 0; i < steps; ++i) static_cast<void>(particles.step(0.01, kPlenty, Vec3::Zero(), {}));
 }
 
-TEST(SpeedGroups, HoldWhatTheLawSays) {
+TEST(SpeedGroups, hold_what_the_law_says) {
     EXPECT_EQ(speed_group(1.0F), 0U);
     EXPECT_EQ(speed_group(0.51F), 0U);
     EXPECT_EQ(speed_group(0.5F), 1U);  // 2^-(j+1) is left out, 2^-j is in
@@ -67,7 +67,7 @@ TEST(SpeedGroups, HoldWhatTheLawSays) {
     EXPECT_EQ(speed_group(std::nanf("")), kSpeedGroups - 1);
 }
 
-TEST(SpeedGroups, EachIsMovedHalfAsOftenAsTheOneBefore) {
+TEST(SpeedGroups, each_is_moved_half_as_often_as_the_one_before) {
     const GroupCounts held = {40000, 80000, 64000, 128000, 0, 512000, 0, 0, 0, 512000};
     const GroupCounts moves = moves_by_group(held, 60000.0);
     const auto share = [&](std::size_t j) {
@@ -82,7 +82,7 @@ TEST(SpeedGroups, EachIsMovedHalfAsOftenAsTheOneBefore) {
     EXPECT_NEAR(static_cast<double>(sum), 60000.0, 1.0);
 }
 
-TEST(SpeedGroups, AGroupThatIsMovedWholeLeavesItsShareToTheSlower) {
+TEST(SpeedGroups, a_group_that_is_moved_whole_leaves_its_share_to_the_slower) {
     const GroupCounts held = {100, 100, 100, 100, 100, 100, 100, 100, 100, 100};
     for (const double moves : {0.0, 1.0, 150.0, 420.0, 999.0, 1000.0, 5000.0}) {
         const GroupCounts made = moves_by_group(held, moves);
@@ -94,7 +94,7 @@ TEST(SpeedGroups, AGroupThatIsMovedWholeLeavesItsShareToTheSlower) {
     EXPECT_EQ(std::accumulate(none.begin(), none.end(), std::size_t{0}), 0U);
 }
 
-TEST(Particles, FallAsFarAsGravityTakesThem) {
+TEST(Particles, fall_as_far_as_gravity_takes_them) {
     const Box box;
     ParticleSettings settings = few();
     settings.drag_per_s = 0.0;
@@ -111,7 +111,7 @@ TEST(Particles, FallAsFarAsGravityTakesThem) {
     EXPECT_NEAR(fallen, 0.5 * 9.81 * 0.04 * 0.04, 2.0 * box.bricks.voxel_m);
 }
 
-TEST(Particles, LeaveThroughTheBottomOfTheSite) {
+TEST(Particles, leave_through_the_bottom_of_the_site) {
     const Box box;
     Particles particles(box.bricks, {}, few());
     for (int i = 0; i < 100; ++i)
@@ -121,7 +121,7 @@ TEST(Particles, LeaveThroughTheBottomOfTheSite) {
     expect_one_a_cell(particles);
 }
 
-TEST(Particles, DustMakesAPileAndWaterALake) {
+TEST(Particles, dust_makes_a_pile_and_water_a_lake) {
     const Box box;
     const auto height = [&](Matter matter) {
         Particles particles(box.bricks, box.density, few());
@@ -143,7 +143,7 @@ TEST(Particles, DustMakesAPileAndWaterALake) {
     EXPECT_LE(height(Matter::water), 2);
 }
 
-TEST(Particles, DustAndWaterMakePaste) {
+TEST(Particles, dust_and_water_make_paste) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     for (int i = 0; i < 60; ++i) ASSERT_TRUE(particles.emit(Matter::water, box.at(20, 9, 20), Vec3::Zero()));
@@ -160,7 +160,7 @@ TEST(Particles, DustAndWaterMakePaste) {
     expect_one_a_cell(particles);
 }
 
-TEST(Particles, SuctionTakesWhatIsNearUnlessItsTipIsInBone) {
+TEST(Particles, suction_takes_what_is_near_unless_its_tip_is_in_bone) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     for (int i = 0; i < 100; ++i) particles.drilled(i % 2 == 0 ? 19 : 21, 9, 20, 255, Vec3::Zero());
@@ -177,7 +177,7 @@ TEST(Particles, SuctionTakesWhatIsNearUnlessItsTipIsInBone) {
     EXPECT_TRUE(particles.ledger().balances());
 }
 
-TEST(Particles, LoseNoLevelOfBone) {
+TEST(Particles, lose_no_level_of_bone) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     SeededRandom random(3);
@@ -201,7 +201,7 @@ TEST(Particles, LoseNoLevelOfBone) {
     expect_one_a_cell(particles);
 }
 
-TEST(Particles, AreTheSameForTheSameSeed) {
+TEST(Particles, are_the_same_for_the_same_seed) {
     const Box box;
     const auto run = [&] {
         Particles particles(box.bricks, box.density, few());
@@ -224,7 +224,7 @@ Instant slow_now() {
     return instant_from_ns(slow_ns);
 }
 
-TEST(Particles, ArePutIntoTheTimeThereIs) {
+TEST(Particles, are_put_into_the_time_there_is) {
     const Box box;
     ParticleSettings settings = few();
     settings.now = &slow_now;
@@ -242,7 +242,7 @@ TEST(Particles, ArePutIntoTheTimeThereIs) {
     EXPECT_NEAR(cost, 400e-6, 40e-6);
 }
 
-TEST(Particles, ThatMatterLeastAreGivenUpWhereTimeIsShort) {
+TEST(Particles, that_matter_least_are_given_up_where_time_is_short) {
     const Box box;
     Particles particles(box.bricks, {}, few());
     for (int i = 0; i < 12000; ++i) {
@@ -263,7 +263,7 @@ TEST(Particles, ThatMatterLeastAreGivenUpWhereTimeIsShort) {
     EXPECT_LT(mean_m(), before_m);
 }
 
-TEST(Particles, KeepToANumberByGivingUpTheLeastImportant) {
+TEST(Particles, keep_to_a_number_by_giving_up_the_least_important) {
     const Box box;
     Particles particles(box.bricks, {}, few());
     for (int i = 0; i < 12000; ++i) {
@@ -287,7 +287,7 @@ TEST(Particles, KeepToANumberByGivingUpTheLeastImportant) {
     EXPECT_LE(particles.all().size(), 20000U);
 }
 
-TEST(Particles, AreCarriedOutOfAHeadThatTurnsAlongItsTurn) {
+TEST(Particles, are_carried_out_of_a_head_that_turns_along_its_turn) {
     const Box box;
     Particles particles(box.bricks, {}, {.most = 20000, .margin = 4, .gravity_m_s2 = Vec3(0.0, -1e-6, 0.0)});
     const Vec3 centre = box.at(20, 20, 20);
@@ -312,7 +312,7 @@ TEST(Particles, AreCarriedOutOfAHeadThatTurnsAlongItsTurn) {
     EXPECT_EQ(particles.step(1e-3, kPlenty, centre, {}, broken).alive, 125U);
 }
 
-TEST(Particles, RefuseWhatCannotBe) {
+TEST(Particles, refuse_what_cannot_be) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     EXPECT_FALSE(particles.emit(Matter::water, Vec3(std::nan(""), 0, 0), Vec3::Zero()));

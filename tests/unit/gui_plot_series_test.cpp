@@ -25,7 +25,7 @@ Extremes of(const std::vector<PlotBin>& bins) {
     return e;
 }
 
-TEST(PlotSeries, EveryWindowShowsTheExtremesOfItsSamplesAndOfNothingFarOutside) {
+TEST(PlotSeries, every_window_shows_the_extremes_of_its_samples_and_of_nothing_far_outside) {
     PlotSeries series;
     std::mt19937 random(7);
     std::normal_distribution<float> noise(0.0F, 1.0F);
@@ -57,7 +57,7 @@ TEST(PlotSeries, EveryWindowShowsTheExtremesOfItsSamplesAndOfNothingFarOutside) 
     }
 }
 
-TEST(PlotSeries, AnyWindowOfAnHourFindsTheSpikeWhereItWas) {
+TEST(PlotSeries, any_window_of_an_hour_finds_the_spike_where_it_was) {
     PlotSeries series;
     for (int i = 0; i < 36'000; ++i) series.add(0.1 * i, i == 20'000 ? 5.0 : 1.0);
     std::vector<PlotBin> bins;
@@ -72,7 +72,7 @@ TEST(PlotSeries, AnyWindowOfAnHourFindsTheSpikeWhereItWas) {
     EXPECT_EQ(found, 1);
 }
 
-TEST(PlotSeries, BinsComeInOrderAndDoNotOverlap) {
+TEST(PlotSeries, bins_come_in_order_and_do_not_overlap) {
     PlotSeries series;
     for (int i = 0; i < 50'000; ++i) series.add(0.016 * i, std::sin(0.01 * i));
     std::vector<PlotBin> bins;
@@ -82,7 +82,7 @@ TEST(PlotSeries, BinsComeInOrderAndDoNotOverlap) {
         EXPECT_GE(bins[i].t_s, bins[i - 1].t_s + bins[i - 1].width_s - 1e-9);
 }
 
-TEST(PlotSeries, MemoryDoesNotGrow) {
+TEST(PlotSeries, memory_does_not_grow) {
     PlotSeries series;
     const std::size_t before = series.memory_bytes();
     for (int i = 0; i < 100'000; ++i) series.add(i, i);
@@ -90,7 +90,7 @@ TEST(PlotSeries, MemoryDoesNotGrow) {
     EXPECT_LT(before, 128U * 1024U);
 }
 
-TEST(PlotSeries, ValuesThatAreNoNumbersAndTimesThatFallAreLeftOut) {
+TEST(PlotSeries, values_that_are_no_numbers_and_times_that_fall_are_left_out) {
     PlotSeries series;
     series.add(1.0, std::nan(""));
     series.add(1.0, std::numeric_limits<double>::infinity());
@@ -108,7 +108,7 @@ TEST(PlotSeries, ValuesThatAreNoNumbersAndTimesThatFallAreLeftOut) {
     EXPECT_TRUE(bins.empty());
 }
 
-TEST(PlotAxis, LinearAxisCoversTheValueWithRoundMarks) {
+TEST(PlotAxis, linear_axis_covers_the_value_with_round_marks) {
     for (const double high : {0.003, 0.9, 1.0, 1.05, 7.3, 20.0, 999.0, 123456.0}) {
         const Axis axis = linear_axis(high, 4);
         EXPECT_GE(axis.high, high * (1.0 - 1e-9));
@@ -121,7 +121,7 @@ TEST(PlotAxis, LinearAxisCoversTheValueWithRoundMarks) {
     EXPECT_EQ(linear_axis(std::nan(""), 4).high, 1.0);
 }
 
-TEST(PlotAxis, LogAxisSpansWholeDecades) {
+TEST(PlotAxis, log_axis_spans_whole_decades) {
     const Axis axis = log_axis(2.7, 180.0);
     EXPECT_DOUBLE_EQ(axis.low, 1.0);
     EXPECT_DOUBLE_EQ(axis.high, 1000.0);
@@ -129,7 +129,7 @@ TEST(PlotAxis, LogAxisSpansWholeDecades) {
     EXPECT_GT(log_axis(0.0, 0.0).high, log_axis(0.0, 0.0).low);
 }
 
-TEST(Numbers, ThatRoundToNothingHaveNoSign) {
+TEST(Numbers, that_round_to_nothing_have_no_sign) {
     EXPECT_EQ(fixed(-0.004, 2), "0.00");
     EXPECT_EQ(fixed(-0.0, 4), "0.0000");
     EXPECT_EQ(fixed(-0.4, 0), "0");

@@ -40,7 +40,7 @@ Structure crowd(std::size_t atoms, unsigned seed) {
     return s;
 }
 
-TEST(Bonds, AreThoseThatTryingEveryPairFinds) {
+TEST(Bonds, are_those_that_trying_every_pair_finds) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         const Structure s = crowd(1200, seed);
         std::vector<Bond> expected;
@@ -52,7 +52,7 @@ TEST(Bonds, AreThoseThatTryingEveryPairFinds) {
     }
 }
 
-TEST(Bonds, OfAPeptideAreThoseOfTheTextbook) {
+TEST(Bonds, of_a_peptide_are_those_of_the_textbook) {
     // Glycine and the nitrogen of the next residue; a water-like oxygen and an ion beside them.
     Structure s;
     add(s, 7, {0.0, 0.0, 0.0});
@@ -65,7 +65,7 @@ TEST(Bonds, OfAPeptideAreThoseOfTheTextbook) {
     EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}, {1, 2}, {2, 3}, {2, 4}}));
 }
 
-TEST(Bonds, JoinSulphursOfDistantResiduesAndChains) {
+TEST(Bonds, join_sulphurs_of_distant_residues_and_chains) {
     Structure s;
     add(s, 16, {0.0, 0.0, 0.0}, 5, 0);
     add(s, 16, {2.05, 0.0, 0.0}, 90, 1);
@@ -73,7 +73,7 @@ TEST(Bonds, JoinSulphursOfDistantResiduesAndChains) {
     EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}}));
 }
 
-TEST(Bonds, OfAHeapOfAtomsStayLinear) {
+TEST(Bonds, of_a_heap_of_atoms_stay_linear) {
     // All within half an ångström and more: every pair would be a bond, two hundred million of them.
     std::mt19937 random(7);
     std::uniform_real_distribution<double> place(0.0, 1.5);
@@ -87,7 +87,7 @@ TEST(Bonds, OfAHeapOfAtomsStayLinear) {
     (void)find_bonds(far);
 }
 
-TEST(Elements, HaveTheColoursOfJmol) {
+TEST(Elements, have_the_colours_of_jmol) {
     EXPECT_EQ(element_colour(7), (Rgb8{0x30, 0x50, 0xF8}));
     EXPECT_EQ(element_colour(8), (Rgb8{0xFF, 0x0D, 0x0D}));
     EXPECT_EQ(element_colour(26), (Rgb8{0xE0, 0x66, 0x33}));
@@ -102,7 +102,7 @@ TEST(Elements, HaveTheColoursOfJmol) {
                   4.8);
 }
 
-TEST(Shapes, CarbonHasTheColourOfItsChainTheOthersTheirOwn) {
+TEST(Shapes, carbon_has_the_colour_of_its_chain_the_others_their_own) {
     Structure s;
     add(s, 6, {0.0, 0.0, 0.0}, 1, 0);
     add(s, 6, {1.5, 0.0, 0.0}, 1, 1);
@@ -116,7 +116,7 @@ TEST(Shapes, CarbonHasTheColourOfItsChainTheOthersTheirOwn) {
     EXPECT_NEAR(spheres[1].centre_a[0], 1.5F, 1e-6F);
 }
 
-TEST(Shapes, AnAtomWithoutBondsIsSeenAmongSticks) {
+TEST(Shapes, an_atom_without_bonds_is_seen_among_sticks) {
     Structure s;
     add(s, 6, {0.0, 0.0, 0.0});
     add(s, 6, {1.5, 0.0, 0.0});
@@ -127,7 +127,7 @@ TEST(Shapes, AnAtomWithoutBondsIsSeenAmongSticks) {
     EXPECT_GT(sticks[1].radius_a, 2.0F * kStickRadiusA);
 }
 
-TEST(Shapes, TheTraceIsBrokenWhereTheTubeIs) {
+TEST(Shapes, the_trace_is_broken_where_the_tube_is) {
     Structure s;
     for (int i = 0; i < 10; ++i) add(s, 6, {3.8 * i + (i > 4 ? 30.0 : 0.0), 0.0, 0.0}, i, i > 7 ? 1 : 0);
     s.trace.assign(s.size(), 1);
@@ -147,7 +147,7 @@ std::pair<float, float> extent(const TubeMesh& mesh, const Eigen::Vector3f& from
     return found;
 }
 
-TEST(TouchMarks, ReachFromTheProbeToTheProxyAndAsFarAsThePlanePushes) {
+TEST(TouchMarks, reach_from_the_probe_to_the_proxy_and_as_far_as_the_plane_pushes) {
     DrawnTouch touch;
     touch.probe_model_m = kAngstromM * Vec3(10.0, -4.0, 0.0);
     touch.proxy_model_m = kAngstromM * Vec3(10.0, 6.0, 0.0);
@@ -167,7 +167,7 @@ TEST(TouchMarks, ReachFromTheProbeToTheProxyAndAsFarAsThePlanePushes) {
     EXPECT_TRUE(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F).index.empty());
 }
 
-TEST(Detail, ViridisGoesFromDarkVioletToYellowAndGetsLighterAllTheWay) {
+TEST(Detail, viridis_goes_from_dark_violet_to_yellow_and_gets_lighter_all_the_way) {
     EXPECT_EQ(viridis(-3.0F), viridis(0.0F));
     EXPECT_EQ(viridis(std::nanf("")), viridis(0.0F));
     EXPECT_NEAR(viridis(0.0F)[0], 68, 6);
@@ -183,7 +183,7 @@ TEST(Detail, ViridisGoesFromDarkVioletToYellowAndGetsLighterAllTheWay) {
     }
 }
 
-TEST(Detail, TheDrawnSurfaceIsFineAroundTheProbeAndTheColourSaysSo) {
+TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) {
     SceneWriter out;
     SurfaceInput input;
     input.mesh = smooth_sphere(20);
@@ -197,14 +197,14 @@ TEST(Detail, TheDrawnSurfaceIsFineAroundTheProbeAndTheColourSaysSo) {
     content.detail.reset(new SurfaceDetail{std::move(file), surface, forest});
 
     DetailCut cut(content);
-    const auto settled = [&](const DetailWish& wish) {
-        DetailMesh made = cut.step(wish);
-        for (int i = 0; i < 100 && !made.settled; ++i) made = cut.step(wish);
+    const auto settled = [&](const DetailRequest& request) {
+        DetailMesh made = cut.step(request);
+        for (int i = 0; i < 100 && !made.settled; ++i) made = cut.step(request);
         EXPECT_TRUE(made.settled);
         return made;
     };
-    DetailWish wish{Vec3(0.0, 0.0, 0.05), 0.01, {}};
-    const DetailMesh seen = settled(wish);
+    DetailRequest request{Vec3(0.0, 0.0, 0.05), 0.01, {}};
+    const DetailMesh seen = settled(request);
     EXPECT_LT(seen.triangles, 6000U);  // of 8000
     EXPECT_EQ(seen.mesh.index.size(), std::size_t{3} * seen.triangles);
     EXPECT_EQ(seen.mesh.vertex.size(), seen.vertices);
@@ -219,7 +219,7 @@ TEST(Detail, TheDrawnSurfaceIsFineAroundTheProbeAndTheColourSaysSo) {
                               normal(v.normal);
         EXPECT_NEAR(normal.norm(), 1.0F, 1e-4F);
         EXPECT_GT(normal.dot(at.normalized()), 0.7F);
-        const bool around = (at - wish.probe_m.cast<float>()).norm() < 0.008F;
+        const bool around = (at - request.probe_m.cast<float>()).norm() < 0.008F;
         if (around) {
             near += v.rgba[1];
             nears += 1.0;
@@ -231,11 +231,11 @@ TEST(Detail, TheDrawnSurfaceIsFineAroundTheProbeAndTheColourSaysSo) {
     ASSERT_GT(nears, 0.0);
     ASSERT_GT(fars, 0.0);
     EXPECT_GT(near / nears, far / fars + 40.0);
-    wish.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
-    EXPECT_GT(settled(wish).triangles, seen.triangles);
+    request.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
+    EXPECT_GT(settled(request).triangles, seen.triangles);
     // The same wish, the same cut, wherever it was before.
-    wish.form = {};
-    EXPECT_EQ(settled(wish).triangles, seen.triangles);
+    request.form = {};
+    EXPECT_EQ(settled(request).triangles, seen.triangles);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ std::size_t count(const Site& site, Matter matter) {
         std::count_if(all.begin(), all.end(), [matter](const Particle& p) { return p.matter == matter; }));
 }
 
-TEST(Site, DustIsWhatTheBoneLost) {
+TEST(Site, dust_is_what_the_bone_lost) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     std::uint64_t lost = 0;
@@ -97,7 +97,7 @@ TEST(Site, DustIsWhatTheBoneLost) {
     EXPECT_EQ(site.particles().ledger().drilled, lost);
 }
 
-TEST(Site, WaterComesWhileTheBurrIsSprayedAndNotFasterThanTheParticlesAllow) {
+TEST(Site, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_particles_allow) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
@@ -113,7 +113,7 @@ TEST(Site, WaterComesWhileTheBurrIsSprayedAndNotFasterThanTheParticlesAllow) {
     EXPECT_LE(count(flooded, Matter::water), 7500U);
 }
 
-TEST(Site, AnOpenedVesselBleedsAndBoneFarFromOneDoesNot) {
+TEST(Site, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     static_cast<void>(bone.cut(30, 24, 23, 240));
@@ -128,7 +128,7 @@ TEST(Site, AnOpenedVesselBleedsAndBoneFarFromOneDoesNot) {
     EXPECT_GT(count(site, Matter::blood), 100U);
 }
 
-TEST(Site, MarrowStainsAndIsSealedByPaste) {
+TEST(Site, marrow_stains_and_is_sealed_by_paste) {
     Block bone;
     for (auto& v : bone.density) v = v > 0 ? 120 : 0;
     Bleeding bleeding(bone.view.bricks, {}, {}, 1);
@@ -153,47 +153,47 @@ TEST(Site, MarrowStainsAndIsSealedByPaste) {
     EXPECT_EQ(bleeding.wounds(), 0U);
 }
 
-TEST(Site, TheSuckerTakesWhatIsAtItsTip) {
+TEST(Site, the_sucker_takes_what_is_at_its_tip) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
     bone.drill.hand[0].irrigation = 0.0F;
     const std::size_t there = count(site, Matter::water);
-    DrillHand& sucker = bone.drill.hand[1];
-    sucker.kind = DrillKind::sucker;
-    sucker.radius_m = 3e-3F;
+    DrillHand& suction_tube = bone.drill.hand[1];
+    suction_tube.kind = DrillKind::suction_tube;
+    suction_tube.radius_m = 3e-3F;
     const Vec3 tip = bone.view.bricks.to_model(Vec3(24, 24, 27));
-    std::copy(tip.begin(), tip.end(), sucker.pos_model_m);
+    std::copy(tip.begin(), tip.end(), suction_tube.pos_model_m);
     Site::Frame frame = bone.frame();
     for (int i = 0; i < 25; ++i) site.step(frame);
     const std::size_t without = count(site, Matter::water);
-    sucker.suction = 1.0F;
+    suction_tube.suction = 1.0F;
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
     EXPECT_LT(count(site, Matter::water), without / 2);
     EXPECT_GT(without, there / 4);
-    EXPECT_FALSE(site.figures().suction_blocked);
-    sucker.pos_model_m[2] = bone.view.bricks.to_model(Vec3(24, 24, 8)).z();
+    EXPECT_FALSE(site.metrics().suction_blocked);
+    suction_tube.pos_model_m[2] = bone.view.bricks.to_model(Vec3(24, 24, 8)).z();
     site.step(bone.frame());
-    EXPECT_TRUE(site.figures().suction_blocked);
+    EXPECT_TRUE(site.metrics().suction_blocked);
 }
 
-TEST(Site, TheLevelBoundsHowManyThereAre) {
+TEST(Site, the_level_bounds_how_many_there_are) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
     Site::Frame frame = bone.frame();
     for (int i = 0; i < 60; ++i) site.step(frame);
-    EXPECT_GT(site.figures().alive, 3000U);
+    EXPECT_GT(site.metrics().alive, 3000U);
     frame.level = 0.02F;
     // What is too much goes within the time of a step: how many steps that takes hangs on the machine.
-    for (int i = 0; i < 2000 && site.figures().alive > 2000; ++i) site.step(frame);
-    EXPECT_LE(site.figures().alive, 2000U);
-    EXPECT_EQ(site.figures().most, Site::kMost);
+    for (int i = 0; i < 2000 && site.metrics().alive > 2000; ++i) site.step(frame);
+    EXPECT_LE(site.metrics().alive, 2000U);
+    EXPECT_EQ(site.metrics().most, Site::kMost);
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(Site, ShowsNoMoreThanALowerLevelAllowsFromItsFirstFrameOn) {
+TEST(Site, shows_no_more_than_a_lower_level_allows_from_its_first_frame_on) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     site.keep(30000);
@@ -205,7 +205,7 @@ TEST(Site, ShowsNoMoreThanALowerLevelAllowsFromItsFirstFrameOn) {
     frame.level = 0.01F;
     site.step(frame);
     EXPECT_LE(site.particles().shown().size(), Site::kMost / 100);
-    EXPECT_EQ(site.figures().shown, site.particles().shown().size());
+    EXPECT_EQ(site.metrics().shown, site.particles().shown().size());
     EXPECT_GT(site.particles().all().size(), before / 2);  // no frame has the time to give them all up
     EXPECT_TRUE(site.particles().ledger().balances());
     frame.level = 1.0F;
@@ -213,7 +213,7 @@ TEST(Site, ShowsNoMoreThanALowerLevelAllowsFromItsFirstFrameOn) {
     EXPECT_EQ(site.particles().shown().size(), site.particles().all().size());
 }
 
-TEST(Site, KeepsAsManyAsAMeasurementWantsWhileTheyRunOff) {
+TEST(Site, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     bone.drill.hand[1].suction = 1.0F;
@@ -235,7 +235,7 @@ TEST(Site, KeepsAsManyAsAMeasurementWantsWhileTheyRunOff) {
     EXPECT_LE(site.particles().all().size(), Site::kMost);
 }
 
-TEST(Site, SurvivesWhatAControllerMaySend) {
+TEST(Site, survives_what_a_controller_may_send) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     Site::Frame frame = bone.frame();
@@ -259,7 +259,7 @@ TEST(Site, SurvivesWhatAControllerMaySend) {
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(BurrSight, BloodAndBoneHideTheHeadAndWaterDoesNot) {
+TEST(BurrSight, blood_and_bone_hide_the_head_and_water_does_not) {
     const Block bone;
     const auto seen = [&](Matter matter, int layers) {
         Particles particles(bone.view.bricks, bone.density,
@@ -283,7 +283,7 @@ TEST(BurrSight, BloodAndBoneHideTheHeadAndWaterDoesNot) {
     EXPECT_EQ(share_seen(none, head, 1.5e-3, Vec3::Constant(std::nan(""))), 0.0);
 }
 
-TEST(ParticlesBench, SaysWhatAMoveCostsAndHowWellABudgetIsKept) {
+TEST(ParticlesBench, says_what_a_move_costs_and_how_well_a_budget_is_kept) {
     EXPECT_EQ(ParticlesBenchSettings{}.counts, (std::vector<std::uint32_t>{1000, 10000, 100000, 200000}));
     const auto all = bench_particles({.counts = {1000, 10000, 100000}, .steps = 8, .budget_s = 1e-5});
     for (const char* const key :
@@ -297,23 +297,23 @@ TEST(ParticlesBench, SaysWhatAMoveCostsAndHowWellABudgetIsKept) {
     EXPECT_EQ(all["particle_budget_error"], all["particle_budget_error_100000"]);
 }
 
-TEST(Site, CountsHowLongTheBurrWasSeenWhileItDrilled) {
+TEST(Site, counts_how_long_the_burr_was_seen_while_it_drilled) {
     Block bone;
     Site site(bone.view, bone.labels, 1.0);
     DrillHand& burr = bone.drill.hand[0];
     for (int i = 0; i < 10; ++i) site.step(bone.frame());
-    EXPECT_EQ(site.figures().drilling_s, 0.0);  // it stands
+    EXPECT_EQ(site.metrics().drilling_s, 0.0);  // it stands
     burr.burr_rad_s = 3000.0F;
     burr.depth = 0.3F;
     for (int i = 0; i < 50; ++i) site.step(bone.frame());
-    EXPECT_NEAR(site.figures().drilling_s, 1.0, 1e-9);
-    EXPECT_NEAR(site.figures().seen_s, 1.0, 1e-9);
+    EXPECT_NEAR(site.metrics().drilling_s, 1.0, 1e-9);
+    EXPECT_NEAR(site.metrics().seen_s, 1.0, 1e-9);
     Site::Frame from_below = bone.frame();
     from_below.eye_model_m = bone.view.bricks.to_model(Vec3(24, 24, -200));
     bone.place(24, 24, 20);
     for (int i = 0; i < 50; ++i) site.step(from_below);
-    EXPECT_NEAR(site.figures().drilling_s, 2.0, 1e-9);
-    EXPECT_LT(site.figures().seen_s, 1.1);
+    EXPECT_NEAR(site.metrics().drilling_s, 2.0, 1e-9);
+    EXPECT_LT(site.metrics().seen_s, 1.1);
 }
 
 }  // namespace

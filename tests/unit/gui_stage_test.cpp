@@ -48,7 +48,7 @@ ScreenPlace leaning() {
             at + turn * Vec3(-0.6, 0.3375, 0.0)};
 }
 
-TEST(Screen, APlaceInTheRoomIsDrawnWhereEachEyeLooksThroughTheGlassAtIt) {
+TEST(Screen, a_place_in_the_room_is_drawn_where_each_eye_looks_through_the_glass_at_it) {
     SeededRandom random(11);
     for (const ScreenPlace& screen : {ScreenPlace::of_size(0.53, 0.298), leaning()}) {
         ASSERT_TRUE(screen.possible());
@@ -82,7 +82,7 @@ TEST(Screen, APlaceInTheRoomIsDrawnWhereEachEyeLooksThroughTheGlassAtIt) {
     }
 }
 
-TEST(Screen, WhatIsOnTheGlassStaysInPlaceForEveryEye) {
+TEST(Screen, what_is_on_the_glass_stays_in_place_for_every_eye) {
     SeededRandom random(4);
     const ScreenPlace screen = leaning();
     Camera camera;
@@ -98,7 +98,7 @@ TEST(Screen, WhatIsOnTheGlassStaysInPlaceForEveryEye) {
                       0.05);
 }
 
-TEST(Screen, OrbitingShowsWhatTheWindowShowsToAnEyeInItsMiddle) {
+TEST(Screen, orbiting_shows_what_the_window_shows_to_an_eye_in_its_middle) {
     Camera camera;
     camera.frame(40.0F);
     camera.rotate(150.0F, 40.0F, 700.0F);
@@ -114,7 +114,7 @@ TEST(Screen, OrbitingShowsWhatTheWindowShowsToAnEyeInItsMiddle) {
         EXPECT_LT((drawn_at(stereo, p) - drawn_at(window, p)).norm(), 0.1);
 }
 
-TEST(Screen, EyesAreSwappedAndAnEyeInTheGlassIsTakenOutOfIt) {
+TEST(Screen, eyes_are_swapped_and_an_eye_in_the_glass_is_taken_out_of_it) {
     const Pose head{Vec3(0.1, 0.0, 0.6), Quat::Identity()};
     const auto plain = eyes_of(head, {}), swapped = eyes_of(head, {.swapped = true});
     EXPECT_LT(plain[0].x(), plain[1].x());
@@ -142,7 +142,7 @@ HeadTopic head_at(double x_m, double speed_m_s, std::int64_t taken_at_ns, std::u
 constexpr std::int64_t kMs = 1'000'000;
 const Pose kRest{Vec3(0.0, 0.0, 0.6), Quat::Identity()};
 
-TEST(HeadView, TakesAMovingHeadToTheTimeOfDisplay) {
+TEST(HeadView, takes_a_moving_head_to_the_time_of_display) {
     HeadView view(kRest);
     for (std::int64_t t = 1; t < 2000; t += 10) {
         const HeadTopic h = head_at(0.5e-9 * static_cast<double>((t - 4) * kMs), 0.5, (t - 4) * kMs);
@@ -156,7 +156,7 @@ TEST(HeadView, TakesAMovingHeadToTheTimeOfDisplay) {
     EXPECT_LT(view.pose().p_m.x(), 1.0 + 0.5 * 0.05 + 1e-3);
 }
 
-TEST(HeadView, ALostHeadFreezesTheViewAndItsReturnIsNoLeap) {
+TEST(HeadView, a_lost_head_freezes_the_view_and_its_return_is_no_leap) {
     HeadView view(kRest);
     EXPECT_EQ(view.follow(nullptr, kMs, 20 * kMs).p_m, kRest.p_m);
     EXPECT_EQ(view.sight(), HeadSight::none);
@@ -188,7 +188,7 @@ TEST(HeadView, ALostHeadFreezesTheViewAndItsReturnIsNoLeap) {
     EXPECT_NEAR(view.pose().p_m.x(), -0.1, 1e-3);
 }
 
-TEST(StageFile, SaysWhereAllIs) {
+TEST(StageFile, says_where_all_is) {
     const StageSettings s = read_stage_text(R"(
 mode = "two-windows"
 monitors = [1, 2]
@@ -222,7 +222,7 @@ quat_screen_world_xyzw = [0.0, 1.0, 0.0, 0.0]
     EXPECT_TRUE(read_stage_text("mode = \"side-by-side\"\nmonitors = [0]", "a").own_windows());
 }
 
-TEST(StageFile, WhatIsWrongIsNamed) {
+TEST(StageFile, what_is_wrong_is_named) {
     const auto says = [](const char* text, const char* word) {
         try {
             static_cast<void>(read_stage_text(text, "wall.toml"));
@@ -249,7 +249,7 @@ TEST(StageFile, WhatIsWrongIsNamed) {
     EXPECT_THROW(static_cast<void>(read_stage_file("no/such/file.toml")), StartupError);
 }
 
-TEST(Stereo, EachEyeHasItsPartOfTheOutput) {
+TEST(Stereo, each_eye_has_its_part_of_the_output) {
     const PixelArea left = area_of_eye(StereoMode::side_by_side, 0, 1921, 1080),
                     right = area_of_eye(StereoMode::side_by_side, 1, 1921, 1080);
     EXPECT_EQ(left.width_px, right.width_px);

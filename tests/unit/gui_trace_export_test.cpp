@@ -45,7 +45,7 @@ protected:
     TraceExport out_;
 };
 
-TEST_F(Export, WritesWhatIsSeenAndSaysWhere) {
+TEST_F(Export, writes_what_is_seen_and_says_where) {
     traces_.scope.set_span(0.5);
     traces_.scope.zoom(0.5, traces_.scope.end_ns());
     traces_.export_wanted = true;
@@ -67,7 +67,7 @@ TEST_F(Export, WritesWhatIsSeenAndSaysWhere) {
     EXPECT_NE(last.find(",3000,"), std::string::npos) << last;
 }
 
-TEST_F(Export, AFolderThatIsGoneIsSaidInWords) {
+TEST_F(Export, a_folder_that_is_gone_is_said_in_words) {
     std::filesystem::remove_all(folder_);
     traces_.export_wanted = true;
     out_.follow(traces_);
@@ -76,7 +76,7 @@ TEST_F(Export, AFolderThatIsGoneIsSaidInWords) {
     EXPECT_NE(traces_.said.find("mend:"), std::string::npos) << traces_.said;
 }
 
-TEST_F(Export, NoPartOfAFileStaysWhereItCannotBeWritten) {
+TEST_F(Export, no_part_of_a_file_stays_where_it_cannot_be_written) {
     EXPECT_THROW(write_whole_file((folder_ / "none" / "such.csv").string(), "x"), StartupError);
     std::filesystem::create_directory(folder_ / "taken.csv");
     EXPECT_THROW(write_whole_file((folder_ / "taken.csv").string(), "x"), StartupError);

@@ -43,7 +43,7 @@ protected:
     std::int64_t cycle_ = 0;
 };
 
-TEST_F(TracesPanel, OpenInPlaceOfThePlotsHigherThanThey) {
+TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
     const float before = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, false).plots.height;
     open();
     EXPECT_GT(layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true).plots.height, 1.4F * before);
@@ -51,7 +51,7 @@ TEST_F(TracesPanel, OpenInPlaceOfThePlotsHigherThanThey) {
     EXPECT_EQ(desk_.state.strip, 0);
 }
 
-TEST_F(TracesPanel, PauseHoldsThePictureStillAndRunGoesOn) {
+TEST_F(TracesPanel, pause_holds_the_picture_still_and_run_goes_on) {
     open();
     desk_.click(kCard, "Pause");
     EXPECT_TRUE(scope().held());
@@ -63,7 +63,7 @@ TEST_F(TracesPanel, PauseHoldsThePictureStillAndRunGoesOn) {
     EXPECT_GT(scope().end_ns(), end_ns);
 }
 
-TEST_F(TracesPanel, ArmedForASingleCaptureItWaitsAndCapturesOnce) {
+TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
     open();
     TriggerSettings s = scope().trigger();
     s.channel = TraceChannel::force_x;
@@ -85,7 +85,7 @@ TEST_F(TracesPanel, ArmedForASingleCaptureItWaitsAndCapturesOnce) {
     EXPECT_STREQ(scope().status(), "captured");
 }
 
-TEST_F(TracesPanel, TheEdgeIsTurnedByAClick) {
+TEST_F(TracesPanel, the_edge_is_turned_by_a_click) {
     open();
     desk_.click(kCard, "normal");
     EXPECT_TRUE(scope().trigger().rising);
@@ -93,7 +93,7 @@ TEST_F(TracesPanel, TheEdgeIsTurnedByAClick) {
     EXPECT_FALSE(scope().trigger().rising);
 }
 
-TEST_F(TracesPanel, DraggingMovesACursorWhereOneIsAndElseThePicture) {
+TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
     open();
     desk_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
@@ -114,7 +114,7 @@ TEST_F(TracesPanel, DraggingMovesACursorWhereOneIsAndElseThePicture) {
     EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
 }
 
-TEST_F(TracesPanel, TheWheelLooksNearerAboutTheMouse) {
+TEST_F(TracesPanel, the_wheel_looks_nearer_about_the_mouse) {
     open();
     desk_.click(kCard, "Pause");
     const ImVec2 at = on_lanes(0.5F);
@@ -125,7 +125,7 @@ TEST_F(TracesPanel, TheWheelLooksNearerAboutTheMouse) {
     EXPECT_NEAR(scope().span_s(), before, 1e-6);
 }
 
-TEST_F(TracesPanel, ExportAsksTheApplication) {
+TEST_F(TracesPanel, export_asks_the_application) {
     desk_.click(kCard, "Traces");
     desk_.click(kCard, "Export");
     EXPECT_FALSE(desk_.state.traces.export_wanted);  // there is nothing yet
@@ -134,7 +134,7 @@ TEST_F(TracesPanel, ExportAsksTheApplication) {
     EXPECT_TRUE(desk_.state.traces.export_wanted);
 }
 
-TEST_F(TracesPanel, NothingKnownGarbageAndEveryModeAreDrawn) {
+TEST_F(TracesPanel, nothing_known_garbage_and_every_mode_are_drawn) {
     for (int strip : {0, 1}) {
         desk_.state.strip = strip;
         desk_.frame();

@@ -27,7 +27,7 @@ TraceTopic cycle_at(std::int64_t number, double force_n = 0.0, std::int32_t cost
     return t;
 }
 
-TEST(TraceStore, ExtremesOfAnyStretchAreThoseOfItsCycles) {
+TEST(TraceStore, extremes_of_any_stretch_are_those_of_its_cycles) {
     TraceStore store;
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 1.0);
@@ -54,7 +54,7 @@ TEST(TraceStore, ExtremesOfAnyStretchAreThoseOfItsCycles) {
     }
 }
 
-TEST(TraceStore, FindsTimesAndGapsAndRefusesWhatCannotBe) {
+TEST(TraceStore, finds_times_and_gaps_and_refuses_what_cannot_be) {
     TraceStore store;
     EXPECT_TRUE(store.empty());
     EXPECT_EQ(store.find(5), 0U);
@@ -87,7 +87,7 @@ double triangle_n(std::int64_t i) {
     return phase < 100.0 ? -1.0 + 0.02 * phase : 1.0 - 0.02 * (phase - 100.0);
 }
 
-TEST(TraceTrigger, FiresWhereTheChannelCrossesItsLevelInTheChosenDirection) {
+TEST(TraceTrigger, fires_where_the_channel_crosses_its_level_in_the_chosen_direction) {
     for (const bool rising : {true, false}) {
         TraceTrigger trigger;
         trigger.arm(
@@ -106,7 +106,7 @@ TEST(TraceTrigger, FiresWhereTheChannelCrossesItsLevelInTheChosenDirection) {
     }
 }
 
-TEST(TraceTrigger, NormalCapturesAgainAndAgainAndAutomaticDoesNotWaitForEver) {
+TEST(TraceTrigger, normal_captures_again_and_again_and_automatic_does_not_wait_for_ever) {
     TraceTrigger normal;
     normal.arm({TriggerSource::channel, TraceChannel::force_x, true, 0.5, TriggerMode::normal, 0.0, 0.1});
     int captures = 0;
@@ -130,7 +130,7 @@ TEST(TraceTrigger, NormalCapturesAgainAndAgainAndAutomaticDoesNotWaitForEver) {
     EXPECT_EQ(forced, 4);  // every half second
 }
 
-TEST(TraceTrigger, FiresOnAnOverrunAndOnTheBeginningOfAFault) {
+TEST(TraceTrigger, fires_on_an_overrun_and_on_the_beginning_of_a_fault) {
     TraceTrigger overrun;
     overrun.arm({TriggerSource::overrun, TraceChannel::force, true, 0.0, TriggerMode::normal, 0.5, 0.02});
     std::vector<std::int64_t> at;
@@ -153,7 +153,7 @@ TEST(TraceTrigger, FiresOnAnOverrunAndOnTheBeginningOfAFault) {
     EXPECT_EQ(captures, 1);
 }
 
-TEST(TraceTrigger, NonsenseSettingsAndValuesTriggerNothing) {
+TEST(TraceTrigger, nonsense_settings_and_values_trigger_nothing) {
     TraceTrigger trigger;
     trigger.arm({TriggerSource::channel, TraceChannel::force_x, true, std::nan(""), TriggerMode::normal,
                  std::nan(""), std::nan("")});
@@ -164,7 +164,7 @@ TEST(TraceTrigger, NonsenseSettingsAndValuesTriggerNothing) {
     EXPECT_FALSE(trigger.add(cycle_at(7000, 1.0), kPeriod));
 }
 
-TEST(TraceScope, RollsHoldsZoomsAndPansAndGoesOn) {
+TEST(TraceScope, rolls_holds_zooms_and_pans_and_goes_on) {
     TraceScope scope;
     std::int64_t i = 1;
     for (; i <= 5000; ++i) scope.add(cycle_at(i, triangle_n(i)), kPeriod);
@@ -199,7 +199,7 @@ TEST(TraceScope, RollsHoldsZoomsAndPansAndGoesOn) {
     EXPECT_EQ(scope.end_ns(), cycle_at(9000).taken_at_ns);
 }
 
-TEST(TraceScope, ShowsACaptureWhereItWasTriggeredAndKeepsItUntilTheNext) {
+TEST(TraceScope, shows_a_capture_where_it_was_triggered_and_keeps_it_until_the_next) {
     TraceScope scope;
     TriggerSettings s;
     s.channel = TraceChannel::force_x;
@@ -229,7 +229,7 @@ TEST(TraceScope, ShowsACaptureWhereItWasTriggeredAndKeepsItUntilTheNext) {
     EXPECT_STREQ(scope.status(), "paused");
 }
 
-TEST(TraceScope, MemoryIsTakenOnce) {
+TEST(TraceScope, memory_is_taken_once) {
     TraceScope scope;
     const std::size_t before = scope.memory_bytes();
     EXPECT_LT(before, 12U * 1024U * 1024U);
@@ -241,7 +241,7 @@ TEST(TraceScope, MemoryIsTakenOnce) {
     EXPECT_TRUE(scope.shown().empty());
 }
 
-TEST(TraceCsv, SaysWhatTheCyclesWereInSi) {
+TEST(TraceCsv, says_what_the_cycles_were_in_si) {
     std::vector<TraceTopic> cycles{cycle_at(5, 0.25), cycle_at(6, std::nan(""))};
     cycles[1].pos_world_m[1] = 0.0125F;
     cycles[1].status = static_cast<std::uint32_t>(RunState::fault);
@@ -259,7 +259,7 @@ TEST(TraceCsv, SaysWhatTheCyclesWereInSi) {
     EXPECT_EQ(trace_csv({}, channels), "time_s,taken_at_ns,cycle,state,force_x_n,position_y_m,cost_s\n");
 }
 
-TEST(PlotAxis, RangeAxisCoversItsRangeOnWholeSteps) {
+TEST(PlotAxis, range_axis_covers_its_range_on_whole_steps) {
     for (const auto& [low, high] :
          {std::pair{-1.0, 1.0}, {0.2, 0.21}, {-5e-3, 7.0}, {3.0, 3.0}, {0.0, 0.0}, {-40.0, -39.0}}) {
         const Axis axis = range_axis(low, high, 4);

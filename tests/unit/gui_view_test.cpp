@@ -18,7 +18,7 @@ Eigen::Vector3f on_screen(const Camera& camera, const Eigen::Vector3f& p, float 
     return clip.head<3>() / clip.w();
 }
 
-TEST(MeshPace, MovesGetSmallerAtOnceWhereTheyTookLongAndLargerSlowly) {
+TEST(MeshPace, moves_get_smaller_at_once_where_they_took_long_and_larger_slowly) {
     MeshPace pace;
     EXPECT_DOUBLE_EQ(pace.budget_ns(0.002), 2e6);
     pace.took(1e6, 4e-3);
@@ -33,7 +33,7 @@ TEST(MeshPace, MovesGetSmallerAtOnceWhereTheyTookLongAndLargerSlowly) {
     EXPECT_EQ(pace.slower(), 16.0);
 }
 
-TEST(Camera, HomeShowsTheWholeBallAndPutsItsCentreInTheMiddle) {
+TEST(Camera, home_shows_the_whole_ball_and_puts_its_centre_in_the_middle) {
     Camera camera;
     camera.frame(80.0F);
     EXPECT_LT(on_screen(camera, Eigen::Vector3f::Zero(), 1.5F).head<2>().norm(), 1e-5F);
@@ -46,7 +46,7 @@ TEST(Camera, HomeShowsTheWholeBallAndPutsItsCentreInTheMiddle) {
     }
 }
 
-TEST(Camera, ApproachingAPlacePutsItInTheMiddleWithoutTurningRound) {
+TEST(Camera, approaching_a_place_puts_it_in_the_middle_without_turning_round) {
     Camera camera;
     camera.frame(50.0F);
     const Eigen::Quaternionf before = camera.orientation();
@@ -66,7 +66,7 @@ TEST(Camera, ApproachingAPlacePutsItInTheMiddleWithoutTurningRound) {
     EXPECT_EQ(camera.target_a(), place);
 }
 
-TEST(Camera, DraggingMovesWhatIsUnderTheMouse) {
+TEST(Camera, dragging_moves_what_is_under_the_mouse) {
     Camera camera;
     camera.frame(50.0F);
     camera.home();
@@ -87,7 +87,7 @@ TEST(Camera, DraggingMovesWhatIsUnderTheMouse) {
     EXPECT_LT(on_screen(camera, front, 1.0F).y(), -0.05F);
 }
 
-TEST(Camera, HalfATurnOverTheHeightOfTheViewAndTheRotationStaysARotation) {
+TEST(Camera, half_a_turn_over_the_height_of_the_view_and_the_rotation_stays_a_rotation) {
     Camera camera;
     const Eigen::Quaternionf before = camera.orientation();
     for (int i = 0; i < 600; ++i) camera.rotate(1.0F, 0.0F, 600.0F);
@@ -95,7 +95,7 @@ TEST(Camera, HalfATurnOverTheHeightOfTheViewAndTheRotationStaysARotation) {
     EXPECT_NEAR(camera.orientation().norm(), 1.0F, 1e-5F);
 }
 
-TEST(Camera, ZoomGoesNearerAndStaysInBounds) {
+TEST(Camera, zoom_goes_nearer_and_stays_in_bounds) {
     Camera camera;
     camera.frame(50.0F);
     const float at_home = camera.distance_a();
@@ -113,7 +113,7 @@ TEST(Camera, ZoomGoesNearerAndStaysInBounds) {
     EXPECT_FLOAT_EQ(camera.distance_a(), at_home);
 }
 
-TEST(Camera, APixelAtTheTargetIsAsLongAsItSays) {
+TEST(Camera, a_pixel_at_the_target_is_as_long_as_it_says) {
     Camera camera;
     camera.frame(50.0F);
     const float height = 480.0F;
@@ -122,7 +122,7 @@ TEST(Camera, APixelAtTheTargetIsAsLongAsItSays) {
     EXPECT_NEAR(10.0F / px, camera.a_per_px(height), 1e-3F);
 }
 
-TEST(RoundLength, IsOneTwoOrFiveAndNotAboveWhatIsAsked) {
+TEST(RoundLength, is_one_two_or_five_and_not_above_what_is_asked) {
     EXPECT_DOUBLE_EQ(round_length(47.0), 20.0);
     EXPECT_DOUBLE_EQ(round_length(50.0), 50.0);
     EXPECT_DOUBLE_EQ(round_length(0.19), 0.1);
@@ -131,7 +131,7 @@ TEST(RoundLength, IsOneTwoOrFiveAndNotAboveWhatIsAsked) {
     EXPECT_EQ(round_length(std::nan("")), 0.0);
 }
 
-TEST(Tubes, PassThroughEveryTraceAtomAndBreakWhereTheChainChanges) {
+TEST(Tubes, pass_through_every_trace_atom_and_break_where_the_chain_changes) {
     const Structure s = fake::helix(20);
     const TubeMesh mesh = build_tubes(s, 100'000);
     EXPECT_EQ(mesh.strands, 2U);
@@ -146,7 +146,7 @@ TEST(Tubes, PassThroughEveryTraceAtomAndBreakWhereTheChainChanges) {
     for (const std::uint32_t i : mesh.index) ASSERT_LT(i, mesh.vertex.size());
 }
 
-TEST(Tubes, NormalsAreUnitAndTrianglesFaceOutward) {
+TEST(Tubes, normals_are_unit_and_triangles_face_outward) {
     const TubeMesh mesh = build_tubes(fake::helix(12), 100'000);
     ASSERT_FALSE(mesh.index.empty());
     const auto at = [&](std::uint32_t i) { return Eigen::Vector3f(mesh.vertex[i].position_a); };
@@ -159,14 +159,14 @@ TEST(Tubes, NormalsAreUnitAndTrianglesFaceOutward) {
     }
 }
 
-TEST(Tubes, StayWithinTheirVerticesWhereThatCanBe) {
+TEST(Tubes, stay_within_their_vertices_where_that_can_be) {
     for (const std::size_t atoms : {10U, 300U, 3000U}) {
         const TubeMesh mesh = build_tubes(fake::helix(atoms), 20'000);
         EXPECT_LE(mesh.vertex.size(), 20'000U + 2U * 9U) << atoms;
     }
 }
 
-TEST(Tubes, StructureWithoutATraceMakesNone) {
+TEST(Tubes, structure_without_a_trace_makes_none) {
     Structure s = fake::helix(10);
     std::fill(s.trace.begin(), s.trace.end(), std::uint8_t{0});
     EXPECT_TRUE(build_tubes(s, 1000).vertex.empty());
@@ -174,7 +174,7 @@ TEST(Tubes, StructureWithoutATraceMakesNone) {
     EXPECT_TRUE(build_tubes(s, 1000).vertex.empty());
 }
 
-TEST(Arrow, PointsFromTheBodyAlongTheForceWithOutwardFaces) {
+TEST(Arrow, points_from_the_body_along_the_force_with_outward_faces) {
     const Eigen::Vector3f from(1.0F, 2.0F, 3.0F), along(0.0F, 0.0F, 20.0F);
     const TubeMesh mesh = build_arrow(from, along, 1.0F, {255, 0, 0});
     float low = 1e9F, high = -1e9F;
@@ -195,7 +195,7 @@ TEST(Arrow, PointsFromTheBodyAlongTheForceWithOutwardFaces) {
     EXPECT_TRUE(build_arrow(from, along * std::nanf(""), 1.0F, {255, 0, 0}).vertex.empty());
 }
 
-TEST(CodebookLevel, IsTheLargestNotAboveThePointsFeltThatIsStillLegible) {
+TEST(CodebookLevel, is_the_largest_not_above_the_points_felt_that_is_still_legible) {
     Codebook book;
     for (const std::size_t n : {25U, 50U, 100U, 400U, 800U}) {
         Codebook::Level level;

@@ -151,7 +151,7 @@ protected:
     std::uint32_t vertices_ = 0;
 };
 
-TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
+TEST_F(GuiWindow, starts_without_a_controller_and_writes_the_picture_at_the_end) {
     const std::string picture = folder_ + "/alone.png";
     for (const bool hidden : {false, true}) {
         std::vector<std::string> arguments{scene(), "--seconds", "1", "--screenshot", picture};
@@ -164,7 +164,7 @@ TEST_F(GuiWindow, StartsWithoutAControllerAndWritesThePictureAtTheEnd) {
     }
 }
 
-TEST_F(GuiWindow, WritesWhatFramesTookAtTheEnd) {
+TEST_F(GuiWindow, writes_what_frames_took_at_the_end) {
     const std::string report = folder_ + "/frames.json";
     EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1", "--frames", report})->wait(), 0) << log();
     std::ifstream file(report);
@@ -176,7 +176,7 @@ TEST_F(GuiWindow, WritesWhatFramesTookAtTheEnd) {
     EXPECT_NE(log().find("--frames"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, StartsWithTheLooksOfTheCommandLine) {
+TEST_F(GuiWindow, starts_with_the_looks_of_the_command_line) {
     const std::string picture = folder_ + "/looks.png";
     EXPECT_EQ(
         gui({scene(), "--hidden", "--seconds", "1", "--screenshot", picture, "--molecule", "spheres",
@@ -190,7 +190,7 @@ TEST_F(GuiWindow, StartsWithTheLooksOfTheCommandLine) {
     EXPECT_NE(gui({scene(), "--molecule", "ribbon"})->wait(), 0);
 }
 
-TEST_F(GuiWindow, TheFrameAfterALevelChangeDrawsThatManyVertices) {
+TEST_F(GuiWindow, the_frame_after_a_level_change_draws_that_many_vertices) {
     fake::Controller controller("t", scene(), checksum_);
     const auto process = gui({});
     ASSERT_TRUE(drawing(controller)) << log();
@@ -217,7 +217,7 @@ TEST_F(GuiWindow, TheFrameAfterALevelChangeDrawsThatManyVertices) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, HeartbeatCarriesPartsAndProcessorTime) {
+TEST_F(GuiWindow, heartbeat_carries_parts_and_processor_time) {
     fake::Controller controller("t", scene(), checksum_);
     const auto process = gui({"--fps-max", "0"});
     ASSERT_TRUE(drawing(controller)) << log();
@@ -237,10 +237,10 @@ TEST_F(GuiWindow, HeartbeatCarriesPartsAndProcessorTime) {
     EXPECT_GT(last.triangles_drawn, 0U);
     FramesTopic frames{};
     ASSERT_TRUE(wait_for([&] {
-        return controller.gui()->frames.read(frames) && frames.figures.frames >= 2 * kFinishEvery &&
-               frames.figures.pass[static_cast<std::size_t>(Pass::surface)].work_p99_s > 0.0F;
+        return controller.gui()->frames.read(frames) && frames.metrics.frames >= 2 * kFinishEvery &&
+               frames.metrics.pass[static_cast<std::size_t>(Pass::surface)].work_p99_s > 0.0F;
     })) << log();
-    const FrameFigures& f = frames.figures;
+    const FrameMetrics& f = frames.metrics;
     EXPECT_TRUE(plausible(f));
     EXPECT_GT(f.gl_objects, 3U);
     EXPECT_GT(f.resident_bytes, 1000000U);
@@ -252,7 +252,7 @@ TEST_F(GuiWindow, HeartbeatCarriesPartsAndProcessorTime) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
+TEST_F(GuiWindow, garbage_in_the_region_is_ignored) {
     fake::Controller controller("t", scene(), checksum_);
     const auto process = gui({});
     ASSERT_TRUE(drawing(controller)) << log();
@@ -286,7 +286,7 @@ TEST_F(GuiWindow, GarbageInTheRegionIsIgnored) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
+TEST_F(GuiWindow, a_second_hand_is_in_the_picture_with_the_wall_that_it_touches) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool there : {false, true}) {
@@ -313,7 +313,7 @@ TEST_F(GuiWindow, ASecondHandIsInThePictureWithTheWallThatItTouches) {
     EXPECT_GT(violet(pictures[1]), 5);
 }
 
-TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
+TEST_F(GuiWindow, an_emergency_stop_stands_over_the_picture) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool pressed : {false, true}) {
@@ -342,7 +342,7 @@ TEST_F(GuiWindow, AnEmergencyStopStandsOverThePicture) {
 }
 
 // A person's mouse, from the X server to the file.
-TEST_F(GuiWindow, TheMouseHoldsTheTracesStillAndExportsWhatIsSeen) {
+TEST_F(GuiWindow, the_mouse_holds_the_traces_still_and_exports_what_is_seen) {
     if (launch::find_in_path("xdotool").empty())
         GTEST_SKIP() << "xdotool is not installed: nobody moves a mouse";
     x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
@@ -403,7 +403,7 @@ TEST_F(GuiWindow, TheMouseHoldsTheTracesStillAndExportsWhatIsSeen) {
     EXPECT_LT(cycle_of_last + 100, newest);
 }
 
-TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {
+TEST_F(GuiWindow, survives_the_controllers_restart_and_attaches_again) {
     const std::string path = scene();
     auto controller = std::make_unique<fake::Controller>("t", path, checksum_);
     const auto process = gui({});
@@ -424,7 +424,7 @@ TEST_F(GuiWindow, SurvivesTheControllersRestartAndAttachesAgain) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, BrokenSceneIsToldAndTheWindowStays) {
+TEST_F(GuiWindow, broken_scene_is_told_and_the_window_stays) {
     const std::string path = folder_ + "/broken.tact";
     std::ofstream(path) << "this is no scene";
     EXPECT_EQ(gui({path, "--seconds", "1", "--screenshot", folder_ + "/broken.png"})->wait(), 0) << log();
@@ -432,14 +432,14 @@ TEST_F(GuiWindow, BrokenSceneIsToldAndTheWindowStays) {
     EXPECT_GT(colours(folder_ + "/broken.png", 640, 480).size(), 20U);
 }
 
-TEST_F(GuiWindow, WithoutADisplayItSaysSoAndWhatMendsIt) {
+TEST_F(GuiWindow, without_a_display_it_says_so_and_what_mends_it) {
     unsetenv("DISPLAY");
     EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
     EXPECT_NE(log().find("no display"), std::string::npos) << log();
     EXPECT_NE(log().find("mend:"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, ASeriesIsOfTheViewAloneAndItsFirstOfTheScene) {
+TEST_F(GuiWindow, a_series_is_of_the_view_alone_and_its_first_of_the_scene) {
     const std::string picture = folder_ + "/series.png";
     EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1.2", "--screenshot", picture, "--picture-every", "0.4",
                    "--zoom", "2"})
@@ -452,7 +452,7 @@ TEST_F(GuiWindow, ASeriesIsOfTheViewAloneAndItsFirstOfTheScene) {
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/series-09.png"));
 }
 
-TEST_F(GuiWindow, EveryStereoModeShowsTwoEyesInTheViewOrInWindowsOfItsOwn) {
+TEST_F(GuiWindow, every_stereo_mode_shows_two_eyes_in_the_view_or_in_windows_of_its_own) {
     const std::string window = folder_ + "/window.png", picture = folder_ + "/stereo.png",
                       file = folder_ + "/stage.toml";
     for (const char* const mode : {"anaglyph", "side-by-side", "top-bottom"}) {
@@ -485,7 +485,7 @@ TEST_F(GuiWindow, EveryStereoModeShowsTwoEyesInTheViewOrInWindowsOfItsOwn) {
     EXPECT_NE(bytes(left), bytes(right));
 }
 
-TEST_F(GuiWindow, AStageThatCannotBeIsToldInWords) {
+TEST_F(GuiWindow, a_stage_that_cannot_be_is_told_in_words) {
     const std::string file = folder_ + "/stage.toml";
     std::ofstream(file) << "monitors = [7]\nmode = \"anaglyph\"\n";
     EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 1);
@@ -499,7 +499,7 @@ TEST_F(GuiWindow, AStageThatCannotBeIsToldInWords) {
     EXPECT_NE(log().find("mend:"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, PictureThatCannotBeWrittenIsAnErrorAndArgumentsAreChecked) {
+TEST_F(GuiWindow, picture_that_cannot_be_written_is_an_error_and_arguments_are_checked) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--screenshot", folder_ + "/none/such.png"})->wait(), 1);
     EXPECT_NE(log().find("such.png"), std::string::npos) << log();
     EXPECT_NE(gui({"--size", "5x5"})->wait(), 0);

@@ -1,5 +1,5 @@
 # Tests of hal's drivers.
-tact_test(unit/hal_emu_cp2112_test.cpp USES emu_lines)
+tact_test(unit/emu_cp2112_test.cpp USES emu_lines)
 tact_test(unit/hal_line_logic_test.cpp USES base io)
 tact_test(unit/hal_lines_contract_test.cpp USES base io hal LABELS tsan)
 tact_test(unit/hal_socket_can_test.cpp USES base tracker hal LABELS tsan)
@@ -9,8 +9,8 @@ tact_test(unit/hal_tracker_dbc_test.cpp USES base tracker)
 tact_test(unit/hal_tracker_filter_test.cpp USES base tracker)
 tact_test(unit/hal_tracker_frames_test.cpp USES base tracker SYSTEM rapidcheck)
 tact_test(unit/hal_tracker_reader_test.cpp USES base tracker)
-tact_test(unit/hal_emu_board_test.cpp USES base arm phantom emu_board)
-tact_test(unit/hal_emu_script_test.cpp USES base arm tracker emu_script)
+tact_test(unit/emu_board_test.cpp USES base arm phantom emu_board)
+tact_test(unit/emu_script_test.cpp USES base arm tracker emu_script)
 # Parts and faults are read without a kernel that has them; wrong usage and what cannot start have codes of their own.
 add_test(NAME hal_emu_usage COMMAND sh -c "emu='$<TARGET_FILE:tact-emu>'; \"$emu\" --arm A --arm B --tracker can0:fd:240:4 --check || exit 1
     \"$emu\" --nonsense 2>&1; test $? = 2 || exit 1; \"$emu\" --arm A --arm A; test $? = 1 || exit 1; \"$emu\"; test $? = 1")

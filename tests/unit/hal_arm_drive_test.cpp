@@ -21,7 +21,7 @@ using sample::joints;
 
 double drawn(double most) { return most * (*rc::gen::inRange(-1'000'000, 1'000'001) * 1e-6); }
 Vec3 drawn_vector(double most) { return {drawn(most), drawn(most), drawn(most)}; }
-Joint6 posture() {
+Joint6 configuration() {
     return joints(drawn(0.7), 0.5 + drawn(0.5), 0.4 + drawn(0.4), drawn(1), drawn(1), drawn(1));
 }
 
@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(All, Drives, testing::Values("omni", "premium-1.5", "pr
 
 TEST_P(Drives, within_the_limits_the_motors_push_exactly_what_is_asked_for) {
     for_all([&] {
-        const Joint6 q = posture();
+        const Joint6 q = configuration();
         const Wrench w{drawn_vector(0.3), drawn_vector(0.01)};
         const DriveCurrents d = drive_currents(arm, q, w, Joint6::Zero(), p.current_a_max);
         RC_ASSERT(d.valid);
@@ -54,7 +54,7 @@ TEST_P(Drives, within_the_limits_the_motors_push_exactly_what_is_asked_for) {
 
 TEST_P(Drives, no_motor_gets_more_than_its_limit_and_the_hand_feels_less_of_the_same) {
     for_all([&] {
-        const Joint6 q = posture();
+        const Joint6 q = configuration();
         const Wrench w{drawn_vector(60.0), drawn_vector(2.0)};
         const Joint6 hold = arm.gravity_n_m(q);
         Joint6 limit = p.current_a_max;
@@ -102,7 +102,7 @@ TEST_P(Drives, nothing_flows_for_what_is_not_a_number) {
 
 TEST_P(Drives, at_a_singular_posture_currents_stay_within_their_limits) {
     for_all([&] {
-        Joint6 q = posture();
+        Joint6 q = configuration();
         q[2] = q[1] + M_PI / 2;
         q[4] = M_PI / 2;
         const DriveCurrents d =

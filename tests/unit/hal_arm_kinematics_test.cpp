@@ -93,7 +93,7 @@ TEST_P(Arms, inverse_undoes_forward_over_the_whole_range_of_the_joints) {
                 q[0] = at(p.low_rad[0], p.high_rad[0], i);
                 q[1] = at(p.low_rad[1], p.high_rad[1], j);
                 q[2] = q[1] + at(p.elbow_low_rad, p.elbow_high_rad, k);
-                if (arm.posture(q).reach_m < 1e-3)
+                if (arm.configuration(q).reach_m < 1e-3)
                     continue;  // beyond the turret's axis it is the other way round
                 ASSERT_TRUE(holds(q)) << q.transpose();
             }
@@ -124,7 +124,7 @@ TEST_P(Arms, every_place_of_the_workspace_that_can_be_reached_is_found_to_a_nano
 TEST_P(Arms, the_published_inverse_in_its_own_frame_says_the_same) {
     for_all([&] {
         const Joint6 q = drawn_joints(p);
-        RC_PRE(arm.posture(q).reach_m > 0.01);
+        RC_PRE(arm.configuration(q).reach_m > 0.01);
         const double l1 = p.thigh_m, l2 = p.shin_m;
         const Vec3 tip = arm.tip_m(q) + p.origin_m + Vec3(0.0, -l2, l1);
         const Vec3 their(tip.z(), -tip.x(), tip.y());  // x forward, y left, z up
@@ -153,7 +153,7 @@ TEST_P(Arms, the_jacobian_is_the_derivative_of_the_pose) {
             RC_ASSERT((linear - j.block<3, 1>(0, i)).norm() < 1e-9);
             RC_ASSERT((angular - j.block<3, 1>(3, i)).norm() < 1e-9);
         }
-        const double det = p.thigh_m * p.shin_m * arm.posture(q).reach_m * std::cos(q[2] - q[1]);
+        const double det = p.thigh_m * p.shin_m * arm.configuration(q).reach_m * std::cos(q[2] - q[1]);
         RC_ASSERT(std::abs(std::abs(arm.jacobian(q).determinant()) - std::abs(det)) < 1e-15);
     });
 }
@@ -177,7 +177,7 @@ TEST_P(Arms, torques_are_bounded_by_the_lever_in_every_posture_singular_ones_too
         const Joint6 tau = arm.torque_n_m(q, w);
         const double f = w.force_n.norm(), t = p.wrist == Wrist::driven ? w.torque_n_m.norm() : 0.0;
         const double slack = 1e-12;
-        return std::abs(tau[0]) <= std::abs(arm.posture(q).reach_m) * f + t + slack &&
+        return std::abs(tau[0]) <= std::abs(arm.configuration(q).reach_m) * f + t + slack &&
                std::abs(tau[1]) <= l1 * f + slack && std::abs(tau[2]) <= l2 * f + t + slack &&
                tau.tail<3>().cwiseAbs().maxCoeff() <= t + slack;
     };
@@ -193,21 +193,21 @@ TEST_P(Arms, torques_are_bounded_by_the_lever_in_every_posture_singular_ones_too
         any[4] = M_PI / 2;  // yaw and roll in one axis
         RC_ASSERT(bounded(any, w));
         any.head<3>() << 0.3, std::acos(-std::min(1.0, l2 / l1) * std::sin(0.2)), 0.2;  // above the turret
-        RC_ASSERT(std::abs(arm.posture(any).reach_m) < 1e-12 || l2 > l1);
+        RC_ASSERT(std::abs(arm.configuration(any).reach_m) < 1e-12 || l2 > l1);
         RC_ASSERT(bounded(any, w));
     });
 }
 
 TEST_P(Arms, at_a_singular_posture_only_the_direction_without_motion_is_lost) {
     const Joint6 stretched = joints(0.4, 0.3, 0.3 + M_PI / 2);
-    EXPECT_NEAR(arm.posture(stretched).elbow_cos, 0.0, 1e-12);
-    EXPECT_TRUE(arm.posture(stretched).near_singular);
+    EXPECT_NEAR(arm.configuration(stretched).elbow_cos, 0.0, 1e-12);
+    EXPECT_TRUE(arm.configuration(stretched).near_singular);
     const Vec3 shoulder = Vec3(0.0, p.shin_m, -p.thigh_m) - p.origin_m;
     const Vec3 along = (arm.tip_m(stretched) - shoulder).normalized();
     EXPECT_LT(arm.torque_n_m(stretched, {5.0 * along, Vec3::Zero()}).norm(), 1e-12);
     const Vec3 across = along.cross(Vec3::UnitY()).normalized();
     EXPECT_GT(arm.torque_n_m(stretched, {5.0 * across, Vec3::Zero()}).norm(), 0.1);
-    EXPECT_FALSE(arm.posture(joints(0.0, 0.5, 0.5)).near_singular);
+    EXPECT_FALSE(arm.configuration(joints(0.0, 0.5, 0.5)).near_singular);
 }
 
 TEST_P(Arms, what_is_out_of_reach_is_said_and_the_nearest_given) {
@@ -225,12 +225,12 @@ TEST_P(Arms, ends_of_the_joints_are_seen_with_how_far_they_are) {
     Joint6 q = 0.5 * (p.low_rad + p.high_rad);
     q[2] = q[1] + 0.5 * (p.elbow_low_rad + p.elbow_high_rad);
     q[0] = p.high_rad[0] - 0.01;
-    EXPECT_NEAR(arm.posture(q).to_limit_rad, 0.01, 1e-12);
+    EXPECT_NEAR(arm.configuration(q).to_limit_rad, 0.01, 1e-12);
     q[0] = p.high_rad[0] + 0.02;
-    EXPECT_NEAR(arm.posture(q).to_limit_rad, -0.02, 1e-12);
+    EXPECT_NEAR(arm.configuration(q).to_limit_rad, -0.02, 1e-12);
     q[0] = 0.0;
     q[2] = q[1] + p.elbow_high_rad + 0.03;
-    EXPECT_LE(arm.posture(q).to_limit_rad, -0.03 + 1e-12);
+    EXPECT_LE(arm.configuration(q).to_limit_rad, -0.03 + 1e-12);
 }
 
 TEST_P(Arms, counts_and_angles_are_each_other_to_half_a_step) {
@@ -251,7 +251,7 @@ TEST_P(Arms, counts_and_angles_are_each_other_to_half_a_step) {
 }
 
 TEST_P(Arms, weight_is_the_slope_of_the_potential_energy) {
-    ArmFigures f = sample::complete_figures(GetParam());
+    ArmParameterSet f = sample::complete_parameters(GetParam());
     f.gravity_mn_m = {Figure{-16.0, FigureSource::configured}, Figure{-74.0, FigureSource::configured}};
     f.tip_mass_g = {90.0, FigureSource::configured};
     const ArmKinematics heavy(arm_parameters(f));
@@ -280,7 +280,7 @@ TEST(Omni, says_what_a_real_one_reported_in_its_inkwell) {
     const Pose pose = arm.pose(q);
     EXPECT_LT((pose.p_m - Vec3(0.0, -0.0655107, -0.0881142)).norm(), 1e-5);
     EXPECT_LT((pose.q.toRotationMatrix() - reported).cwiseAbs().maxCoeff(), 1e-5);
-    EXPECT_GT(arm.posture(q).to_limit_rad, 0.0);
+    EXPECT_GT(arm.configuration(q).to_limit_rad, 0.0);
     Joint6 back;
     ASSERT_TRUE(arm.inverse(pose, back));
     EXPECT_LT((back - q).norm(), 1e-9);

@@ -7,8 +7,8 @@
 
 namespace tact::sample {
 
-inline ArmFigures complete_figures(const std::string& model) {
-    ArmFigures f = arm_figures(model);
+inline ArmParameterSet complete_parameters(const std::string& model) {
+    ArmParameterSet f = arm_parameter_set(model);
     for (const ArmKey& key : arm_keys(f)) {
         const std::string name = key.name;
         double value = name == "low_deg" ? -25.0 : name == "high_deg" ? 80.0 : 0.0;
@@ -25,17 +25,17 @@ inline ArmFigures complete_figures(const std::string& model) {
                               name == "viscous_n_m_s" || name == "coulomb_n_m" || name == "apparent_mass_g" ||
                               name == "torque_mn_m_max" || name == "torque_mn_m_continuous";
         if (optional) continue;
-        for (std::size_t i = 0; i < key.figures.size(); ++i) {
-            if (key.figures[i].known()) continue;
+        for (std::size_t i = 0; i < key.metrics.size(); ++i) {
+            if (key.metrics[i].known()) continue;
             if (name == "elbow_deg") value = i == 0 ? -70.0 : 70.0;
-            key.figures[i] = {value, FigureSource::configured};
+            key.metrics[i] = {value, FigureSource::configured};
         }
     }
     return f;
 }
 
 inline ArmKinematics arm(const std::string& model) {
-    return ArmKinematics(arm_parameters(complete_figures(model)));
+    return ArmKinematics(arm_parameters(complete_parameters(model)));
 }
 
 inline Joint6 joints(double turret, double thigh, double shin, double yaw = 0.0, double pitch = 0.0,

@@ -13,7 +13,7 @@
 namespace tact {
 namespace {
 
-std::string error_of(const ArmFigures& f) {
+std::string error_of(const ArmParameterSet& f) {
     try {
         static_cast<void>(arm_parameters(f));
     } catch (const StartupError& e) {
@@ -23,7 +23,7 @@ std::string error_of(const ArmFigures& f) {
 }
 
 TEST(ArmTable, a_premium_15_needs_no_configuration) {
-    const ArmParameters p = arm_parameters(arm_figures("premium-1.5"));
+    const ArmParameters p = arm_parameters(arm_parameter_set("premium-1.5"));
     EXPECT_DOUBLE_EQ(p.thigh_m, 0.20955);
     EXPECT_DOUBLE_EQ(p.joint_n_m_per_a[0], 0.0234 * 13.3);
     EXPECT_TRUE(p.heat_known);
@@ -33,22 +33,24 @@ TEST(ArmTable, a_premium_15_needs_no_configuration) {
 }
 
 TEST(ArmTable, what_nobody_knows_is_asked_for_by_its_keys) {
-    EXPECT_TRUE(says(error_of(arm_figures("desktop")), {"desktop", "thigh_mm", "counts_per_turn",
-                                                        "drive_ratio", "current_a_max", "mend:", "[arm]"}));
-    const std::string omni = error_of(arm_figures("omni"));
+    EXPECT_TRUE(
+        says(error_of(arm_parameter_set("desktop")),
+             {"desktop", "thigh_mm", "counts_per_turn", "drive_ratio", "current_a_max", "mend:", "[arm]"}));
+    const std::string omni = error_of(arm_parameter_set("omni"));
     EXPECT_TRUE(says(omni, {"omni", "counts_per_turn", "torque_constant_mn_m_a"})) << omni;
     EXPECT_EQ(omni.find("thigh_mm"), std::string::npos);
-    EXPECT_TRUE(says(error_of(arm_figures("premium-1.0")), {"counts_per_turn", "drive_ratio"}));
-    EXPECT_TRUE(says(error_of(arm_figures("premium-1.5-6dof")), {"torque_constant_mn_m_a", "current_a_max"}));
+    EXPECT_TRUE(says(error_of(arm_parameter_set("premium-1.0")), {"counts_per_turn", "drive_ratio"}));
+    EXPECT_TRUE(
+        says(error_of(arm_parameter_set("premium-1.5-6dof")), {"torque_constant_mn_m_a", "current_a_max"}));
     for (const std::string& model : arm_models()) {
-        EXPECT_EQ(error_of(sample::complete_figures(model)), "") << model;
-        EXPECT_EQ(arm_figures(model).model, model);
+        EXPECT_EQ(error_of(sample::complete_parameters(model)), "") << model;
+        EXPECT_EQ(arm_parameter_set(model).model, model);
     }
 }
 
 TEST(ArmTable, an_arm_that_is_not_in_it_is_refused_with_those_that_are) {
     try {
-        static_cast<void>(arm_figures("delta"));
+        static_cast<void>(arm_parameter_set("delta"));
         FAIL();
     } catch (const StartupError& e) {
         EXPECT_TRUE(says(e.what(), {"delta", "omni", "premium-1.5-6dof", "mend:"}));
@@ -57,28 +59,29 @@ TEST(ArmTable, an_arm_that_is_not_in_it_is_refused_with_those_that_are) {
 
 TEST(ArmTable, figures_that_contradict_each_other_are_refused) {
     const auto with = [](auto&& change) {
-        ArmFigures f = arm_figures("premium-1.5");
+        ArmParameterSet f = arm_parameter_set("premium-1.5");
         change(f);
         return error_of(f);
     };
+    EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.counts_per_turn[1].value = 0.0; }),
+                     {"encoder step", "joint 1"}));
+    EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.counts_per_turn[1].value = 2.0; }), {"encoder step"}));
+    EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.low_deg[0].value = 80.0; }), {"low_deg", "joint 0"}));
+    EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.current_a_continuous[2].value = 9.0; }),
+                     {"current_a_continuous"}));
     EXPECT_TRUE(
-        says(with([](ArmFigures& f) { f.counts_per_turn[1].value = 0.0; }), {"encoder step", "joint 1"}));
-    EXPECT_TRUE(says(with([](ArmFigures& f) { f.counts_per_turn[1].value = 2.0; }), {"encoder step"}));
-    EXPECT_TRUE(says(with([](ArmFigures& f) { f.low_deg[0].value = 80.0; }), {"low_deg", "joint 0"}));
+        says(with([](ArmParameterSet& f) { f.force_n_continuous.value = 9.0; }), {"force_n_continuous"}));
     EXPECT_TRUE(
-        says(with([](ArmFigures& f) { f.current_a_continuous[2].value = 9.0; }), {"current_a_continuous"}));
-    EXPECT_TRUE(says(with([](ArmFigures& f) { f.force_n_continuous.value = 9.0; }), {"force_n_continuous"}));
-    EXPECT_TRUE(
-        says(with([](ArmFigures& f) { f.torque_constant_mn_m_a[0].value = 0.0; }), {"torque_constant"}));
-    EXPECT_TRUE(says(with([](ArmFigures& f) { f.elbow_deg[0].value = 75.0; }), {"elbow_deg"}));
+        says(with([](ArmParameterSet& f) { f.torque_constant_mn_m_a[0].value = 0.0; }), {"torque_constant"}));
+    EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.elbow_deg[0].value = 75.0; }), {"elbow_deg"}));
 }
 
 TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
     for (const std::string& model : arm_models()) {
-        ArmFigures f = arm_figures(model);
+        ArmParameterSet f = arm_parameter_set(model);
         for (const ArmKey& key : arm_keys(f)) {
             EXPECT_LT(key.low, key.high);
-            for (const Figure& figure : key.figures) {
+            for (const Figure& figure : key.metrics) {
                 if (!figure.known()) continue;
                 EXPECT_GE(figure.value, key.low) << model << " " << key.name;
                 EXPECT_LE(figure.value, key.high) << model << " " << key.name;
@@ -90,7 +93,7 @@ TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
 TEST(ArmTable, the_calibrating_pose_lies_within_the_joints_ends) {
     for (const std::string& model : arm_models()) {
         const ArmKinematics arm = sample::arm(model);
-        EXPECT_GE(arm.posture(arm.parameters().calibration_rad).to_limit_rad, 0.0) << model;
+        EXPECT_GE(arm.configuration(arm.parameters().calibration_rad).to_limit_rad, 0.0) << model;
     }
 }
 
@@ -99,7 +102,7 @@ TEST(ArmTable, the_readme_has_a_row_for_every_key_and_every_model) {
     ASSERT_TRUE(in);
     std::stringstream text;
     text << in.rdbuf();
-    ArmFigures f;
+    ArmParameterSet f;
     for (const ArmKey& key : arm_keys(f)) {
         EXPECT_NE(text.str().find("| `" + std::string(key.name) + "`"), std::string::npos) << key.name;
     }

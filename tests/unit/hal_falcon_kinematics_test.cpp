@@ -67,7 +67,7 @@ TEST_F(FalconKinematics, forward_is_the_inverse_of_inverse_from_anywhere_in_the_
 TEST_F(FalconKinematics, the_jacobian_is_that_of_finite_differences) {
     constexpr double kStep = 1e-6;
     everywhere(3, [&](const Vec3& p) {
-        const Posture here = k_.posture(p);
+        const ArmConfiguration here = k_.configuration(p);
         ASSERT_TRUE(here.good) << p.transpose();
         for (Eigen::Index i = 0; i < 3; ++i) {
             Vec3 up, down;
@@ -84,7 +84,7 @@ TEST_F(FalconKinematics, the_motors_do_the_work_that_the_force_does) {
     const Geometry g;
     const Vec3 force(0.8, -1.1, 0.6);
     everywhere(3, [&](const Vec3& p) {
-        const Posture here = k_.posture(p);
+        const ArmConfiguration here = k_.configuration(p);
         const Drive d = k_.drive(here, force);
         ASSERT_TRUE(d.valid);
         EXPECT_EQ(d.share, 1.0);
@@ -102,7 +102,7 @@ TEST_F(FalconKinematics, the_motors_do_the_work_that_the_force_does) {
 }
 
 TEST_F(FalconKinematics, a_push_to_the_user_turns_all_thighs_alike_and_outwards) {
-    const Posture here = k_.posture(Vec3::Zero());
+    const ArmConfiguration here = k_.configuration(Vec3::Zero());
     const Drive d = k_.drive(here, Vec3(0.0, 0.0, 1.0));
     EXPECT_EQ(d.torque[0], d.torque[1]);
     EXPECT_EQ(d.torque[1], d.torque[2]);
@@ -115,7 +115,7 @@ TEST_F(FalconKinematics, a_push_to_the_user_turns_all_thighs_alike_and_outwards)
 
 TEST_F(FalconKinematics, a_force_that_is_too_much_is_shortened_and_keeps_its_direction) {
     everywhere(2, [&](const Vec3& p) {
-        const Posture here = k_.posture(p);
+        const ArmConfiguration here = k_.configuration(p);
         for (const Vec3& f : {Vec3(100.0, -30.0, 20.0), Vec3(0.0, 8.0, 0.0), Vec3(-6.0, 0.0, 6.0)}) {
             const Drive d = k_.drive(here, f);
             ASSERT_TRUE(d.valid);
@@ -145,7 +145,7 @@ TEST_F(FalconKinematics, one_count_moves_the_grip_by_no_more_than_the_resolution
     everywhere(4, [&](const Vec3& p) {
         Vec3 back;
         ASSERT_TRUE(k_.forward(k_.angles_rad(k_.counts(angles(p))), p, back));
-        const Posture q = k_.posture(p);
+        const ArmConfiguration q = k_.configuration(p);
         const double most = 0.5 * k_.rad_per_count() * q.jacobian.colwise().norm().sum();
         EXPECT_LT((back - p).norm(), 1.01 * most) << p.transpose();
     });
@@ -161,28 +161,28 @@ TEST_F(FalconKinematics, what_is_no_posture_is_refused_and_gives_no_force) {
     EXPECT_FALSE(k_.forward(Vec3(nan, 0.0, 0.0), Vec3::Zero(), kept));
     EXPECT_FALSE(k_.forward(Vec3::Zero(), Vec3(0.0, nan, 0.0), kept));
     EXPECT_EQ(kept, Vec3(1.0, 2.0, 3.0));
-    EXPECT_FALSE(k_.posture(Vec3(0.3, 0.0, 0.0)).good);
-    EXPECT_FALSE(k_.posture(Vec3(nan, 0.0, 0.0)).good);
-    EXPECT_FALSE(k_.drive(k_.posture(Vec3::Zero()), Vec3(nan, 0.0, 0.0)).valid);
-    EXPECT_FALSE(k_.drive(k_.posture(Vec3(0.3, 0.0, 0.0)), Vec3(1.0, 0.0, 0.0)).valid);
+    EXPECT_FALSE(k_.configuration(Vec3(0.3, 0.0, 0.0)).good);
+    EXPECT_FALSE(k_.configuration(Vec3(nan, 0.0, 0.0)).good);
+    EXPECT_FALSE(k_.drive(k_.configuration(Vec3::Zero()), Vec3(nan, 0.0, 0.0)).valid);
+    EXPECT_FALSE(k_.drive(k_.configuration(Vec3(0.3, 0.0, 0.0)), Vec3(1.0, 0.0, 0.0)).valid);
 }
 
 // Along the axis to the user both kinds are met: the grip gives way far out, the shins are stretched far in.
 TEST_F(FalconKinematics, towards_a_singularity_the_posture_turns_bad_before_the_numbers_do) {
     bool was_good = false, turned_bad_near = false, turned_bad_far = false;
     for (double z = -0.07; z < 0.08; z += 1e-4) {
-        const Posture q = k_.posture(Vec3(0.0, 0.0, z));
+        const ArmConfiguration q = k_.configuration(Vec3(0.0, 0.0, z));
         turned_bad_near = turned_bad_near || (z < 0.0 && !q.good);
         turned_bad_far = turned_bad_far || (z > 0.0 && was_good && !q.good);
         was_good = q.good;
         EXPECT_TRUE(q.jacobian.allFinite());
         if (!q.good) continue;
-        EXPECT_GE(q.spread, Posture::kPoorest);
-        EXPECT_GE(q.leverage, Posture::kPoorest);
+        EXPECT_GE(q.spread, ArmConfiguration::kPoorest);
+        EXPECT_GE(q.leverage, ArmConfiguration::kPoorest);
         EXPECT_LT(q.jacobian.cwiseAbs().maxCoeff(), 1.0);
     }
     EXPECT_TRUE(turned_bad_near && turned_bad_far);
-    everywhere(5, [&](const Vec3& p) { EXPECT_TRUE(k_.posture(p).good) << p.transpose(); });
+    everywhere(5, [&](const Vec3& p) { EXPECT_TRUE(k_.configuration(p).good) << p.transpose(); });
 }
 
 TEST_F(FalconKinematics, any_counts_at_all_give_a_place_within_reach_or_none) {

@@ -66,7 +66,7 @@ constexpr std::array kEvents{
     Event{"re-armed", [](Bench& b) { ++b.rearms; }, LinesCause::none, false},
 };
 
-void mend(Bench& b) {
+void fix(Bench& b) {
     open(b, kLineStopA | kLineStopB);  // as a person does who presses and pulls the button
     b.in.good = true;
     b.amplifier = 0;
@@ -110,7 +110,7 @@ TEST(LineLogic, every_pair_of_events_stops_in_the_look_that_sees_it_and_nothing_
                 if (b.cause != LinesCause::none) {
                     EXPECT_EQ(bench.logic.state(), LinesState::stopped);
                 }
-                mend(bench);
+                fix(bench);
                 bench.looks(500);
                 EXPECT_EQ(bench.logic.state(), LinesState::waiting);
                 ++bench.rearms;

@@ -230,7 +230,7 @@ TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_n
             EXPECT_EQ(shown().x(), 1.0);
         }
         EXPECT_FALSE(std::string(hd::meaning(e.code).says).empty());
-        EXPECT_FALSE(std::string(hd::meaning(e.code).mends).empty());
+        EXPECT_FALSE(std::string(hd::meaning(e.code).fixes).empty());
     }
 }
 

@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-TEST(SimHold, TheSensorIsMeasuredWhereItIsHeldAndOnTheHeadAfterwards) {
+TEST(SimHold, the_sensor_is_measured_where_it_is_held_and_on_the_head_afterwards) {
     SimTracker tracker;
     tracker.open();
     const Vec3 place(0.2, -0.1, 0.5);
@@ -29,7 +29,7 @@ TEST(SimHold, TheSensorIsMeasuredWhereItIsHeldAndOnTheHeadAfterwards) {
     EXPECT_GT(mean_off_m(place), 0.05);
 }
 
-TEST(SimHold, TheHandComesToRestWhereItIsHeldWhateverItsScript) {
+TEST(SimHold, the_hand_comes_to_rest_where_it_is_held_whatever_its_script) {
     for (const char* const script : {"passive", "wander"}) {
         SimSettings settings;
         settings.hand.script = script;

@@ -226,24 +226,24 @@ TEST(SimSurgeon, tries_beside_where_it_met_nothing) {
     EXPECT_NEAR((tries[1] - Vec3(0.01, -0.005, 0.0)).head<2>().norm(), 8e-3, 1e-3);
 }
 
-TEST(SimSurgeon, the_hand_with_the_sucker_touches_lightly_and_keeps_beside_the_burr) {
-    Walled burr("surgeon"), sucker("sucker");
+TEST(SimSurgeon, the_hand_with_the_suction_tube_touches_lightly_and_keeps_beside_the_burr) {
+    Walled burr("surgeon"), suction_tube("suction-tube");
     double most_n = 0.0, nearest_m = 1.0;
     bool in_the_middle = false;
     for (int i = 0; i < 30000; ++i) {
         burr.step(1500.0);
-        sucker.step(1500.0);
-        most_n = std::max(most_n, sucker.push_n);
-        const double apart_m = (burr.hand.pose().p_m - sucker.hand.pose().p_m).norm();
+        suction_tube.step(1500.0);
+        most_n = std::max(most_n, suction_tube.push_n);
+        const double apart_m = (burr.hand.pose().p_m - suction_tube.hand.pose().p_m).norm();
         if (burr.push_n > 0.0) nearest_m = std::min(nearest_m, apart_m);
-        const double off_m = (sucker.hand.pose().p_m - Vec3(0.01, -0.005, 0.0)).head<2>().norm();
+        const double off_m = (suction_tube.hand.pose().p_m - Vec3(0.01, -0.005, 0.0)).head<2>().norm();
         in_the_middle = in_the_middle || off_m < 3e-3;
     }
     EXPECT_GT(most_n, 0.1);
     EXPECT_LT(most_n, 0.8);
     EXPECT_GT(nearest_m, 1e-3);
     EXPECT_TRUE(in_the_middle);
-    EXPECT_EQ(sucker.hand.buttons(), 2U);
+    EXPECT_EQ(suction_tube.hand.buttons(), 2U);
 }
 
 TEST(SimHand, an_unknown_script_is_refused_in_words) {

@@ -201,11 +201,11 @@ TEST(SocketCan, filters_pass_the_tracker_s_frames_and_no_others) {
 }
 
 TEST(SocketCan, refusals_name_the_interface_and_the_mend) {
-    const auto says = [](CanStep step, int error, const char* why, const char* mend) {
+    const auto says = [](CanStep step, int error, const char* why, const char* fix) {
         const std::string text = refusal([&] { refuse_interface(step, "can7", error); });
         EXPECT_NE(text.find("can7"), std::string::npos) << text;
         EXPECT_NE(text.find(why), std::string::npos) << text;
-        EXPECT_NE(text.find(mend), std::string::npos) << text;
+        EXPECT_NE(text.find(fix), std::string::npos) << text;
     };
     says(CanStep::socket, EAFNOSUPPORT, "no CAN", "modprobe can_raw");
     says(CanStep::socket, EPERM, "refused", "AF_CAN");

@@ -40,7 +40,7 @@ std::string bone_refusal_of(FileDescriptor fd) {
     return refusal;
 }
 
-TEST(BoneRegion, AReaderSeesWhatIsCutAndWhatItIsOf) {
+TEST(BoneRegion, a_reader_sees_what_is_cut_and_what_it_is_of) {
     OwnedBoneRegion owned(small_head());
     ASSERT_EQ(owned.revisions().size(), 6U);
     ASSERT_EQ(owned.densities().size(), 6U * 512);
@@ -64,7 +64,7 @@ TEST(BoneRegion, AReaderSeesWhatIsCutAndWhatItIsOf) {
     EXPECT_EQ(brick, (std::array<std::uint8_t, 512>{}));
 }
 
-TEST(BoneRegion, IsRefusedUntilReadyAndWhereItIsAnotherRegion) {
+TEST(BoneRegion, is_refused_until_ready_and_where_it_is_another_region) {
     OwnedBoneRegion owned(small_head());
     EXPECT_NE(bone_refusal_of(copy_of(owned.fd())).find("ready mark"), std::string::npos);
     OwnedRegion<GuiRegion> other;
@@ -76,7 +76,7 @@ TEST(BoneRegion, IsRefusedUntilReadyAndWhereItIsAnotherRegion) {
     EXPECT_TRUE(MappedRegion<GuiRegion>::map(copy_of(owned.fd()), refusal).empty());
 }
 
-TEST(BoneRegion, CountsOutOfBoundsAreNotMade) {
+TEST(BoneRegion, counts_out_of_bounds_are_not_made) {
     BoneRegionHead head = small_head();
     head.bricks = 0;
     EXPECT_THROW(OwnedBoneRegion{head}, StartupError);
@@ -111,7 +111,7 @@ struct ForgedBone {
     }
 };
 
-TEST(BoneRegion, ForgedCountsAreRefusedWithBothValues) {
+TEST(BoneRegion, forged_counts_are_refused_with_both_values) {
     EXPECT_EQ(bone_refusal_of(ForgedBone{}.made()), "");
     struct Case {
         std::function<void(ForgedBone&)> spoil;

@@ -62,7 +62,7 @@ private:
     pid_t pid_;
 };
 
-TEST(Death, AWriterKilledWhilePublishingLeavesAWholeValueAndTheNextWriterGoesOn) {
+TEST(Death, a_writer_killed_while_publishing_leaves_a_whole_value_and_the_next_writer_goes_on) {
     OwnedRegion<DeathRegion> region;
     region.mark_ready();
     std::string refusal;
@@ -109,7 +109,7 @@ TEST(Death, AWriterKilledWhilePublishingLeavesAWholeValueAndTheNextWriterGoesOn)
     EXPECT_GT(cut_short, 0U) << "no kill came between push and publish; the test has proved little";
 }
 
-TEST(Death, AChildThatAskedForItEndsWithItsParent) {
+TEST(Death, a_child_that_asked_for_it_ends_with_its_parent) {
     std::array<int, 2> life{};
     ASSERT_EQ(pipe(life.data()), 0);
     Child parent([&] {
@@ -128,7 +128,7 @@ TEST(Death, AChildThatAskedForItEndsWithItsParent) {
     close(life[0]);
 }
 
-TEST(Death, AChildThatAskedTooLateIsTold) {
+TEST(Death, a_child_that_asked_too_late_is_told) {
     const pid_t child = fork();
     if (child == 0) _exit(end_with_parent(getppid() + 1, SIGKILL) ? 0 : 3);
     int status = 0;
@@ -147,7 +147,7 @@ protected:
     std::string folder_;
 };
 
-TEST_F(LinkDeath, TheControllerSeesEveryVisualProcessComeAndDieAndReadsEach) {
+TEST_F(LinkDeath, the_controller_sees_every_visual_process_come_and_die_and_reads_each) {
     OwnedRegion<RtRegion> rt;
     rt.mark_ready();
     LinkServer server("t", rt.fd());
@@ -184,7 +184,7 @@ TEST_F(LinkDeath, TheControllerSeesEveryVisualProcessComeAndDieAndReadsEach) {
     }
 }
 
-TEST_F(LinkDeath, TheVisualProcessGoesOnWhenTheControllerIsKilledAndAttachesToTheNext) {
+TEST_F(LinkDeath, the_visual_process_goes_on_when_the_controller_is_killed_and_attaches_to_the_next) {
     OwnedRegion<GuiRegion> gui;
     gui.mark_ready();
     LinkClient client("t", gui.fd());

@@ -15,8 +15,8 @@
 namespace tact {
 namespace {
 
-FrameFigures good() {
-    FrameFigures f{};
+FrameMetrics good() {
+    FrameMetrics f{};
     f.frames = 100;
     f.late = 3;
     f.due_s = 1.0 / 30.0;
@@ -24,42 +24,42 @@ FrameFigures good() {
     f.p99_s = f.run_p99_s = 0.05F;
     f.most_s = f.run_most_s = 0.3F;
     f.window = 99;
-    for (PassFigures& p : f.pass) p = {1e-3F, 2e-3F, -1.0F, -1.0F};
-    for (PassFigures& p : f.path) p = {1e-3F, 2e-3F, 3e-3F, 4e-3F};
+    for (PassMetrics& p : f.pass) p = {1e-3F, 2e-3F, -1.0F, -1.0F};
+    for (PassMetrics& p : f.path) p = {1e-3F, 2e-3F, 3e-3F, 4e-3F};
     return f;
 }
 
-TEST(Frames, FiguresThatCannotBeAreRefused) {
+TEST(Frames, figures_that_cannot_be_are_refused) {
     EXPECT_TRUE(plausible(good()));
-    EXPECT_TRUE(plausible(FrameFigures{}));
+    EXPECT_TRUE(plausible(FrameMetrics{}));
     const auto refused = [](const auto& spoil) {
-        FrameFigures f = good();
+        FrameMetrics f = good();
         spoil(f);
         return !plausible(f);
     };
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.late = 101; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.frames = f.late = ~std::uint64_t{0}; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.due_s = -1.0; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.due_s = std::numeric_limits<double>::infinity(); }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.p50_s = 0.06F; }));  // above p99
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.run_most_s = 0.04F; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.most_s = kNaN; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.gl_objects = ~0U; }));
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.heap_bytes = ~std::uint64_t{0}; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.late = 101; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.frames = f.late = ~std::uint64_t{0}; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.due_s = -1.0; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.due_s = std::numeric_limits<double>::infinity(); }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.p50_s = 0.06F; }));  // above p99
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.run_most_s = 0.04F; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.most_s = kNaN; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.gl_objects = ~0U; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.heap_bytes = ~std::uint64_t{0}; }));
     for (std::size_t i = 0; i < kPasses; ++i) {
-        EXPECT_TRUE(refused([i](FrameFigures& f) { f.pass[i].work_p50_s = kNaN; }));
-        EXPECT_TRUE(refused([i](FrameFigures& f) { f.pass[i].work_p50_s = -1.0F; }));
-        EXPECT_TRUE(refused([i](FrameFigures& f) { f.pass[i].drawn_p99_s = 1.0F; }));  // and p50 unknown
-        EXPECT_TRUE(refused([i](FrameFigures& f) { f.pass[i].drawn_p50_s = kNaN; }));
+        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].work_p50_s = kNaN; }));
+        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].work_p50_s = -1.0F; }));
+        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].drawn_p99_s = 1.0F; }));  // and p50 unknown
+        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].drawn_p50_s = kNaN; }));
     }
-    EXPECT_TRUE(refused([](FrameFigures& f) { f.path[2].work_p99_s = 1e9F; }));
+    EXPECT_TRUE(refused([](FrameMetrics& f) { f.path[2].work_p99_s = 1e9F; }));
 }
 
-TEST(Frames, AnyBytesAreJudgedWithoutHarm) {
+TEST(Frames, any_bytes_are_judged_without_harm) {
     std::mt19937 random(5);
     for (int i = 0; i < 20000; ++i) {
-        FrameFigures f{};
+        FrameMetrics f{};
         auto* const bytes = reinterpret_cast<unsigned char*>(&f);
         for (std::size_t k = 0; k < sizeof f; ++k) bytes[k] = static_cast<unsigned char>(random());
         if (!plausible(f)) continue;
@@ -68,7 +68,7 @@ TEST(Frames, AnyBytesAreJudgedWithoutHarm) {
     }
 }
 
-TEST(Frames, PassesAndPathsHaveNamesOfTheirOwn) {
+TEST(Frames, passes_and_paths_have_names_of_their_own) {
     std::set<std::string> seen;
     for (std::size_t i = 0; i < kPasses; ++i)
         EXPECT_TRUE(seen.insert(pass_text(static_cast<Pass>(i))).second) << i;
@@ -79,7 +79,7 @@ TEST(Frames, PassesAndPathsHaveNamesOfTheirOwn) {
     EXPECT_STREQ(visual_path_text(kVisualPaths), "");
 }
 
-TEST(RecentTimes, PercentilesAreOfTheLastOnesAlone) {
+TEST(RecentTimes, percentiles_are_of_the_last_ones_alone) {
     RecentTimes times(100);
     EXPECT_EQ(times.percentile_s(0.5), 0.0F);
     times.add(7.0);

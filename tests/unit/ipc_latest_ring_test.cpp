@@ -19,7 +19,7 @@ namespace {
 
 using Pattern = stress::Pattern<40>;
 
-TEST(Latest, ZeroBytesAreAnEmptyOne) {
+TEST(Latest, zero_bytes_are_an_empty_one) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     Pattern value = stress::pattern<40>(7);
     EXPECT_FALSE(latest->read(value));
@@ -27,7 +27,7 @@ TEST(Latest, ZeroBytesAreAnEmptyOne) {
     EXPECT_EQ(value.number(), 7U) << "a failed read changed the caller's value";
 }
 
-TEST(Latest, ReadGivesTheNewestAsOftenAsAsked) {
+TEST(Latest, read_gives_the_newest_as_often_as_asked) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     for (std::uint64_t n = 1; n < 30; ++n) {
         latest->publish(stress::pattern<40>(n));
@@ -43,7 +43,7 @@ TEST(Latest, ReadGivesTheNewestAsOftenAsAsked) {
 
 // Whatever bytes lie in the shared memory, a reader comes back with a bounded number of tries, and what it
 // takes is what some slot held.
-RC_GTEST_PROP(Latest, AnyBytesAreReadInBoundedTimeOrNotAtAll, ()) {
+RC_GTEST_PROP(Latest, any_bytes_are_read_in_bounded_time_or_not_at_all, ()) {
     using Small = Latest<stress::Pattern<2>>;
     const auto words = *rc::gen::container<std::vector<std::uint64_t>>(
         sizeof(Small) / 8,
@@ -60,7 +60,7 @@ RC_GTEST_PROP(Latest, AnyBytesAreReadInBoundedTimeOrNotAtAll, ()) {
     }
 }
 
-TEST(Ring, RecordsComeInOrderOnceAndWhole) {
+TEST(Ring, records_come_in_order_once_and_whole) {
     const auto ring = std::make_unique<Ring<Pattern, 16>>();
     RingCursor cursor;
     Pattern value{};
@@ -77,7 +77,7 @@ TEST(Ring, RecordsComeInOrderOnceAndWhole) {
     EXPECT_EQ(cursor.missed, 0U);
 }
 
-RC_GTEST_PROP(Ring, ALappedReaderLearnsExactlyHowManyItMissed, ()) {
+RC_GTEST_PROP(Ring, a_lapped_reader_learns_exactly_how_many_it_missed, ()) {
     const auto ring = std::make_unique<Ring<stress::Pattern<2>, 16>>();
     RingCursor cursor;
     stress::Pattern<2> value{};
@@ -95,7 +95,7 @@ RC_GTEST_PROP(Ring, ALappedReaderLearnsExactlyHowManyItMissed, ()) {
     }
 }
 
-TEST(Ring, TailSkipsWhatWasThereBefore) {
+TEST(Ring, tail_skips_what_was_there_before) {
     const auto ring = std::make_unique<Ring<Pattern, 16>>();
     for (std::uint64_t n = 1; n <= 5; ++n) ring->push(stress::pattern<40>(n));
     RingCursor cursor = ring->tail();
@@ -107,7 +107,7 @@ TEST(Ring, TailSkipsWhatWasThereBefore) {
     EXPECT_EQ(cursor.missed, 0U);
 }
 
-TEST(Ring, ACountThatRunsBackwardsRestartsTheReader) {
+TEST(Ring, a_count_that_runs_backwards_restarts_the_reader) {
     using Small = Ring<Pattern, 16>;
     const auto ring = std::make_unique<Small>();
     RingCursor cursor;
@@ -122,7 +122,8 @@ TEST(Ring, ACountThatRunsBackwardsRestartsTheReader) {
     EXPECT_EQ(value.number(), 1U);
 }
 
-RC_GTEST_PROP(Ring, AnyBytesAndAnyCursorAreReadInBoundedTime, (std::uint64_t next, std::uint64_t missed)) {
+RC_GTEST_PROP(Ring, any_bytes_and_any_cursor_are_read_in_bounded_time,
+              (std::uint64_t next, std::uint64_t missed)) {
     using Small = Ring<stress::Pattern<2>, 4>;
     const auto words = *rc::gen::container<std::vector<std::uint64_t>>(
         sizeof(Small) / 8,
@@ -137,7 +138,7 @@ RC_GTEST_PROP(Ring, AnyBytesAndAnyCursorAreReadInBoundedTime, (std::uint64_t nex
     RC_ASSERT(taken <= 4);  // no more than the ring holds
 }
 
-TEST(LatestThreads, ReadersAtFullSpeedNeverSeeATornOrAnOlderValue) {
+TEST(LatestThreads, readers_at_full_speed_never_see_a_torn_or_an_older_value) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     std::atomic<bool> stop{false};
     std::vector<std::thread> readers;
@@ -164,7 +165,7 @@ TEST(LatestThreads, ReadersAtFullSpeedNeverSeeATornOrAnOlderValue) {
     EXPECT_EQ(backwards, 0U);
 }
 
-TEST(RingThreads, AReaderAtFullSpeedSeesEveryRecordWholeAndInOrderOrKnowsThatItMissedIt) {
+TEST(RingThreads, a_reader_at_full_speed_sees_every_record_whole_and_in_order_or_knows_that_it_missed_it) {
     const auto ring = std::make_unique<Ring<Pattern, 64>>();
     std::atomic<std::uint64_t> written{0};
     std::atomic<bool> stop{false};

@@ -69,7 +69,7 @@ protected:
     OwnedRegion<GuiRegion> gui_;
 };
 
-TEST_F(Link, BothSidesReadTheOthersRegion) {
+TEST_F(Link, both_sides_read_the_others_region) {
     LinkServer server("t", rt_.fd());
     LinkClient client("t", gui_.fd());
     EXPECT_FALSE(client.poll().arrived);  // has asked
@@ -97,7 +97,7 @@ TEST_F(Link, BothSidesReadTheOthersRegion) {
     EXPECT_EQ(server.refused(), 0U);
 }
 
-TEST_F(Link, TheRegionOfTheBoneGoesOutWithTheOther) {
+TEST_F(Link, the_region_of_the_bone_goes_out_with_the_other) {
     BoneRegionHead head{};
     head.bricks = 3;
     head.brick_bytes = 512;
@@ -125,7 +125,7 @@ TEST_F(Link, TheRegionOfTheBoneGoesOutWithTheOther) {
     EXPECT_FALSE(news.bone_fd.valid());
 }
 
-TEST_F(Link, TheControllerKnowsWhoRecordsUntilThatOneIsGone) {
+TEST_F(Link, the_controller_knows_who_records_until_that_one_is_gone) {
     LinkServer server("t", rt_.fd());
     using Recorders = LinkServer::Recorders;
     EXPECT_EQ(server.recorders(), Recorders{});
@@ -149,7 +149,7 @@ TEST_F(Link, TheControllerKnowsWhoRecordsUntilThatOneIsGone) {
     EXPECT_EQ(server.recorders(), (Recorders{0, 1}));
 }
 
-TEST_F(Link, SecondControllerIsRefusedWithTheFirstOnesProcessId) {
+TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {
     const LinkServer first("t", rt_.fd());
     try {
         const LinkServer second("t", rt_.fd());
@@ -161,7 +161,7 @@ TEST_F(Link, SecondControllerIsRefusedWithTheFirstOnesProcessId) {
     EXPECT_NO_THROW(LinkServer("other", rt_.fd()));
 }
 
-TEST_F(Link, ClientWaitsInWordsAndAttachesWhenTheControllerComesAndComesAgain) {
+TEST_F(Link, client_waits_in_words_and_attaches_when_the_controller_comes_and_comes_again) {
     LinkClient client("t", -1);
     EXPECT_FALSE(client.poll().arrived);
     EXPECT_NE(client.status_text().find("none is running"), std::string::npos) << client.status_text();
@@ -178,7 +178,7 @@ TEST_F(Link, ClientWaitsInWordsAndAttachesWhenTheControllerComesAndComesAgain) {
     }
 }
 
-TEST_F(Link, SecondVisualProcessWatchesAndTakesOverWhenTheFirstGoes) {
+TEST_F(Link, second_visual_process_watches_and_takes_over_when_the_first_goes) {
     LinkServer server("t", rt_.fd());
     auto first = std::make_unique<LinkClient>("t", gui_.fd());
     LinkClient second("t", gui_.fd());
@@ -195,7 +195,7 @@ TEST_F(Link, SecondVisualProcessWatchesAndTakesOverWhenTheFirstGoes) {
     EXPECT_TRUE(news.gui_fd.valid());
 }
 
-TEST_F(Link, GarbageIsDroppedAndCountedAndHurtsNobodyElse) {
+TEST_F(Link, garbage_is_dropped_and_counted_and_hurts_nobody_else) {
     LinkServer server("t", rt_.fd());
     LinkClient watcher("t", -1);
     watcher.poll();
@@ -277,7 +277,7 @@ TEST_F(Link, GarbageIsDroppedAndCountedAndHurtsNobodyElse) {
     EXPECT_TRUE(watcher.attached());
 }
 
-TEST_F(Link, SilentClientsHoldNeitherTheServerNorTheirPlaces) {
+TEST_F(Link, silent_clients_hold_neither_the_server_nor_their_places) {
     LinkServer server("t", rt_.fd());
     std::vector<FileDescriptor> silent;
     for (int i = 0; i < 12; ++i) {
@@ -292,7 +292,7 @@ TEST_F(Link, SilentClientsHoldNeitherTheServerNorTheirPlaces) {
     EXPECT_TRUE(client.poll().arrived);
 }
 
-TEST_F(Link, ObserversAreLimited) {
+TEST_F(Link, observers_are_limited) {
     LinkServer server("t", rt_.fd());
     std::vector<FileDescriptor> observers;
     std::uint32_t last = 0;
@@ -309,7 +309,7 @@ TEST_F(Link, ObserversAreLimited) {
     EXPECT_EQ(server.refused(), 1U);
 }
 
-TEST_F(Link, ClientRefusesAControllerThatAnswersGarbage) {
+TEST_F(Link, client_refuses_a_controller_that_answers_garbage) {
     FileDescriptor fake(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -325,7 +325,7 @@ TEST_F(Link, ClientRefusesAControllerThatAnswersGarbage) {
     EXPECT_FALSE(client.attached());
 }
 
-TEST_F(Link, FolderThatOthersMayWriteToIsRefusedByBothSides) {
+TEST_F(Link, folder_that_others_may_write_to_is_refused_by_both_sides) {
     ASSERT_EQ(chmod(folder_.c_str(), 0777), 0);
     EXPECT_THROW(LinkServer("t", rt_.fd()), StartupError);
     LinkClient client("t", -1);
@@ -339,7 +339,7 @@ TEST_F(Link, FolderThatOthersMayWriteToIsRefusedByBothSides) {
     EXPECT_THROW(LinkServer("t", rt_.fd()), StartupError);
 }
 
-TEST_F(Link, SessionNamesAreNamesAndNotPaths) {
+TEST_F(Link, session_names_are_names_and_not_paths) {
     for (const char* const bad : {"", ".", "..", "a/b", "../x", "a b", "\xC3\xA4", ".hidden"}) {
         EXPECT_THROW((void)session_socket_path(bad), StartupError) << bad;
     }

@@ -58,7 +58,7 @@ protected:
         h.quat_dev_tool_xyzw[3] = 1.0;
         h.force_world_n[2] = 1.0 / 7.0;
         h.torque_world_n_m[0] = -2.0;
-        h.deadline_look = 9;
+        h.deadline_check = 9;
         h.at_wall = 1;
         return h;
     }
@@ -80,7 +80,7 @@ protected:
     std::filesystem::path path_;
 };
 
-TEST(RecordedPaths, KeepTheirFileNameAndNothingOfTheirFolders) {
+TEST(RecordedPaths, keep_their_file_name_and_nothing_of_their_folders) {
     EXPECT_EQ(without_folders("/home/anna/rod.tact"), "rod.tact");
     EXPECT_EQ(without_folders("rod.tact"), "rod.tact");
     EXPECT_EQ(without_folders("../rod.tact/"), "rod.tact");
@@ -103,12 +103,12 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
         add(w, 1, 2000);
         w.flush();
         add(w, 2001, 3000);
-        MailTopic mail{};
-        mail.step = 7;
-        mail.kind = 1;
-        mail.order = {.sequence = 5, .value = 0.5, .kind = 8, .index = 2, .body = 3};
-        mail.order.pos_model_m[2] = 1e-10 / 3.0;
-        w.add(mail);
+        MailboxTopic mailbox{};
+        mailbox.step = 7;
+        mailbox.kind = 1;
+        mailbox.order = {.sequence = 5, .value = 0.5, .kind = 8, .index = 2, .body = 3};
+        mailbox.order.pos_model_m[2] = 1e-10 / 3.0;
+        w.add(mailbox);
         w.close();
     }
     const RepairReport report = repair_recording(path_);
@@ -137,8 +137,8 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(std::memcmp(&h.t, &wanted, sizeof wanted), 0);
     EXPECT_EQ(h.pos_world_m[0], 1.0);
     EXPECT_EQ(h.pos_world_m[1], 0.1 / 3.0);
-    const auto mails = Hdf5Table::open(file.get(), kMailGroup, mail_columns(), sizeof(MailTopic));
-    MailTopic m{};
+    const auto mails = Hdf5Table::open(file.get(), kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
+    MailboxTopic m{};
     mails.read(0, 1, &m);
     EXPECT_EQ(m.order.body, 3U);
     EXPECT_EQ(m.order.pos_model_m[2], 1e-10 / 3.0);

@@ -49,9 +49,9 @@ std::string refusal_of(FileDescriptor fd) {
     return refusal;
 }
 
-TEST(Region, ForgingWithEverythingRightIsAccepted) { EXPECT_EQ(refusal_of(forge({})), ""); }
+TEST(Region, forging_with_everything_right_is_accepted) { EXPECT_EQ(refusal_of(forge({})), ""); }
 
-TEST(Region, EveryFieldOfTheHeaderIsCheckedAndBothValuesAreNamed) {
+TEST(Region, every_field_of_the_header_is_checked_and_both_values_are_named) {
     struct Case {
         const char* what;
         std::function<void(Forged&)> spoil;
@@ -100,7 +100,7 @@ TEST(Region, EveryFieldOfTheHeaderIsCheckedAndBothValuesAreNamed) {
     }
 }
 
-TEST(Region, EverySealIsDemanded) {
+TEST(Region, every_seal_is_demanded) {
     for (const int missing : {F_SEAL_SHRINK, F_SEAL_GROW, F_SEAL_FUTURE_WRITE, F_SEAL_SEAL}) {
         Forged f;
         f.seals = kAllSeals & ~missing;
@@ -110,7 +110,7 @@ TEST(Region, EverySealIsDemanded) {
     }
 }
 
-TEST(Region, WhatIsNoSealedMemoryIsRefused) {
+TEST(Region, what_is_no_sealed_memory_is_refused) {
     EXPECT_NE(refusal_of(FileDescriptor()), "");
     EXPECT_NE(refusal_of(FileDescriptor(12345)), "");
     EXPECT_NE(refusal_of(FileDescriptor(open("/dev/zero", O_RDWR | O_CLOEXEC))), "");
@@ -121,20 +121,20 @@ TEST(Region, WhatIsNoSealedMemoryIsRefused) {
     EXPECT_NE(refusal_of(FileDescriptor(ends[1])), "");
 }
 
-TEST(Region, ARegionOfTheOtherKindIsRefusedByName) {
+TEST(Region, a_region_of_the_other_kind_is_refused_by_name) {
     OwnedRegion<RtRegion> rt;
     rt.mark_ready();
     EXPECT_NE(refusal_of(again(rt.fd())).find("\"tact.rt\""), std::string::npos);
 }
 
-TEST(Region, IsRefusedUntilItIsMarkedReady) {
+TEST(Region, is_refused_until_it_is_marked_ready) {
     OwnedRegion<GuiRegion> gui;
     EXPECT_NE(refusal_of(again(gui.fd())).find("ready mark"), std::string::npos);
     gui.mark_ready();
     EXPECT_EQ(refusal_of(again(gui.fd())), "");
 }
 
-TEST(Region, WhatIsHandedOutCannotBeWrittenTruncatedOrMadeWritable) {
+TEST(Region, what_is_handed_out_cannot_be_written_truncated_or_made_writable) {
     OwnedRegion<GuiRegion> gui;
     gui.mark_ready();
     const FileDescriptor fd = again(gui.fd());
@@ -153,7 +153,7 @@ TEST(Region, WhatIsHandedOutCannotBeWrittenTruncatedOrMadeWritable) {
     EXPECT_EQ(refusal_of(again(gui.fd())), "") << "it still serves after all that";
 }
 
-TEST(Region, ReaderSeesWhatTheWriterWritesAfterwardsAndKeepsItWhenTheWriterIsGone) {
+TEST(Region, reader_sees_what_the_writer_writes_afterwards_and_keeps_it_when_the_writer_is_gone) {
     std::string refusal;
     MappedRegion<GuiRegion> mapped;
     std::uint64_t generation = 0;
@@ -173,7 +173,7 @@ TEST(Region, ReaderSeesWhatTheWriterWritesAfterwardsAndKeepsItWhenTheWriterIsGon
     EXPECT_EQ(mapped.generation(), generation);
 }
 
-TEST(Region, GenerationsDiffer) {
+TEST(Region, generations_differ) {
     std::set<std::uint64_t> seen;
     for (int i = 0; i < 50; ++i) seen.insert(OwnedRegion<GuiRegion>().generation());
     EXPECT_EQ(seen.size(), 50U);
@@ -201,7 +201,7 @@ struct alignas(64) Aligned {
     std::uint64_t a[2];
 };
 
-TEST(Region, LayoutHashTellsEveryChangeOfATopic) {
+TEST(Region, layout_hash_tells_every_change_of_a_topic) {
     EXPECT_NE(region_identity<RtRegion>().layout_hash, region_identity<GuiRegion>().layout_hash);
     const std::set<std::uint64_t> hashes = {TopicList<Base>::hash(),       TopicList<Renamed>::hash(),
                                             TopicList<Newer>::hash(),      TopicList<Longer>::hash(),

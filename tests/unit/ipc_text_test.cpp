@@ -26,7 +26,7 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
     EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
 }
 
-TEST(Text, EveryCodeHasWordsOfItsOwn) {
+TEST(Text, every_code_has_words_of_its_own) {
     expect_own_words(run_state_text, RunState::fault, false);
     expect_own_words(run_reason_text, RunReason::supervisor, true);
     expect_own_words(event_code_text, EventCode::device_notice, true);
@@ -38,14 +38,14 @@ TEST(Text, EveryCodeHasWordsOfItsOwn) {
     expect_own_words(frame_part_text, FramePart::particles, false);
 }
 
-TEST(Text, HeadCodesAreSpelledOut) {
+TEST(Text, head_codes_are_spelled_out) {
     EXPECT_STREQ(head_state_text(2), "fresh");
     EXPECT_STREQ(head_state_text(3), "unknown");
     EXPECT_STREQ(head_link_text(3), "bus off");
     EXPECT_STREQ(head_link_text(255), "unknown");
 }
 
-TEST(Text, EventsCarryTheirNumbersAndUnits) {
+TEST(Text, events_carry_their_numbers_and_units) {
     const auto text = [](EventCode code, double a, double b, std::uint16_t detail = 0) {
         EventTopic e{};
         e.detail = detail;
@@ -68,7 +68,7 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
-    EXPECT_EQ(text(EventCode::level_changed, kPicturePathIndex, 0.5), "level changed: picture to 0.5, start");
+    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: picture to 0.5, start");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
                    static_cast<std::uint16_t>(LevelReason::rate_low)),
               "level changed: force to 0.25, force rate below goal");
@@ -86,7 +86,7 @@ TEST(Text, EventsCarryTheirNumbersAndUnits) {
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }
 
-TEST(Text, HostileEventsAreOnlyWords) {
+TEST(Text, hostile_events_are_only_words) {
     for (const double bad :
          {std::nan(""), std::numeric_limits<double>::infinity(), -1e300, 1e300, -1.0, 256.0}) {
         for (unsigned code = 0; code < 300; ++code) {
@@ -99,7 +99,7 @@ TEST(Text, HostileEventsAreOnlyWords) {
     }
 }
 
-TEST(Text, OfABusOnlyWhatWasWrongIsSaid) {
+TEST(Text, of_a_bus_only_what_was_wrong_is_said) {
     EXPECT_EQ(bus_text({.packets = 5}), "");
     EXPECT_EQ(bus_text({.packets = 5, .checksum = 3, .lost = 12, .reconnects = 1}),
               "checksum 3, lost 12, connected again 1");
@@ -112,7 +112,7 @@ TEST(Text, OfABusOnlyWhatWasWrongIsSaid) {
         "refused 4294967295, bad seconds 4294967295");
 }
 
-TEST(Text, ScheduleIsSpelledOut) {
+TEST(Text, schedule_is_spelled_out) {
     EXPECT_EQ(schedule_text(0), "ordinary scheduling");
     EXPECT_EQ(schedule_text(kScheduleFifo | kSchedulePinned | kScheduleLocked),
               "FIFO, pinned, memory locked");

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "ipc/assets/progressive_mesh.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "prep/bake/bake_docking.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/synthetic/ring.hpp"
@@ -48,7 +48,7 @@ bool has_line(const std::string& note, const std::string& begin) {
     return note.starts_with(begin) || note.find("\n" + begin) != std::string::npos;
 }
 
-TEST(Bake, SceneHoldsEverythingTheOtherProgramsRead) {
+TEST(Bake, scene_holds_everything_the_other_programs_read) {
     const BakedDocking& baked = baked_ring().told;
     const SceneFile file = SceneFile::from_bytes(baked_ring().bytes, "ring");
     const SceneMeta meta = read_meta(file);
@@ -80,13 +80,13 @@ TEST(Bake, SceneHoldsEverythingTheOtherProgramsRead) {
     }
 }
 
-TEST(Bake, TheSameInputGivesTheSameScene) {
+TEST(Bake, the_same_input_gives_the_same_scene) {
     SceneWriter again;
     bake_docking(ring_input(), again);
     EXPECT_EQ(again.to_bytes(), baked_ring().bytes);
 }
 
-TEST(Bake, TheMapIsAboutAsWideAsTheHandReaches) {
+TEST(Bake, the_map_is_about_as_wide_as_the_hand_reaches) {
     for (double extent_m = 1e-9; extent_m < 1e-6; extent_m *= 1.07) {
         const double scale = world_per_model_for(extent_m);
         EXPECT_NEAR(std::log(scale * extent_m / 0.16), 0.0, 0.25) << extent_m;
@@ -97,7 +97,7 @@ TEST(Bake, TheMapIsAboutAsWideAsTheHandReaches) {
     EXPECT_EQ(world_per_model_for(2.67e-8), 6e6);
 }
 
-TEST(Bake, TheSceneIsCentredOnTheDensityAndLongTitlesEndBetweenCharacters) {
+TEST(Bake, the_scene_is_centred_on_the_density_and_long_titles_end_between_characters) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     input.title = "ab";
@@ -113,7 +113,7 @@ TEST(Bake, TheSceneIsCentredOnTheDensityAndLongTitlesEndBetweenCharacters) {
     EXPECT_LT(meta.centre_model_m[2], top_m);
 }
 
-TEST(Bake, GivenContourResolutionAndVertexLimitAreObeyed) {
+TEST(Bake, given_contour_resolution_and_vertex_limit_are_obeyed) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     input.contour = 60.0;
@@ -129,24 +129,26 @@ TEST(Bake, GivenContourResolutionAndVertexLimitAreObeyed) {
     EXPECT_TRUE(has_line(baked.note, "resolution: 12 Å, guessed")) << baked.note;
 }
 
-TEST(Bake, TheHandFeelsASmoothedMapWhereAskedWhileTheMapItselfStays) {
+TEST(Bake, the_hand_feels_a_smoothed_map_where_asked_while_the_map_itself_stays) {
     DockingInput input = ring_input();
     input.structures.resize(1);
-    input.felt_resolution_m = 18e-10;
+    input.force_map_resolution_m = 18e-10;
     SceneWriter out;
     const BakedDocking baked = bake_docking(input, out);
     const std::vector<std::byte> bytes = out.to_bytes();
     const SceneFile file = SceneFile::from_bytes(bytes, "felt");
     EXPECT_EQ(read_grid(file).values, input.grid.values);
-    EXPECT_EQ(read_felt_grid(file).values, low_pass(input.grid, baked.meta.map_background, 18e-10).values);
+    EXPECT_EQ(read_force_map_grid(file).values,
+              low_pass(input.grid, baked.meta.map_background, 18e-10).values);
     EXPECT_TRUE(has_line(baked.note, "felt map: smoothed")) << baked.note;
 
     EXPECT_TRUE(has_line(baked_ring().told.note, "felt map: as it is"));
-    EXPECT_EQ(read_felt_grid(SceneFile::from_bytes(baked_ring().bytes, "plain")).values, input.grid.values);
+    EXPECT_EQ(read_force_map_grid(SceneFile::from_bytes(baked_ring().bytes, "plain")).values,
+              input.grid.values);
 }
 
 // One bright voxel becomes the Gaussian of the stated width: its values, its sum and its background.
-TEST(LowPass, SpreadsAVoxelAsAGaussianOfTheStatedWidth) {
+TEST(LowPass, spreads_a_voxel_as_a_gaussian_of_the_stated_width) {
     DensityGrid grid;
     grid.size = {33, 35, 37};
     grid.spacing_m = Vec3(1e-10, 1.2e-10, 0.9e-10);
@@ -171,7 +173,7 @@ TEST(LowPass, SpreadsAVoxelAsAGaussianOfTheStatedWidth) {
     for (const float v : low_pass(flat, 2.0, resolution_m).values) EXPECT_NEAR(v, 2.0F, 1e-5F);
 }
 
-TEST(Bake, ImpossibleWishesAreRefused) {
+TEST(Bake, impossible_wishes_are_refused) {
     const auto error = [](auto&& change) {
         DockingInput input = ring_input();
         change(input);
@@ -192,7 +194,7 @@ TEST(Bake, ImpossibleWishesAreRefused) {
     EXPECT_NE(far.find("ring subunit D lies 99"), std::string::npos) << far;
 }
 
-TEST(Bake, StopsAtWhateverReportCancelsIt) {
+TEST(Bake, stops_at_whatever_report_cancels_it) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     std::set<std::string> stages;

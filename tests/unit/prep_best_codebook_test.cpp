@@ -35,7 +35,7 @@ Structure ball(std::size_t count, double radius_m, unsigned seed) {
     return s;
 }
 
-TEST(BestCodebook, IsOneOfTheRestartsAndNoneOfThemIsBetterOverAll) {
+TEST(BestCodebook, is_one_of_the_restarts_and_none_of_them_is_better_over_all) {
     const Structure s = ball(3000, 25.0 * kA, 1);
     const BestCodebook best = best_codebook(s);
     ASSERT_EQ(best.restarts, 4U);
@@ -74,7 +74,7 @@ TEST(BestCodebook, IsOneOfTheRestartsAndNoneOfThemIsBetterOverAll) {
     }
 }
 
-TEST(BestCodebook, RepeatsExactly) {
+TEST(BestCodebook, repeats_exactly) {
     const Structure s = ball(1500, 20.0 * kA, 2);
     const BestCodebook a = best_codebook(s), b = best_codebook(s);
     for (std::size_t l = 0; l < a.codebook.levels.size(); ++l) {
@@ -83,7 +83,7 @@ TEST(BestCodebook, RepeatsExactly) {
     }
 }
 
-TEST(BestCodebook, TenVectorsToThousandsFollowTheTheoryOfABall) {
+TEST(BestCodebook, ten_vectors_to_thousands_follow_the_theory_of_a_ball) {
     // Space is cut at best into cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway,
     // Sloane). Few cells feel the surface: there the bracket is wider.
     const double radius = 40.0 * kA;
@@ -102,7 +102,7 @@ TEST(BestCodebook, TenVectorsToThousandsFollowTheTheoryOfABall) {
     }
 }
 
-TEST(BestCodebook, SmallStructuresHaveNoLevelsAndCancellingStopsAllOfThem) {
+TEST(BestCodebook, small_structures_have_no_levels_and_cancelling_stops_all_of_them) {
     const BestCodebook none = best_codebook(ball(20, 5.0 * kA, 4));
     EXPECT_TRUE(none.codebook.levels.empty());
     EXPECT_TRUE(none.quality.empty());
@@ -113,7 +113,7 @@ TEST(BestCodebook, SmallStructuresHaveNoLevelsAndCancellingStopsAllOfThem) {
     EXPECT_EQ(calls, 3);
 }
 
-TEST(BestCodebook, RestartsAreFewerForLargeStructures) {
+TEST(BestCodebook, restarts_are_fewer_for_large_structures) {
     EXPECT_EQ(codebook_restarts(100), 4U);
     EXPECT_EQ(codebook_restarts(100'000), 2U);
     EXPECT_EQ(codebook_restarts(1'000'000), 1U);

@@ -17,7 +17,7 @@ void add_vertex(TriangleMesh& mesh, float x, float y, float z) {
     mesh.position_m.insert(mesh.position_m.end(), {x, y, z});
 }
 
-TEST(CleanMesh, ACleanMeshStaysAsItIs) {
+TEST(CleanMesh, a_clean_mesh_stays_as_it_is) {
     const TriangleMesh sheet = test::sheet(20, [](float x, float y) { return x * y; });
     TriangleMesh mesh = sheet;
     const CleanReport done = clean_mesh(mesh);
@@ -27,7 +27,7 @@ TEST(CleanMesh, ACleanMeshStaysAsItIs) {
     EXPECT_EQ(mesh.triangle, sheet.triangle);
 }
 
-TEST(CleanMesh, EachKindOfDefectIsDroppedAndCounted) {
+TEST(CleanMesh, each_kind_of_defect_is_dropped_and_counted) {
     TriangleMesh mesh = square();
     add_vertex(mesh, -0.0F, 0.0F, -0.0F);       // 4: is vertex 0
     add_vertex(mesh, 9.0F, 9.0F, 9.0F);         // 5: unused
@@ -54,7 +54,7 @@ TEST(CleanMesh, EachKindOfDefectIsDroppedAndCounted) {
               "\"triangles\":2}");
 }
 
-TEST(CleanMesh, ATornSheetIsWholeAgain) {
+TEST(CleanMesh, a_torn_sheet_is_whole_again) {
     const TriangleMesh whole = test::sheet(12, [](float x, float y) { return 0.3F * x * y; });
     TriangleMesh torn;  // three vertices a triangle
     for (const std::uint32_t v : whole.triangle) {
@@ -75,14 +75,14 @@ TEST(CleanMesh, ATornSheetIsWholeAgain) {
     EXPECT_EQ(test::topology(shaken).border_edges, 48U);
 }
 
-TEST(CleanMesh, OpenAndTangledMeshesAreTaken) {
+TEST(CleanMesh, open_and_tangled_meshes_are_taken) {
     TriangleMesh book = square();  // three pages at the edge 0 2
     add_vertex(book, 0.0F, 0.0F, 1.0F);
     book.triangle.insert(book.triangle.end(), {0, 2, 4});
     EXPECT_FALSE(clean_mesh(book).changed());
 }
 
-TEST(CleanMesh, WhatCannotBeRepairedIsRefused) {
+TEST(CleanMesh, what_cannot_be_repaired_is_refused) {
     TriangleMesh out_of_range = square();
     out_of_range.triangle[4] = 4;
     EXPECT_THROW(clean_mesh(out_of_range), StartupError);

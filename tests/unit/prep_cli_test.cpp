@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "ipc/assets/contour_mesh.hpp"
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/density/contour_mesh.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "tests/unit/prep_samples.hpp"
 
 namespace tact {
@@ -93,7 +93,7 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(Program, BakesTheDemoAndTellsWhatIsInIt) {
+TEST_F(Program, bakes_the_demo_and_tells_what_is_in_it) {
     const std::string scene = folder_ / "ring.tact";
     const Ended baked = run({"demo", "dock", "-o", scene, "--json"});
     ASSERT_EQ(baked.code, 0) << baked.err;
@@ -108,7 +108,7 @@ TEST_F(Program, BakesTheDemoAndTellsWhatIsInIt) {
     EXPECT_EQ(entries(), 1U);
 }
 
-TEST_F(Program, BakesAnotherContourOfAScene) {
+TEST_F(Program, bakes_another_contour_of_a_scene) {
     const std::string scene = folder_ / "ring.tact", out = folder_ / "c.tact";
     ASSERT_EQ(run({"demo", "dock", "-o", scene}).code, 0);
     const SceneFile file = SceneFile::open(scene);
@@ -129,7 +129,7 @@ TEST_F(Program, BakesAnotherContourOfAScene) {
     expect_refused({"contour", scene, "--level", "1", "-o", scene}, {"input"});
 }
 
-TEST_F(Program, BakesAMapAndAStructureFromFiles) {
+TEST_F(Program, bakes_a_map_and_a_structure_from_files) {
     sample::Mrc mrc;
     mrc.start = {-3, 2, 0};
     const std::string map = write("m.mrc", mrc.bytes()),
@@ -144,7 +144,7 @@ TEST_F(Program, BakesAMapAndAStructureFromFiles) {
     EXPECT_EQ(read_meta(file).contour, 10.0);
 }
 
-TEST_F(Program, BadInputIsRefusedByNamePlaceReasonAndMend) {
+TEST_F(Program, bad_input_is_refused_by_name_place_reason_and_mend) {
     const std::vector<char> good = sample::Mrc().bytes();
     const std::string map = write("good.mrc", good),
                       model = write("good.pdb", sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0)),
@@ -197,7 +197,7 @@ TEST_F(Program, BadInputIsRefusedByNamePlaceReasonAndMend) {
     EXPECT_EQ(run({"--help"}).code, 0);
 }
 
-TEST_F(Program, SimplifiesAMeshAndSaysWhatItDid) {
+TEST_F(Program, simplifies_a_mesh_and_says_what_it_did) {
     // A wavy sheet of 30 x 30 squares as OBJ, faces with four corners.
     std::string obj;
     for (int y = 0; y <= 30; ++y) {
@@ -234,7 +234,7 @@ TEST_F(Program, SimplifiesAMeshAndSaysWhatItDid) {
     EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 2);
 }
 
-TEST_F(Program, BakesBoneToDrillFromAScanOrMadeHere) {
+TEST_F(Program, bakes_bone_to_drill_from_a_scan_or_made_here) {
     const std::string scene = folder_ / "bone.tact";
     const Ended made = run({"drill", "--synthetic", "--voxels", "24", "-o", scene, "--json"});
     ASSERT_EQ(made.code, 0) << made.err;
@@ -264,7 +264,7 @@ TEST_F(Program, BakesBoneToDrillFromAScanOrMadeHere) {
     expect_refused({"drill", scan, "--labels", scan, "-o", scene, "--threshold-hu", "200"}, {"no voxel"});
 }
 
-TEST_F(Program, SaysInALogWhichShareOfTheWholeIsDone) {
+TEST_F(Program, says_in_a_log_which_share_of_the_whole_is_done) {
     const std::string dock = folder_ / "dock.tact", mesh = write("tetra.obj",
                                                                  "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n"
                                                                  "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
@@ -290,7 +290,7 @@ TEST_F(Program, SaysInALogWhichShareOfTheWholeIsDone) {
     }
 }
 
-TEST_F(Program, CtrlCLeavesNothingHalfWritten) {
+TEST_F(Program, ctrl_c_leaves_nothing_half_written) {
     // The demo takes a part of a second; on a busy machine the signal may come too late, so it is tried
     // again.
     bool cancelled = false;

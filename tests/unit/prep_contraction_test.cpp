@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "ipc/assets/isosurface.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/near_pairs.hpp"
 #include "prep/mesh/progressive.hpp"
@@ -62,7 +62,7 @@ TriangleMesh crumpled() {
                       -0.06);
 }
 
-TEST(Contraction, LeavesNoFoldAtAnyLevelOfACrumpledShell) {
+TEST(Contraction, leaves_no_fold_at_any_level_of_a_crumpled_shell) {
     const TriangleMesh fine = crumpled();
     ASSERT_GT(topology(fine).sharpest, -0.9);
     for (const std::uint32_t n : {4000U, 1000U, 300U, 100U, 30U}) {
@@ -92,7 +92,7 @@ double least_outward(const TriangleMesh& mesh) {
 }
 
 // Each step alone, and neighbours held off their folds, would let one turn over in many.
-TEST(Contraction, NoTriangleComesToFaceTheOtherSide) {
+TEST(Contraction, no_triangle_comes_to_face_the_other_side) {
     const TriangleMesh fine = rough_sphere(60);
     ASSERT_GT(least_outward(fine), 0.5);
     for (const std::uint32_t n : {3000U, 1000U, 300U}) {
@@ -104,7 +104,7 @@ TEST(Contraction, NoTriangleComesToFaceTheOtherSide) {
     }
 }
 
-TEST(Contraction, RelaxingBringsTheSurfaceNearer) {
+TEST(Contraction, relaxing_brings_the_surface_nearer) {
     const TriangleMesh fine = isosurface(sampled(33, torus), -0.25);
     Simplified coarse = simplify(fine, {.vertices_min = 150});
     const double before_m = two_sided(fine, coarse.mesh, 5000).rms_m;
@@ -117,7 +117,7 @@ TEST(Contraction, RelaxingBringsTheSurfaceNearer) {
     EXPECT_EQ(coarse.mesh.position_m, position_m);
 }
 
-TEST(Contraction, ARoundBorderKeepsItsAreaAndItsCurve) {
+TEST(Contraction, a_round_border_keeps_its_area_and_its_curve) {
     // A disc: the mean radius of its outline falls if border vertices move to chords, and grows if to
     // tangents.
     TriangleMesh disc;
@@ -144,14 +144,14 @@ TEST(Contraction, ARoundBorderKeepsItsAreaAndItsCurve) {
     EXPECT_LT(two_sided(disc, coarse.mesh, 5000).max_m, 0.08);
 }
 
-TEST(Contraction, WithoutPairsEveryPartStays) {
+TEST(Contraction, without_pairs_every_part_stays) {
     const TriangleMesh fine = balls(2, 0.1);
     const TriangleMesh coarse = simplify(fine, {.vertices_min = 0}).mesh;
     EXPECT_EQ(coarse.vertices(), 32U);  // eight tetrahedra
     EXPECT_EQ(topology(coarse).euler, 16);
 }
 
-TEST(Contraction, WithPairsPartsVanishAndTheRestStaysNear) {
+TEST(Contraction, with_pairs_parts_vanish_and_the_rest_stays_near) {
     const TriangleMesh fine = balls(3, 0.1);
     // Edges alone stop at 27 tetrahedra. With pairs half of the vertices do better than those.
     const TriangleMesh solid = simplify(fine, {.vertices_min = 54}).mesh;
@@ -163,7 +163,7 @@ TEST(Contraction, WithPairsPartsVanishAndTheRestStaysNear) {
     EXPECT_LT(two_sided(fine, coarse, 3000).rms_m, 0.5);  // of spheres of radius 1
 }
 
-TEST(Contraction, WithPairsSheetsThatMeetAreSewn) {
+TEST(Contraction, with_pairs_sheets_that_meet_are_sewn) {
     // Two sheets whose borders lie 0.02 edges apart: a scan that was not welded.
     TriangleMesh halves;
     constexpr std::uint32_t kSide = 12;
@@ -190,7 +190,7 @@ TEST(Contraction, WithPairsSheetsThatMeetAreSewn) {
     EXPECT_NEAR(area(sewn), 24.02 * 12.0, 0.02 * 24.02 * 12.0);
 }
 
-TEST(Contraction, PlacesWithThreeTrianglesAtAnEdgeStay) {
+TEST(Contraction, places_with_three_triangles_at_an_edge_stay) {
     // Three pages of a book: the spine is an edge with three triangles all along.
     TriangleMesh book;
     constexpr std::uint32_t kLong = 16, kWide = 6;
@@ -220,7 +220,7 @@ TEST(Contraction, PlacesWithThreeTrianglesAtAnEdgeStay) {
     EXPECT_NEAR(area(coarse.mesh), area(book), 0.02 * area(book));
 }
 
-TEST(Contraction, APartThatHangsByAVertexDoesNotConfuseTheCount) {
+TEST(Contraction, a_part_that_hangs_by_a_vertex_does_not_confuse_the_count) {
     TriangleMesh two;
     add_ball(two, {0, 0, 0}, 1.0);
     add_ball(two, {0, 0, 2.0}, 1.0);
@@ -233,7 +233,7 @@ TEST(Contraction, APartThatHangsByAVertexDoesNotConfuseTheCount) {
     EXPECT_LE(simplify(mesh, {.vertices_min = 50}).mesh.vertices(), 50U);
 }
 
-TEST(Contraction, ProgressiveMeshesWithPairsReverseExactly) {
+TEST(Contraction, progressive_meshes_with_pairs_reverse_exactly) {
     const TriangleMesh fine = balls(2, 0.05);
     const ProgressiveMeshData data = make_progressive(fine, {.pair_distance = 1.0});
     const ProgressiveMesh checked(data);  // throws where a level names what it has not
@@ -250,7 +250,7 @@ TEST(Contraction, ProgressiveMeshesWithPairsReverseExactly) {
     EXPECT_EQ(data.triangle.size(), fine.triangle.size());
 }
 
-TEST(NearPairs, AreThoseOfTheSlowSearch) {
+TEST(NearPairs, are_those_of_the_slow_search) {
     SeededRandom random(7);
     std::vector<Eigen::Vector3f> at;
     for (int i = 0; i < 400; ++i)

@@ -75,7 +75,7 @@ protected:
     sample::ScanFolder plain_, packed_;
 };
 
-TEST_P(PackedDicom, IsTheSameBone) {
+TEST_P(PackedDicom, is_the_same_bone) {
     BoneImport o;
     o.scan = packed_.path;
     const BoneData bone = import_bone(o).bone;
@@ -92,7 +92,7 @@ TEST_P(PackedDicom, IsTheSameBone) {
                     << l << ' ' << b << ' ' << u;
 }
 
-TEST_P(PackedDicom, ASliceThatIsCutShortIsNamed) {
+TEST_P(PackedDicom, a_slice_that_is_cut_short_is_named) {
     const fs::path cut = packed_.path / "s2.dcm";
     const auto bytes = fs::file_size(cut);
     fs::resize_file(cut, bytes - 40);

@@ -16,7 +16,7 @@
 #include "prep/export/write_structure_file.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/structure/import_structure.hpp"
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact {
 namespace {
@@ -129,7 +129,7 @@ void expect_same_place(const Structure& saved, const Structure& original, const 
     }
 }
 
-TEST(AtomMove, TurnsAdpsAsTheoryHasIt) {
+TEST(AtomMove, turns_adps_as_theory_has_it) {
     // A quarter turn about z takes x to y and y to -x.
     AtomMove quarter;
     quarter.turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -154,7 +154,7 @@ TEST(AtomMove, TurnsAdpsAsTheoryHasIt) {
     }
 }
 
-TEST_F(Export, APdbComesBackWhereTheBodyWas) {
+TEST_F(Export, a_pdb_comes_back_where_the_body_was) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const auto written = export_bodies(scene, {{7, 0, tilted()}}, {.folder = out()});
@@ -206,7 +206,7 @@ TEST_F(Export, APdbComesBackWhereTheBodyWas) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U);
 }
 
-TEST_F(Export, AnMmcifComesBackWhereTheBodyWas) {
+TEST_F(Export, an_mmcif_comes_back_where_the_body_was) {
     const fs::path file = write("small.cif", kCif);
     const SceneFile scene = this->scene({file});
     const auto written = export_bodies(scene, {{1, 0, tilted()}}, {.folder = out()});
@@ -233,7 +233,7 @@ TEST_F(Export, AnMmcifComesBackWhereTheBodyWas) {
     EXPECT_EQ(second.find("_tact_fit.body"), second.rfind("_tact_fit.body"));
 }
 
-TEST_F(Export, SavedFilesMakeANewSceneThatHasTheBodiesThere) {
+TEST_F(Export, saved_files_make_a_new_scene_that_has_the_bodies_there) {
     const SceneFile scene = this->scene({write("small.pdb", kPdb), write("other.cif", kCif)});
     std::vector<PlacedBody> bodies{{1, 0, tilted()}, {2, 1, tilted().inverse()}, {5, 0, Pose{}}};
     const auto written = export_bodies(scene, bodies, {.folder = out()});
@@ -246,7 +246,7 @@ TEST_F(Export, SavedFilesMakeANewSceneThatHasTheBodiesThere) {
     }
 }
 
-TEST_F(Export, TheMatrixAxisAndAngleAreThoseOfThePose) {
+TEST_F(Export, the_matrix_axis_and_angle_are_those_of_the_pose) {
     const fs::path file = write("small.pdb", kPdb);
     const auto written = export_bodies(scene({file}), {{3, 0, tilted()}}, {.folder = out()});
     std::istringstream text(read(written[1]));
@@ -279,7 +279,7 @@ TEST_F(Export, TheMatrixAxisAndAngleAreThoseOfThePose) {
     EXPECT_TRUE(row.starts_with("3,0,\"small.pdb\",\"small-body3.pdb\","));
 }
 
-TEST_F(Export, WhatDoesNotFitThePdbBecomesMmcif) {
+TEST_F(Export, what_does_not_fit_the_pdb_becomes_mmcif) {
     const fs::path file = write("small.pdb", kPdb);
     const Pose far{Vec3(-5000.0, 0.0, 0.0) * kA, tilted().q};
     const auto written = export_bodies(scene({file}), {{1, 0, far}}, {.folder = out()});
@@ -291,7 +291,7 @@ TEST_F(Export, WhatDoesNotFitThePdbBecomesMmcif) {
     EXPECT_EQ(atoms[8].model, 2);
 }
 
-TEST_F(Export, CopiesCombineWithAChainIdForEach) {
+TEST_F(Export, copies_combine_with_a_chain_id_for_each) {
     const SceneFile scene = this->scene({write("small.pdb", kPdb)});
     std::vector<PlacedBody> bodies;
     for (std::uint32_t i = 0; i < 6; ++i)
@@ -312,7 +312,7 @@ TEST_F(Export, CopiesCombineWithAChainIdForEach) {
     EXPECT_EQ(many.chain_names.size(), 80U);
 }
 
-TEST_F(Export, NothingIsOverwrittenAndInputsNever) {
+TEST_F(Export, nothing_is_overwritten_and_inputs_never) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
@@ -336,7 +336,7 @@ TEST_F(Export, NothingIsOverwrittenAndInputsNever) {
     EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = file / "x"}); }), "");
 }
 
-TEST_F(Export, ASourceThatIsGoneOrChangedIsSaid) {
+TEST_F(Export, a_source_that_is_gone_or_changed_is_said) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
@@ -356,7 +356,7 @@ TEST_F(Export, ASourceThatIsGoneOrChangedIsSaid) {
               std::string::npos);
 }
 
-TEST_F(Export, DamagedFilesAreRefusedInWords) {
+TEST_F(Export, damaged_files_are_refused_in_words) {
     for (const char* bad : {"ATOM      1  N   GLY A   1      11.1x4   6.134  -6.504\n",
                             "ATOM      1  N   GLY A   1      11.104   6.134\n",
                             "ATOM      1  N   GLY A   1         nan   6.134  -6.504\n"})

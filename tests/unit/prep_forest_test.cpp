@@ -23,7 +23,7 @@ TriangleMesh two_spheres_and_a_sheet() {
     return all;
 }
 
-TEST(VertexForest, EveryTriangleAppearsOnceAndNodesReachOverTheirTriangles) {
+TEST(VertexForest, every_triangle_appears_once_and_nodes_reach_over_their_triangles) {
     const TriangleMesh before = two_spheres_and_a_sheet();
     TriangleMesh mesh = before;
     const BuiltForest built = build_forest(mesh);
@@ -75,7 +75,7 @@ bool brings(const VertexForest& forest, std::uint32_t from, std::uint32_t to) {
     return seen[to];
 }
 
-TEST(VertexForest, NeedsAreThoseOfTheNumbersAndNoneIsWrittenThatAnotherBrings) {
+TEST(VertexForest, needs_are_those_of_the_numbers_and_none_is_written_that_another_brings) {
     TriangleMesh mesh = two_spheres_and_a_sheet();
     const BuiltForest built = build_forest(mesh);
     const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);
@@ -112,7 +112,7 @@ TEST(VertexForest, NeedsAreThoseOfTheNumbersAndNoneIsWrittenThatAnotherBrings) {
     }
 }
 
-TEST(VertexForest, AFlatFanOfManyTrianglesIsBuilt) {  // one vertex that would take part in every merge
+TEST(VertexForest, a_flat_fan_of_many_triangles_is_built) {  // one vertex that would take part in every merge
     TriangleMesh fan{{0, 0, 0}, {}};
     constexpr std::uint32_t kBlades = 2000;
     for (std::uint32_t i = 0; i < kBlades; ++i) {
@@ -125,7 +125,7 @@ TEST(VertexForest, AFlatFanOfManyTrianglesIsBuilt) {  // one vertex that would t
     EXPECT_LT(forest.roots(), 10U);
 }
 
-TEST(VertexForest, IsLocalWhereAskedFor) {
+TEST(VertexForest, is_local_where_asked_for) {
     const auto shape = [](double locality) {
         TriangleMesh mesh = test::sheet(60, [](float, float) { return 0.0F; });  // no error to go by
         const BuiltForest built = build_forest(mesh, {.locality = locality});
@@ -149,7 +149,7 @@ struct Baked {
     }
 };
 
-TEST(VertexForest, WhatIsWrittenIsReadAndNothingElseIsBelieved) {
+TEST(VertexForest, what_is_written_is_read_and_nothing_else_is_believed) {
     const Baked baked;
     const VertexForestData& good = baked.built.data;
     EXPECT_NO_THROW((void)baked.read(good));

@@ -32,7 +32,7 @@ void expect_values(const ImportedMap& map, const Mrc& mrc) {
     }
 }
 
-TEST(MrcMap, EveryModeAxisOrderAndByteOrderGivesTheSameVoxels) {
+TEST(MrcMap, every_mode_axis_order_and_byte_order_gives_the_same_voxels) {
     const std::array<int, 3> orders[] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}};
     for (const int mode : {0, 1, 2, 6}) {
         for (const auto& axes : orders) {
@@ -56,7 +56,7 @@ TEST(MrcMap, EveryModeAxisOrderAndByteOrderGivesTheSameVoxels) {
     }
 }
 
-TEST(MrcMap, MachineStampMagicAndExtendedHeaderDoNotMatter) {
+TEST(MrcMap, machine_stamp_magic_and_extended_header_do_not_matter) {
     for (const std::uint32_t stamp : {0U, 0x00004144U, 0x00001111U, 0x11110000U, 0xffffffffU}) {
         for (const bool big : {false, true}) {
             for (const int extended : {0, 160, 7}) {
@@ -71,7 +71,7 @@ TEST(MrcMap, MachineStampMagicAndExtendedHeaderDoNotMatter) {
     }
 }
 
-TEST(MrcMap, OriginWordsWinOverStartAndTheRuleIsSaid) {
+TEST(MrcMap, origin_words_win_over_start_and_the_rule_is_said) {
     Mrc mrc;
     mrc.start = {1, 1, 1};
     mrc.origin = {-17.5F, 0.0F, 40.25F};
@@ -85,14 +85,14 @@ TEST(MrcMap, OriginWordsWinOverStartAndTheRuleIsSaid) {
     EXPECT_NE(read(mrc).origin_rule.find("NSTART words 5-7 (1, 1, 1) x voxel"), std::string::npos);
 }
 
-TEST(MrcMap, VoxelIsCellOverIntervalsNotOverSize) {
+TEST(MrcMap, voxel_is_cell_over_intervals_not_over_size) {
     Mrc mrc;
     mrc.intervals = {5, 10, 16};
     const ImportedMap map = read(mrc);
     EXPECT_NEAR((map.grid.spacing_m - Vec3(2.4e-10, 1.5e-10, 1e-10)).norm(), 0.0, 1e-17);
 }
 
-TEST(MrcMap, ZeroIntervalsAndZeroAxesAreMendedAndSaid) {
+TEST(MrcMap, zero_intervals_and_zero_axes_are_mended_and_said) {
     Mrc mrc;
     mrc.intervals = {0, 5, 4};
     ImportedMap map = read(mrc);
@@ -107,7 +107,7 @@ TEST(MrcMap, ZeroIntervalsAndZeroAxesAreMendedAndSaid) {
 }
 
 // A linear field is kept exactly by trilinear resampling, so every voxel inside has a known value.
-TEST(MrcMap, SkewCellsAreResampledToTheRightPlaces) {
+TEST(MrcMap, skew_cells_are_resampled_to_the_right_places) {
     Mrc mrc;
     mrc.size = mrc.intervals = {12, 10, 8};
     mrc.cell = {24.0F, 30.0F, 32.0F};
@@ -136,7 +136,7 @@ TEST(MrcMap, SkewCellsAreResampledToTheRightPlaces) {
     EXPECT_GT(inside, 500);
 }
 
-TEST(SitusMap, RoundTripsThroughText) {
+TEST(SitusMap, round_trips_through_text) {
     const std::string text = "  2.500000 -49.5 0.25 3e1 4 5 4\n\n" + [] {
         std::string v;
         for (int i = 0; i < 80; ++i) v += std::to_string(i * 0.5) + (i % 10 == 9 ? "\n" : " ");
@@ -171,7 +171,7 @@ std::vector<char> with_float(int word, float value) {
 }
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(MrcMap, BadHeadersAreRefusedWithThePlaceAndTheReason) {
+TEST(MrcMap, bad_headers_are_refused_with_the_place_and_the_reason) {
     expect_refused({}, ".mrc", "0 bytes", "header");
     expect_refused(std::vector<char>(1023, '\0'), ".mrc", "1023 bytes", "header");
     expect_refused(std::vector<char>(5000, '\0'), ".mrc", "neither byte order", "sizes 0, 0, 0");
@@ -202,7 +202,7 @@ TEST(MrcMap, BadHeadersAreRefusedWithThePlaceAndTheReason) {
     expect_refused(thin.bytes(), ".mrc", "skew cell", "voxels at right angles");
 }
 
-TEST(MrcMap, DeclaredSizesAreRefusedBeforeMemoryIsTaken) {
+TEST(MrcMap, declared_sizes_are_refused_before_memory_is_taken) {
     std::vector<char> bytes = Mrc().bytes();
     for (int w = 1; w <= 3; ++w) {
         const std::uint32_t n = 16000;
@@ -211,7 +211,7 @@ TEST(MrcMap, DeclaredSizesAreRefusedBeforeMemoryIsTaken) {
     expect_refused(bytes, ".mrc", "words 1-3", "16000 x 16000 x 16000 voxels");
 }
 
-TEST(MrcMap, TruncatedAndOversizedFilesAreRefused) {
+TEST(MrcMap, truncated_and_oversized_files_are_refused) {
     const std::vector<char> whole = Mrc().bytes();
     for (const std::size_t n : {std::size_t{1024}, std::size_t{1500}, whole.size() - 1}) {
         expect_refused({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)}, ".mrc", "6 x 5 x 4",
@@ -224,7 +224,7 @@ TEST(MrcMap, TruncatedAndOversizedFilesAreRefused) {
     expect_refused(with_word(4, 0), ".mrc", "mode 0", "(oversized)");
 }
 
-TEST(MrcMap, VoxelsThatAreNotNumbersAreCounted) {
+TEST(MrcMap, voxels_that_are_not_numbers_are_counted) {
     std::vector<char> bytes = Mrc().bytes();
     const float inf = std::numeric_limits<float>::infinity();
     std::memcpy(bytes.data() + 1024 + 4 * (2 + 6 * (1 + 5 * 3)), &kNan, 4);
@@ -236,7 +236,7 @@ TEST(MrcMap, VoxelsThatAreNotNumbersAreCounted) {
     expect_refused(bytes, ".mrc", "all voxels", "same value");
 }
 
-TEST(SitusMap, BadTextIsRefusedWithTheLine) {
+TEST(SitusMap, bad_text_is_refused_with_the_line) {
     const auto refused = [](const std::string& text, const char* place, const char* reason) {
         expect_refused({text.begin(), text.end()}, ".situs", place, reason);
     };
@@ -281,12 +281,12 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(MapFiles, PackedAndPlainFilesAreTheSame) {
+TEST_F(MapFiles, packed_and_plain_files_are_the_same) {
     expect_values(import_map(write("a.map", Mrc().bytes())), Mrc());
     expect_values(import_map(write_gz("a.CCP4.gz", Mrc().bytes())), Mrc());
 }
 
-TEST_F(MapFiles, BadFilesAreRefusedByName) {
+TEST_F(MapFiles, bad_files_are_refused_by_name) {
     const auto error = [](const fs::path& path) { return sample::error_of([&] { (void)import_map(path); }); };
     EXPECT_NE(error(folder_ / "absent.mrc").find("absent.mrc: No such file"), std::string::npos);
     EXPECT_NE(error(write("empty.mrc", {})).find("empty.mrc: it is empty"), std::string::npos);
@@ -299,7 +299,7 @@ TEST_F(MapFiles, BadFilesAreRefusedByName) {
 }
 
 // Found by tests/fuzz/map_fuzz.cpp: 120 voxels that asked for 67 million.
-TEST(MrcMap, ASmallSkewFileDoesNotGrowIntoAHugeGrid) {
+TEST(MrcMap, a_small_skew_file_does_not_grow_into_a_huge_grid) {
     Mrc mrc;
     mrc.angles = {90.0F, 90.0F, 120.0F};
     mrc.cell = {12000.0F, 15000.0F, 16.0F};

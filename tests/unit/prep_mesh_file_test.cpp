@@ -130,7 +130,7 @@ double volume(const TriangleMesh& mesh) {
     return sum;
 }
 
-TEST(MeshFile, EveryFormatGivesTheSameTetrahedron) {
+TEST(MeshFile, every_format_gives_the_same_tetrahedron) {
     const std::pair<std::string, std::string> files[] = {{ply_ascii(), ".ply"},
                                                          {ply_binary(false), ".ply"},
                                                          {ply_binary(true), ".ply"},
@@ -151,12 +151,12 @@ TEST(MeshFile, EveryFormatGivesTheSameTetrahedron) {
     EXPECT_EQ(read(stl_binary(), ".stl").format, "STL binary");
 }
 
-TEST(MeshFile, FacesWithMoreCornersBecomeFans) {
+TEST(MeshFile, faces_with_more_corners_become_fans) {
     const TriangleMesh mesh = read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", ".obj").mesh;
     EXPECT_EQ(mesh.triangle, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
 }
 
-TEST(MeshFile, WhatCannotBeTrueIsRefusedWithThePlaceAndAMend) {
+TEST(MeshFile, what_cannot_be_true_is_refused_with_the_place_and_a_mend) {
     const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
         const std::size_t place = text.find(from);
         EXPECT_NE(place, std::string::npos) << from;
@@ -210,7 +210,7 @@ TEST(MeshFile, WhatCannotBeTrueIsRefusedWithThePlaceAndAMend) {
     }
 }
 
-TEST(MeshFile, WhatIsWrittenIsReadAgain) {
+TEST(MeshFile, what_is_written_is_read_again) {
     const fs::path path = fs::temp_directory_path() / ("tact-mesh-" + std::to_string(::getpid()) + ".ply");
     const TriangleMesh mesh = read(obj(), ".obj").mesh;
     write_ply(path, mesh);
@@ -222,7 +222,7 @@ TEST(MeshFile, WhatIsWrittenIsReadAgain) {
     EXPECT_THROW(write_ply(path / "no" / "folder.ply", mesh), StartupError);
 }
 
-TEST(MeshFile, MemoryIsToldBeforeItIsTakenAndAPackedFileIsTheSameMesh) {
+TEST(MeshFile, memory_is_told_before_it_is_taken_and_a_packed_file_is_the_same_mesh) {
     const fs::path path = fs::temp_directory_path() / ("tact-mesh-" + std::to_string(::getpid()) + ".off.gz");
     const gzFile packed = ::gzopen(path.c_str(), "wb");
     const std::string text = off();
@@ -239,7 +239,7 @@ TEST(MeshFile, MemoryIsToldBeforeItIsTakenAndAPackedFileIsTheSameMesh) {
     EXPECT_EQ(told[0].bytes, 96U);
 }
 
-TEST(MeshFile, RealMeshesAreReadAndSimplifiedWithoutNewFolds) {
+TEST(MeshFile, real_meshes_are_read_and_simplified_without_new_folds) {
     const fs::path em = sample::em_folder();
     const fs::path folder = em.empty() ? fs::path() : em.parent_path() / "meshes";
     if (!fs::is_directory(folder)) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/progressive_mesh.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
 
 namespace tact::test {
 

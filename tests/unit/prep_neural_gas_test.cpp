@@ -56,7 +56,7 @@ std::vector<Vec3> ball(std::size_t count, double radius_m, unsigned seed) {
     return at;
 }
 
-TEST(NeuralGas, ErrorOnAUniformLineIsThatOfEqualPieces) {
+TEST(NeuralGas, error_on_a_uniform_line_is_that_of_equal_pieces) {
     // N pieces of length L / N: rms distance to the middle is L / (N sqrt(12)), the least possible.
     const double length = 500.0 * kA;
     const Codebook codebook = build_codebook(structure(line(8000, length)));
@@ -68,7 +68,7 @@ TEST(NeuralGas, ErrorOnAUniformLineIsThatOfEqualPieces) {
     }
 }
 
-TEST(NeuralGas, ErrorInABallFallsWithTheCubeRootOfTheVectors) {
+TEST(NeuralGas, error_in_a_ball_falls_with_the_cube_root_of_the_vectors) {
     // Space is cut at best into cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway,
     // Sloane).
     const double radius = 40.0 * kA;
@@ -82,7 +82,7 @@ TEST(NeuralGas, ErrorInABallFallsWithTheCubeRootOfTheVectors) {
     }
 }
 
-TEST(NeuralGas, LevelsDoubleUpToHalfTheAtomsAndErrorsFall) {
+TEST(NeuralGas, levels_double_up_to_half_the_atoms_and_errors_fall) {
     const Codebook codebook = build_codebook(structure(ball(1000, 20.0 * kA, 2)));
     ASSERT_EQ(codebook.levels.size(), 5U);
     for (std::size_t l = 0; l < 5; ++l) {
@@ -95,7 +95,7 @@ TEST(NeuralGas, LevelsDoubleUpToHalfTheAtomsAndErrorsFall) {
     EXPECT_EQ(build_codebook(structure(ball(50, 20.0 * kA, 2))).levels.size(), 1U);
 }
 
-TEST(NeuralGas, KeepsMassAndCentreOfMassAtEveryLevel) {
+TEST(NeuralGas, keeps_mass_and_centre_of_mass_at_every_level) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(1.0, 32.0);
     std::vector<double> mass(3000);
@@ -116,7 +116,7 @@ TEST(NeuralGas, KeepsMassAndCentreOfMassAtEveryLevel) {
     }
 }
 
-TEST(NeuralGas, HeavyPartsGetMoreVectors) {
+TEST(NeuralGas, heavy_parts_get_more_vectors) {
     std::vector<Vec3> at = line(4000, 100.0 * kA);
     std::vector<double> mass;
     for (std::size_t i = 0; i < at.size(); ++i) mass.push_back(i < 2000 ? 8.0 : 1.0);
@@ -130,7 +130,7 @@ TEST(NeuralGas, HeavyPartsGetMoreVectors) {
     EXPECT_NEAR(static_cast<double>(heavy) / static_cast<double>(level.size()), 2.0 / 3.0, 0.1);
 }
 
-TEST(NeuralGas, GraphOfARingIsTheRing) {
+TEST(NeuralGas, graph_of_a_ring_is_the_ring) {
     std::vector<Vec3> at;
     for (int i = 0; i < 6000; ++i) {
         const double a = 2.0 * std::numbers::pi * i / 6000.0;
@@ -156,7 +156,7 @@ TEST(NeuralGas, GraphOfARingIsTheRing) {
     }
 }
 
-TEST(NeuralGas, TwoSeparateBodiesAreNotJoined) {
+TEST(NeuralGas, two_separate_bodies_are_not_joined) {
     std::vector<Vec3> at = ball(3000, 15.0 * kA, 4);
     for (std::size_t i = 0; i < 3000; ++i) at.push_back(at[i] + Vec3(80.0 * kA, 0.0, 0.0));
     const Codebook codebook = build_codebook(structure(at));
@@ -166,7 +166,7 @@ TEST(NeuralGas, TwoSeparateBodiesAreNotJoined) {
     }
 }
 
-TEST(NeuralGas, RepeatsExactlyForASeedAndDiffersForAnother) {
+TEST(NeuralGas, repeats_exactly_for_a_seed_and_differs_for_another) {
     const Structure s = structure(ball(2000, 25.0 * kA, 5));
     CodebookSettings settings;
     const Codebook a = build_codebook(s, settings), b = build_codebook(s, settings);
@@ -180,7 +180,7 @@ TEST(NeuralGas, RepeatsExactlyForASeedAndDiffersForAnother) {
     }
 }
 
-TEST(NeuralGas, CoincidingAtomsAndMasslessAtomsAreNoTrouble) {
+TEST(NeuralGas, coinciding_atoms_and_massless_atoms_are_no_trouble) {
     std::vector<Vec3> at(200, Vec3(1e-9, 2e-9, 3e-9));
     const Codebook same = build_codebook(structure(at));
     ASSERT_EQ(same.levels.size(), 3U);
@@ -194,14 +194,14 @@ TEST(NeuralGas, CoincidingAtomsAndMasslessAtomsAreNoTrouble) {
     }
 }
 
-TEST(NeuralGas, RefusesAtomsThatAreNowhereAndStopsWhenAsked) {
+TEST(NeuralGas, refuses_atoms_that_are_nowhere_and_stops_when_asked) {
     Structure s = structure(ball(200, 10.0 * kA, 7));
     EXPECT_THROW(build_codebook(s, {}, [](double, const char*) { return false; }), Cancelled);
     s.y_m[7] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_THROW(build_codebook(s), StartupError);
 }
 
-TEST(VectorGrid, FindsWhatASlowSearchFindsWhileVectorsMove) {
+TEST(VectorGrid, finds_what_a_slow_search_finds_while_vectors_move) {
     std::mt19937 random(8);
     std::uniform_real_distribution<double> u(-1.0, 1.0), wide(-1.6, 1.6);
     std::vector<Vec3> vectors;

@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact {
 namespace {
 
 using sample::error_of;
 
-TEST(PosesFile, ReadsWhatARunWritesAndPassesOverTheRest) {
+TEST(PosesFile, reads_what_a_run_writes_and_passes_over_the_rest) {
     const auto bodies = read_poses(
         R"({"seconds": 3, "bodies": [{"id": 4, "structure": 1, "name": "x", "flags": 1, "pos_model_a": [1, -2.5, 3],
             "quat_model_body_xyzw": [0, 0, 1, 0]}]})",
@@ -22,7 +22,7 @@ TEST(PosesFile, ReadsWhatARunWritesAndPassesOverTheRest) {
     EXPECT_EQ(bodies[0].T_model_body.q.z(), 1.0);
 }
 
-TEST(PosesFile, WhatCannotBeIsRefused) {
+TEST(PosesFile, what_cannot_be_is_refused) {
     const auto refused = [](const std::string& text) {
         return !error_of([&] { read_poses(text, "x", 2); }).empty();
     };

@@ -39,7 +39,7 @@ struct Pair {
     double fit;
 };
 
-TEST(RealFiles, MapValueAtTheBackboneOfFittedStructuresIsAsPublished) {
+TEST(RealFiles, map_value_at_the_backbone_of_fitted_structures_is_as_published) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     const Pair pairs[] = {
@@ -85,7 +85,7 @@ TEST(RealFiles, MapValueAtTheBackboneOfFittedStructuresIsAsPublished) {
     }
 }
 
-TEST(RealFiles, SizesVoxelsOriginsAndRulesAreAsDocumented) {
+TEST(RealFiles, sizes_voxels_origins_and_rules_are_as_documented) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     struct Row {
@@ -125,7 +125,7 @@ TEST(RealFiles, SizesVoxelsOriginsAndRulesAreAsDocumented) {
     EXPECT_GE(skew.grid.size[2], 73U);
 }
 
-TEST(RealFiles, StructuresOfAllKindsAreRead) {
+TEST(RealFiles, structures_of_all_kinds_are_read) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     const Structure ring = import_structure(folder / "1oel.pdb.gz").structure;

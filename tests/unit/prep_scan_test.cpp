@@ -77,7 +77,7 @@ std::string gzip(const std::string& plain) {
 
 const std::string kNrrd = "NRRD0004\n# a remark\ntype: short\ndimension: 3\nendian: little\n";
 
-TEST(Scans, NrrdInAnyAxisOrderIsTheSameBone) {
+TEST(Scans, nrrd_in_any_axis_order_is_the_same_bone) {
     const ScanFolder f;
     expect_bone(import_bone(hu(of(f.write("a.nrrd", kNrrd +
                                                         "sizes: 6 5 4\nspace: left-posterior-superior\n"
@@ -100,7 +100,7 @@ TEST(Scans, NrrdInAnyAxisOrderIsTheSameBone) {
             .bone);
 }
 
-TEST(Scans, MetaImagePlainPackedAndOfTheOtherByteOrder) {
+TEST(Scans, meta_image_plain_packed_and_of_the_other_byte_order) {
     const ScanFolder f;
     const std::string head =
         "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 6 5 4\n"
@@ -146,7 +146,7 @@ std::string nifti(bool big, bool sform, const std::string& numbers) {
     return h + numbers;
 }
 
-TEST(Scans, NiftiByMatrixAndByQuaternion) {
+TEST(Scans, nifti_by_matrix_and_by_quaternion) {
     const ScanFolder f;
     expect_bone(
         import_bone(hu(of(f.write("a.nii", nifti(false, true, sample::bone_numbers({3, 4, 2})))))).bone);
@@ -155,7 +155,7 @@ TEST(Scans, NiftiByMatrixAndByQuaternion) {
                     .bone);
 }
 
-TEST(Scans, WhatAHeaderDeclaresIsComparedWithWhatIsThere) {
+TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
     const ScanFolder f;
     const auto nrrd = [&](const std::string& fields) {
         return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
@@ -184,7 +184,7 @@ TEST(Scans, WhatAHeaderDeclaresIsComparedWithWhatIsThere) {
     EXPECT_TRUE(says(refusal(of(f.path / "absent.nrrd")), {"does not exist"}));
 }
 
-TEST(Scans, ValuesOfAnUnknownKindAreNotGuessed) {
+TEST(Scans, values_of_an_unknown_kind_are_not_guessed) {
     const ScanFolder f;
     const fs::path file = f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
                                                 sample::bone_numbers({0, 1, 2}));
@@ -195,7 +195,7 @@ TEST(Scans, ValuesOfAnUnknownKindAreNotGuessed) {
     EXPECT_TRUE(says(refusal(o), {"threshold is 300"}));
 }
 
-TEST(Scans, CropVoxelAndMemoryAreHeeded) {
+TEST(Scans, crop_voxel_and_memory_are_heeded) {
     const ScanFolder f;
     BoneImport o = hu(of(f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
                                                sample::bone_numbers({0, 1, 2}))));
@@ -232,7 +232,7 @@ void write_series(const ScanFolder& f, std::initializer_list<int> slices, const 
         f.write(numbered(name, 9 - u, ".dcm"), sample::dicom_bytes(sample::bone_slice(u)));
 }
 
-TEST(Dicom, SlicesAreSortedByPlaceAndScaledToHounsfieldUnits) {
+TEST(Dicom, slices_are_sorted_by_place_and_scaled_to_hounsfield_units) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3});
     f.write("notes.txt", "no picture");
@@ -245,7 +245,7 @@ TEST(Dicom, SlicesAreSortedByPlaceAndScaledToHounsfieldUnits) {
     expect_bone(import_bone(of(f.path / "s9.dcm")).bone);  // one of its files stands for the series
 }
 
-TEST(Dicom, NothingOfThePersonGoesOn) {
+TEST(Dicom, nothing_of_the_person_goes_on) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3}, "Doe^Jane-");
     std::vector<std::string> warned;
@@ -261,7 +261,7 @@ TEST(Dicom, NothingOfThePersonGoesOn) {
     EXPECT_TRUE(warned.empty());
 }
 
-TEST(Dicom, MissingDoubledAndBrokenSlicesAreNamed) {
+TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
     {
         const ScanFolder f;
         for (int u = 0; u < 8; ++u)
@@ -287,7 +287,7 @@ TEST(Dicom, MissingDoubledAndBrokenSlicesAreNamed) {
     EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
 }
 
-TEST(Dicom, OfSeveralSeriesOneIsChosenOrAllAreListed) {
+TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3});
     for (int u = 0; u < 3; ++u) {
@@ -317,7 +317,7 @@ TEST(Dicom, OfSeveralSeriesOneIsChosenOrAllAreListed) {
         chosen.note.end());
 }
 
-TEST(Dicom, UnevenSlicesAndATiltedGantryAreSaidAndEachSliceIsTakenFromWhereItIs) {
+TEST(Dicom, uneven_slices_and_a_tilted_gantry_are_said_and_each_slice_is_taken_from_where_it_is) {
     // A bone that is denser upwards and backwards: 20 + 4 z + 6 y, whatever slices see of it.
     const auto at = [](double y, double z) { return 20.0 + 4.0 * z + 6.0 * y; };
     for (const bool tilted : {false, true}) {
@@ -344,7 +344,7 @@ TEST(Dicom, UnevenSlicesAndATiltedGantryAreSaidAndEachSliceIsTakenFromWhereItIs)
     }
 }
 
-TEST(Dicom, WhatIsNoGreyScanIsRefused) {
+TEST(Dicom, what_is_no_grey_scan_is_refused) {
     const auto with = [](const std::function<void(sample::DicomSample&)>& change) {
         const ScanFolder f;
         for (int u = 0; u < 4; ++u) {
@@ -377,7 +377,7 @@ TEST(Dicom, WhatIsNoGreyScanIsRefused) {
         says(with([](sample::DicomSample& s) { s.maker = "NewTom VGi"; }), {"no error", "cone-beam"}));
 }
 
-TEST(Labels, NamesComeFromTheFileOrAListAndCriticalOnesAreDenseEnoughToBeMet) {
+TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enough_to_be_met) {
     const ScanFolder f;
     std::string numbers;
     for (int i = 0; i < 120; ++i) numbers += static_cast<char>(i < 6 ? 7 : i < 12 ? 3 : 0);
@@ -431,7 +431,7 @@ void write_png(const fs::path& path, std::uint32_t wide,
     ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr), 0);
 }
 
-TEST(Pictures, AreOrderedByNumberWithoutGaps) {
+TEST(Pictures, are_ordered_by_number_without_gaps) {
     EXPECT_EQ(stack_order({"a10.png", "a9.png", "readme.txt", "a008.png"}, "t"),
               (std::vector<std::string>{"a008.png", "a9.png", "a10.png"}));
     EXPECT_EQ(stack_order({"plane000.png", "plane0010.png", "plane001.png", "plane002.png", "plane003.png",
@@ -451,7 +451,7 @@ TEST(Pictures, AreOrderedByNumberWithoutGaps) {
     EXPECT_TRUE(says(why({}), {"no .png"}));
 }
 
-TEST(Pictures, ColoursAreStructuresAndOneOfThemIsBone) {
+TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     const ScanFolder f;
     const std::array<std::uint8_t, 4> bone{255, 249, 219, 255}, nerve{9, 8, 7, 255}, empty{1, 2, 3, 0};
     for (int k = 0; k < 3; ++k)
@@ -478,7 +478,7 @@ TEST(Pictures, ColoursAreStructuresAndOneOfThemIsBone) {
     EXPECT_TRUE(says(refusal(o), {"p2.png"}));
 }
 
-TEST(RealScans, AllAreRead) {
+TEST(RealScans, all_are_read) {
     const char* const shared = std::getenv("TACT_SHARED");
     const fs::path ct = fs::path(shared != nullptr ? shared : "../shared") / "data" / "ct";
     if (!fs::is_directory(ct)) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "ipc/assets/isosurface.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/mesh/relax.hpp"
 #include "prep/mesh/simplify_to_keep.hpp"
@@ -40,7 +40,7 @@ void expect_sound(const TriangleMesh& mesh) {
     EXPECT_EQ(t.flat_triangles, 0U);
 }
 
-TEST(Simplify, APlaneLosesVerticesWithoutError) {
+TEST(Simplify, a_plane_loses_vertices_without_error) {
     const TriangleMesh flat = sheet(20, [](float u, float v) { return 0.5F * u - 0.25F * v; });
     const Simplified result = simplify(flat, {.vertices_min = 8});
     EXPECT_EQ(result.mesh.vertices(), 8U);
@@ -53,7 +53,7 @@ TEST(Simplify, APlaneLosesVerticesWithoutError) {
     EXPECT_NEAR(flat_area(result.mesh), 1.0, 1e-3);
 }
 
-TEST(Simplify, EdgesOfACubeStayWhereTheyAre) {
+TEST(Simplify, edges_of_a_cube_stay_where_they_are) {
     // Six faces of 10 x 10 squares: the eight corners carry the whole shape.
     const DensityGrid grid = sampled(24, [](const Vec3& p) { return -p.cwiseAbs().maxCoeff(); });
     const TriangleMesh cube = isosurface(grid, -0.7);
@@ -63,7 +63,7 @@ TEST(Simplify, EdgesOfACubeStayWhereTheyAre) {
     EXPECT_NEAR(volume(coarse), volume(cube), 0.01 * volume(cube));
 }
 
-TEST(Simplify, ASphereKeepsItsVolumeAndStaysNear) {
+TEST(Simplify, a_sphere_keeps_its_volume_and_stays_near) {
     const TriangleMesh fine = isosurface(sampled(33, sphere), -0.7);
     const TriangleMesh coarse = simplify(fine, {.vertices_min = 100}).mesh;
     EXPECT_EQ(coarse.vertices(), 100U);
@@ -74,7 +74,7 @@ TEST(Simplify, ASphereKeepsItsVolumeAndStaysNear) {
     for (std::uint32_t v = 0; v < coarse.vertices(); ++v) EXPECT_NEAR(point(coarse, v).norm(), 0.7, 0.035);
 }
 
-TEST(Simplify, TheBorderIsKeptByItsPlanesAndLostWithoutThem) {
+TEST(Simplify, the_border_is_kept_by_its_planes_and_lost_without_them) {
     const TriangleMesh hill =
         sheet(24, [](float u, float v) { return 0.2F * std::sin(5.0F * u) * std::cos(4.0F * v); });
     const auto coarse = [&](double f, std::uint32_t n) {
@@ -92,7 +92,7 @@ TEST(Simplify, TheBorderIsKeptByItsPlanesAndLostWithoutThem) {
     EXPECT_LT(flat_area(lost), flat_area(coarse(kSeedBoundaryWeight, 30)));
 }
 
-TEST(Simplify, TopologyNeverChangesHoweverFarItGoes) {
+TEST(Simplify, topology_never_changes_however_far_it_goes) {
     const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
     const Simplified result = simplify(fine, {.vertices_min = 0});
     expect_sound(result.mesh);
@@ -101,7 +101,7 @@ TEST(Simplify, TopologyNeverChangesHoweverFarItGoes) {
     EXPECT_GE(result.mesh.vertices(), 7U);  // no torus has fewer
 }
 
-TEST(Simplify, RepeatsExactlyAndItsErrorNeverFalls) {
+TEST(Simplify, repeats_exactly_and_its_error_never_falls) {
     const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
     const Simplified a = simplify(fine, {}), b = simplify(fine, {});
     ASSERT_EQ(a.contraction.size(), b.contraction.size());
@@ -115,7 +115,7 @@ TEST(Simplify, RepeatsExactlyAndItsErrorNeverFalls) {
     }
 }
 
-TEST(Simplify, AngstromSizedMeshesAreTreatedLikeMetreSizedOnes) {
+TEST(Simplify, angstrom_sized_meshes_are_treated_like_metre_sized_ones) {
     const TriangleMesh metres = isosurface(sampled(17, torus), -0.25);
     TriangleMesh tiny = metres;
     for (float& x : tiny.position_m) x *= 1.1920929e-07F;  // 2^-23: exact
@@ -125,7 +125,7 @@ TEST(Simplify, AngstromSizedMeshesAreTreatedLikeMetreSizedOnes) {
         ASSERT_EQ(a.contraction[i].gone, b.contraction[i].gone) << i;
 }
 
-TEST(Simplify, AnyTriangleSoupIsTakenWithoutHarm) {
+TEST(Simplify, any_triangle_soup_is_taken_without_harm) {
     rc::check([] {
         TriangleMesh soup;
         const auto n = *rc::gen::inRange<std::uint32_t>(3, 30);
@@ -149,7 +149,7 @@ TEST(Simplify, AnyTriangleSoupIsTakenWithoutHarm) {
     });
 }
 
-TEST(Simplify, RefusesWhatIsNoMesh) {
+TEST(Simplify, refuses_what_is_no_mesh) {
     TriangleMesh bad = sheet(3, [](float, float) { return 0.0F; });
     bad.triangle[4] = 99;
     EXPECT_THROW(simplify(bad, {}), StartupError);
@@ -159,7 +159,7 @@ TEST(Simplify, RefusesWhatIsNoMesh) {
     EXPECT_THROW(make_progressive(TriangleMesh{}), StartupError);
 }
 
-TEST(Simplify, CanBeCancelled) {
+TEST(Simplify, can_be_cancelled) {
     const TriangleMesh fine = sheet(20, [](float u, float) { return u * u; });
     EXPECT_THROW(simplify(fine, {}, [](double, const char*) { return false; }), Cancelled);
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "ipc/assets/isosurface.hpp"
+#include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/border_distance.hpp"
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/mesh_folds.hpp"
@@ -13,7 +13,7 @@
 namespace tact::test {
 namespace {
 
-TEST(SimplifyToKeep, TriesWeightsOfTheBorderAndKeepsOneThatLosesNothingInBoth) {
+TEST(SimplifyToKeep, tries_weights_of_the_border_and_keeps_one_that_loses_nothing_in_both) {
     const TriangleMesh fine =
         sheet(14, [](float u, float v) { return 0.15F * std::sin(5.0F * u) * std::cos(4.0F * v); });
     for (const std::uint32_t n : {40U, 8U}) {
@@ -34,7 +34,7 @@ TEST(SimplifyToKeep, TriesWeightsOfTheBorderAndKeepsOneThatLosesNothingInBoth) {
     }
 }
 
-TEST(SimplifyToKeep, TakesTheUsualWeightForClosedMeshesAndTheOneThatIsGiven) {
+TEST(SimplifyToKeep, takes_the_usual_weight_for_closed_meshes_and_the_one_that_is_given) {
     EXPECT_EQ(simplify_to_keep(isosurface(sampled(17, torus), -0.25), {.vertices_min = 50}).boundary_weight,
               100.0);
     const TriangleMesh open = sheet(8, [](float u, float) { return u * u; });
@@ -44,7 +44,7 @@ TEST(SimplifyToKeep, TakesTheUsualWeightForClosedMeshesAndTheOneThatIsGiven) {
     for (const float x : simplify_to_keep(point, {}).simplified.mesh.position_m) EXPECT_EQ(x, 1.0F);
 }
 
-TEST(BorderDistance, OfTwoSquaresOneInsideTheOtherIsTheMeanOverBothBorders) {
+TEST(BorderDistance, of_two_squares_one_inside_the_other_is_the_mean_over_both_borders) {
     const auto square = [](float from, float to) {
         TriangleMesh mesh;
         mesh.position_m = {from, from, 0, to, from, 0, to, to, 0, from, to, 0};

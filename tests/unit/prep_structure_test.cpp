@@ -20,7 +20,7 @@ Vec3 place_a(const Structure& s, std::size_t i) {
     return (s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i])) * 1e10;
 }
 
-TEST(PdbStructure, CoordinatesMassesChainsAndBackboneAreRead) {
+TEST(PdbStructure, coordinates_masses_chains_and_backbone_are_read) {
     const Structure s =
         pdb(pdb_atom(" N  ", "ALA", 'B', 5, 1.0, 2.0, 3.0) + pdb_atom(" CA ", "ALA", 'B', 5, 4.0, -5.0, 6.5) +
             pdb_atom(" P  ", " DA", 'A', -2, 10.0, 10.0, 10.0) +
@@ -42,7 +42,7 @@ TEST(PdbStructure, CoordinatesMassesChainsAndBackboneAreRead) {
     EXPECT_LT(com.norm(), 1e-16) << "the body's origin is its centre of mass";
 }
 
-TEST(PdbStructure, HydrogensWatersAlternatesAndLaterModelsAreDropped) {
+TEST(PdbStructure, hydrogens_waters_alternates_and_later_models_are_dropped) {
     const std::string text =
         "MODEL        1\n" + pdb_atom(" CA ", "SER", 'A', 1, 1, 0, 0, 0.4, 'A') +
         pdb_atom(" CA ", "SER", 'A', 1, 2, 0, 0, 0.6, 'B') +
@@ -60,7 +60,7 @@ TEST(PdbStructure, HydrogensWatersAlternatesAndLaterModelsAreDropped) {
               "locations");
 }
 
-TEST(PdbStructure, OfAPointMutationOneResidueStays) {
+TEST(PdbStructure, of_a_point_mutation_one_residue_stays) {
     const Structure s = pdb(pdb_atom(" CA ", "SER", 'A', 1, 1, 0, 0, 0.4, 'A') +
                             pdb_atom(" OG ", "SER", 'A', 1, 2, 0, 0, 0.4, 'A') +
                             pdb_atom(" CA ", "THR", 'A', 1, 3, 0, 0, 0.6, 'B') +
@@ -69,14 +69,14 @@ TEST(PdbStructure, OfAPointMutationOneResidueStays) {
     EXPECT_NEAR(place_a(s, 0).x(), 3.0, 1e-4);
 }
 
-TEST(PdbStructure, BlankChainsAndMissingElementsWork) {
+TEST(PdbStructure, blank_chains_and_missing_elements_work) {
     const Structure s =
         pdb(pdb_atom(" CA ", "ALA", ' ', 1, 1, 2, 3) + pdb_atom(" OXT", "ALA", ' ', 1, 2, 2, 3));
     EXPECT_EQ(s.chain_names, (std::vector<std::string>{""}));
     EXPECT_EQ(s.element, (std::vector<std::uint8_t>{6, 8}));
 }
 
-TEST(PdbStructure, AnUnknownElementCountsAsCarbonAndThatIsSaid) {
+TEST(PdbStructure, an_unknown_element_counts_as_carbon_and_that_is_said) {
     const ImportedStructure in =
         import_structure_bytes(pdb_atom(" QQ ", "UNK", 'A', 1, 1, 2, 3, 1.0, ' ', " X"), "a.pdb", ".pdb");
     EXPECT_EQ(in.structure.element[0], 0);
@@ -91,7 +91,7 @@ constexpr char kLoop[] =
     "_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.occupancy\n_atom_site.pdbx_PDB_"
     "model_num\n";
 
-TEST(MmcifStructure, IsReadLikePdb) {
+TEST(MmcifStructure, is_read_like_pdb) {
     const Structure s = cif(std::string(kLoop) +
                             "ATOM C CA . ALA AAA 1 ? 1.5 2.5 -3.5 1.0 1\nATOM C CB A ALA AAA 1 ? 2 0 0 0.3 "
                             "1\nATOM C CB B ALA AAA 1 ? 3 0 0 0.7 1\n"
@@ -116,7 +116,7 @@ void expect_refused(const std::string& text, const char* ending, const char* pla
     EXPECT_NE(error.find("\n  mend: "), std::string::npos) << error;
 }
 
-TEST(PdbStructure, BadFilesAreRefusedWithTheLine) {
+TEST(PdbStructure, bad_files_are_refused_with_the_line) {
     const std::string good = pdb_atom(" CA ", "ALA", 'A', 1, 1, 2, 3);
     expect_refused("", ".pdb", "no atoms", "no atoms");
     expect_refused("REMARK nothing\nEND\n", ".pdb", "no atoms", "no atoms");
@@ -137,7 +137,7 @@ TEST(PdbStructure, BadFilesAreRefusedWithTheLine) {
     expect_refused("x", ".xyz", "'.xyz'", "not that of a structure");
 }
 
-TEST(MmcifStructure, BadFilesAreRefusedWithTheRow) {
+TEST(MmcifStructure, bad_files_are_refused_with_the_row) {
     expect_refused("", ".cif", "no atoms", "no atoms");
     expect_refused("data_x\n_cell.length_a 5\n", ".cif", "no atoms", "no atoms");
     expect_refused("loop_ _a _b 1 2 3\n", ".cif", "bad.cif", "read structure");

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "ipc/assets/density_map.hpp"
+#include "ipc/scene/density/density_map.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/synthetic/ring.hpp"
 
@@ -56,12 +56,12 @@ protected:
     static inline DensityMap* map_ = nullptr;
 };
 
-TEST_F(Ring, RepeatsAndDependsOnTheSeed) {
+TEST_F(Ring, repeats_and_depends_on_the_seed) {
     EXPECT_EQ(make_ring().grid.values, ring_->grid.values);
     EXPECT_NE(make_ring(2).grid.values, ring_->grid.values);
 }
 
-TEST_F(Ring, HasSixEqualSubunitsWithTheirOwnChains) {
+TEST_F(Ring, has_six_equal_subunits_with_their_own_chains) {
     ASSERT_EQ(ring_->subunits.size(), 6U);
     for (std::size_t k = 0; k < 6; ++k) {
         const Structure& s = ring_->subunits[k];
@@ -75,7 +75,7 @@ TEST_F(Ring, HasSixEqualSubunitsWithTheirOwnChains) {
     }
 }
 
-TEST_F(Ring, NeighboursDoNotRunThroughEachOther) {
+TEST_F(Ring, neighbours_do_not_run_through_each_other) {
     const Structure &a = ring_->subunits[0], &b = ring_->subunits[1];
     double nearest = 1.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -89,7 +89,7 @@ TEST_F(Ring, NeighboursDoNotRunThroughEachOther) {
     EXPECT_LT(nearest, 15.0 * kA);
 }
 
-TEST_F(Ring, MapIsDenseAtEveryAtomAndItsContourHoldsThem) {
+TEST_F(Ring, map_is_dense_at_every_atom_and_its_contour_holds_them) {
     const MapStatistics statistics = map_statistics(ring_->grid);
     const double contour =
         (choose_contour(ring_->grid, statistics).level - statistics.background) / statistics.sigma;
@@ -104,7 +104,7 @@ TEST_F(Ring, MapIsDenseAtEveryAtomAndItsContourHoldsThem) {
     }
 }
 
-TEST_F(Ring, FollowingTheForceFrom15AngstromAnd30DegreesLeadsHome) {
+TEST_F(Ring, following_the_force_from15_angstrom_and30_degrees_leads_home) {
     const Structure& s = ring_->subunits[0];
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
@@ -124,7 +124,7 @@ TEST_F(Ring, FollowingTheForceFrom15AngstromAnd30DegreesLeadsHome) {
     EXPECT_LT(rotation_vector_rad(stays.q).norm(), 3.0 * M_PI / 180.0);
 }
 
-TEST_F(Ring, NoOtherRotationInPlaceExplainsTheMapAsWell) {
+TEST_F(Ring, no_other_rotation_in_place_explains_the_map_as_well) {
     const Structure& s = ring_->subunits[0];
     const double at_home = sum(s, s.home()).density_sigma;
     std::mt19937_64 random(11);

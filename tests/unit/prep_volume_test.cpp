@@ -8,7 +8,7 @@
 #include "prep/volume/approach.hpp"
 #include "prep/volume/bake_bone.hpp"
 #include "prep/volume/distance.hpp"
-#include "tests/unit/assets_samples.hpp"
+#include "tests/unit/scene_samples.hpp"
 
 namespace tact {
 namespace {
@@ -36,7 +36,7 @@ const BoneData& made_64() {
     return bone;
 }
 
-TEST(MadeTemporalBone, RepeatsAndItsSeedIsOfCellsAndRoughnessAlone) {
+TEST(MadeTemporalBone, repeats_and_its_seed_is_of_cells_and_roughness_alone) {
     const BoneData bone = made(32), other = made(32, 2);
     EXPECT_EQ(bone.density, made(32).density);
     EXPECT_NE(bone.density, other.density);
@@ -47,7 +47,7 @@ TEST(MadeTemporalBone, RepeatsAndItsSeedIsOfCellsAndRoughnessAlone) {
     }
 }
 
-TEST(MadeTemporalBone, HasAllItsParts) {
+TEST(MadeTemporalBone, has_all_its_parts) {
     const BoneData& bone = made_64();
     ASSERT_EQ(bone.structure.size(), 9U);
     std::array<std::size_t, 10> count{};
@@ -60,7 +60,7 @@ TEST(MadeTemporalBone, HasAllItsParts) {
     for (std::size_t i = 1; i < count.size(); ++i) EXPECT_GT(count[i], 0U) << bone.structure[i - 1].name;
 }
 
-TEST(MadeTemporalBone, HasAHardShellOverCells) {
+TEST(MadeTemporalBone, has_a_hard_shell_over_cells) {
     const BoneData& bone = made_64();
     // Into the mastoid from the side, behind the ear canal and below it.
     const double mm = 64.0 / 50.0;
@@ -75,7 +75,7 @@ TEST(MadeTemporalBone, HasAHardShellOverCells) {
     EXPECT_GT(thin, 4U);
 }
 
-TEST(MadeTemporalBone, ASizeThatCannotBeIsRefusedBeforeMemoryIsTaken) {
+TEST(MadeTemporalBone, a_size_that_cannot_be_is_refused_before_memory_is_taken) {
     for (const std::uint32_t voxels : {0U, 15U, 1025U, 4000000000U}) {
         TemporalBone settings;
         settings.voxels = voxels;
@@ -83,13 +83,13 @@ TEST(MadeTemporalBone, ASizeThatCannotBeIsRefusedBeforeMemoryIsTaken) {
     }
 }
 
-TEST(MadeTemporalBone, CanBeCancelled) {
+TEST(MadeTemporalBone, can_be_cancelled) {
     TemporalBone settings;
     settings.voxels = 64;
     EXPECT_THROW((void)make_temporal_bone(settings, [](double, const char*) { return false; }), Cancelled);
 }
 
-TEST(Distances, AreThoseOfTheSlowWayAtGridPointsAndWithinTheStatedErrorBetween) {
+TEST(Distances, are_those_of_the_slow_way_at_grid_points_and_within_the_stated_error_between) {
     BoneData b;
     b.bricks.size = {13, 9, 11};
     b.bricks.voxel_m = 0.3e-3;
@@ -123,7 +123,7 @@ TEST(Distances, AreThoseOfTheSlowWayAtGridPointsAndWithinTheStatedErrorBetween) 
                  Cancelled);
 }
 
-TEST(BakedBone, HasEverySectionAndPutsTheHandInFrontOfTheBone) {
+TEST(BakedBone, has_every_section_and_puts_the_hand_in_front_of_the_bone) {
     BoneInput input;
     input.title = "test";
     input.bone = made_64();
@@ -186,13 +186,13 @@ struct Relief {
 
 double off_middle(const Vec3& at) { return std::hypot(at.x() - 40.0, at.y() - 40.0); }
 
-TEST(BoneHeights, BoneInTheMiddleIsMetThere) {
+TEST(BoneHeights, bone_in_the_middle_is_met_there) {
     const Relief plate([](std::uint32_t, std::uint32_t) { return 30; });
     EXPECT_LT(off_middle(plate.found()), 3.0);
     EXPECT_NEAR(plate.found().z(), 30.0, 1e-6);
 }
 
-TEST(BoneHeights, AHoleAnEdgeAndASplinterAreNotSetOn) {
+TEST(BoneHeights, a_hole_an_edge_and_a_splinter_are_not_set_on) {
     const auto squared = [](std::uint32_t x, std::uint32_t y) {
         return (static_cast<int>(x) - 40) * (static_cast<int>(x) - 40) +
                (static_cast<int>(y) - 40) * (static_cast<int>(y) - 40);
@@ -209,7 +209,7 @@ TEST(BoneHeights, AHoleAnEdgeAndASplinterAreNotSetOn) {
         << "the hand rests before the pin";
 }
 
-TEST(BoneHeights, ARidgeIsMetOnItsBackAndNotOnItsFlank) {
+TEST(BoneHeights, a_ridge_is_met_on_its_back_and_not_on_its_flank) {
     const Relief finger([](std::uint32_t x, std::uint32_t) {
         const double off = static_cast<double>(x) - 60.0;  // 8 mm wide
         return std::abs(off) < 8.0 ? static_cast<int>(20.0 + std::sqrt(64.0 - off * off)) : -1;
@@ -217,13 +217,13 @@ TEST(BoneHeights, ARidgeIsMetOnItsBackAndNotOnItsFlank) {
     EXPECT_NEAR(finger.found().x(), 60.0, 2.5);
 }
 
-TEST(BoneHeights, ALittleNearerToTheUserCountsAsALittleAside) {
+TEST(BoneHeights, a_little_nearer_to_the_user_counts_as_a_little_aside) {
     const Relief step([](std::uint32_t x, std::uint32_t) { return x < 36 ? 60 : 4; });
     EXPECT_LT(step.found().x(), 36.0);
     EXPECT_NEAR(step.found().z(), 60.0, 1e-6);
 }
 
-TEST(BoneHeights, WithoutAGoodPlaceItIsTheOutermostVoxel) {
+TEST(BoneHeights, without_a_good_place_it_is_the_outermost_voxel) {
     const Relief pins([](std::uint32_t x, std::uint32_t y) {
         return x == 10 && y == 70 ? 50 : x % 8 == 0 && y % 8 == 0 ? 20 : -1;
     });

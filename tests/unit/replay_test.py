@@ -91,7 +91,7 @@ def main():
         s.session("surface, adaptive", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1, "--mode", "chr")
         s.must("tact-prep", "drill", "--synthetic", "--voxels", 64, "-o", s.path("bone.tact"))
         s.seconds = max(s.seconds, 8.0)  # the surgeon first has to find the bone
-        _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "sucker", "--hand-at-mm", "-6,-1.5")
+        _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "suction-tube", "--hand-at-mm", "-6,-1.5")
         s.claim("bone was taken in it", said.get("removed_levels", 0) > 255, said)
         with open(recording, "rb") as file:
             s.claim("no folder of the run is in it", s.dir.encode() not in file.read())

@@ -17,11 +17,11 @@ TEST(Watchdogs, one_overrun_is_counted_three_are_warned_of_five_trip) {
     WatchdogInput late = fine();
     late.overran = true;
     for (int i = 1; i <= 4; ++i) {
-        EXPECT_EQ(dogs.look(late).reason, RunReason::none) << i;
+        EXPECT_EQ(dogs.check(late).reason, RunReason::none) << i;
         EXPECT_EQ(dogs.overruns_in_a_row(), static_cast<std::uint32_t>(i));
         EXPECT_EQ(dogs.warns(), i == 3);
     }
-    const Trip trip = dogs.look(late);
+    const Trip trip = dogs.check(late);
     EXPECT_EQ(trip.reason, RunReason::overruns);
     EXPECT_DOUBLE_EQ(trip.measured, 5.0);
 }
@@ -31,7 +31,7 @@ TEST(Watchdogs, a_good_cycle_between_forgets_the_row) {
     WatchdogInput late = fine();
     late.overran = true;
     for (int i = 0; i < 20; ++i) {
-        EXPECT_EQ(dogs.look(i % 5 == 4 ? fine() : late).reason, RunReason::none);
+        EXPECT_EQ(dogs.check(i % 5 == 4 ? fine() : late).reason, RunReason::none);
     }
 }
 
@@ -39,9 +39,9 @@ TEST(Watchdogs, five_milliseconds_late_trips_and_no_less) {
     Watchdogs dogs;
     WatchdogInput in = fine();
     in.lateness = microseconds(5000);
-    EXPECT_EQ(dogs.look(in).reason, RunReason::none);
+    EXPECT_EQ(dogs.check(in).reason, RunReason::none);
     in.lateness = microseconds(5001);
-    EXPECT_EQ(dogs.look(in).reason, RunReason::too_late);
+    EXPECT_EQ(dogs.check(in).reason, RunReason::too_late);
 }
 
 TEST(Watchdogs, where_timing_does_not_latch_it_is_still_counted) {
@@ -51,7 +51,7 @@ TEST(Watchdogs, where_timing_does_not_latch_it_is_still_counted) {
     WatchdogInput in = fine();
     in.lateness = std::chrono::seconds(1);
     in.overran = true;
-    for (int i = 0; i < 50; ++i) EXPECT_EQ(dogs.look(in).reason, RunReason::none);
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(dogs.check(in).reason, RunReason::none);
     EXPECT_EQ(dogs.overruns_in_a_row(), 50U);
 }
 
@@ -60,7 +60,7 @@ TEST(Watchdogs, a_sample_is_held_for_three_cycles_and_trips_at_the_fourth) {
     WatchdogInput in = fine();
     for (int cycles = 1; cycles <= 4; ++cycles) {
         in.now += microseconds(1000);
-        EXPECT_EQ(dogs.look(in).reason, cycles <= 3 ? RunReason::none : RunReason::sample_stale);
+        EXPECT_EQ(dogs.check(in).reason, cycles <= 3 ? RunReason::none : RunReason::sample_stale);
     }
 }
 
@@ -70,11 +70,11 @@ TEST(Watchdogs, a_lost_device_is_named_before_what_follows_from_it) {
     in.device_lost = in.device_fault = true;
     in.force_finite = false;
     in.now += std::chrono::seconds(1);
-    EXPECT_EQ(dogs.look(in).reason, RunReason::device_lost);
+    EXPECT_EQ(dogs.check(in).reason, RunReason::device_lost);
     in.device_lost = false;
-    EXPECT_EQ(dogs.look(in).reason, RunReason::device_fault);
+    EXPECT_EQ(dogs.check(in).reason, RunReason::device_fault);
     in.device_fault = false;
-    EXPECT_EQ(dogs.look(in).reason, RunReason::force_not_finite);
+    EXPECT_EQ(dogs.check(in).reason, RunReason::force_not_finite);
 }
 
 }  // namespace

@@ -128,9 +128,9 @@ struct VerifyCommand {
 };
 
 // What the set-up wanted: only root may read the journal.
-void add_wanted(VerifyFigures& figures) {
+void add_wanted(VerifyMetrics& metrics) {
     try {
-        if (const auto journal = read_journal("/")) figures.arguments_wanted = journal->kernel_arguments;
+        if (const auto journal = read_journal("/")) metrics.arguments_wanted = journal->kernel_arguments;
     } catch (const StartupError& e) {
         std::fprintf(stderr, "tact: %s\n", e.what());
     }
@@ -144,22 +144,22 @@ int verify(const VerifyCommand& o) {
                            "repeat it with sudo, or name another file with --out");
     VerifyOptions measure = o.measure;
     measure.seconds = 60.0 * o.minutes;
-    auto figures =
+    auto metrics =
         measure_station(measure, [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); });
-    if (!figures) return 130;
-    add_wanted(*figures);
+    if (!metrics) return 130;
+    add_wanted(*metrics);
     const VerifyLimits limits;
-    const json report = station_report_json(*figures, limits);
+    const json report = station_report_json(*metrics, limits);
     const std::string text = report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     write_whole(o.out, text);
     if (o.as_json) {
         std::fputs(text.c_str(), stdout);
     } else {
-        for (const Check& c : judge_station(*figures, limits))
+        for (const Check& c : judge_station(*metrics, limits))
             std::printf("%-4s  %-16s  %s\n", grade_text(c.grade), c.name.c_str(), c.text.c_str());
         std::printf("lateness p50 %.1f us, p99 %.1f us, p99.9 %.1f us, max %.1f us; cyclictest %s\n%s: %s\n",
-                    figures->p50_us, figures->p99_us, figures->p999_us, figures->max_us,
-                    figures->cyclictest_text.c_str(), report["status"].get<std::string>().c_str(),
+                    metrics->p50_us, metrics->p99_us, metrics->p999_us, metrics->max_us,
+                    metrics->cyclictest_text.c_str(), report["status"].get<std::string>().c_str(),
                     o.out.c_str());
     }
     return report["status"] == "fail" ? 1 : 0;

@@ -47,7 +47,7 @@ const char* grade_text(Grade grade) {
     return grade == Grade::pass ? "pass" : grade == Grade::warn ? "warn" : "fail";
 }
 
-std::vector<Check> judge_station(const VerifyFigures& f, const VerifyLimits& l) {
+std::vector<Check> judge_station(const VerifyMetrics& f, const VerifyLimits& l) {
     std::vector<Check> checks;
     checks.push_back(timed("lateness_p999", f.p999_us, l.p999_pass_us, l.p999_warn_us));
     checks.push_back(timed("lateness_max", f.max_us, l.max_pass_us, l.max_warn_us));
@@ -105,7 +105,7 @@ Grade worst_of(const std::vector<Check>& checks) {
     return worst;
 }
 
-json station_report_json(const VerifyFigures& f, const VerifyLimits& l) {
+json station_report_json(const VerifyMetrics& f, const VerifyLimits& l) {
     const std::vector<Check> checks = judge_station(f, l);
     json list = json::array();
     for (const Check& c : checks)

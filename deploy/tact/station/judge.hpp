@@ -11,7 +11,7 @@
 
 namespace tact::launch {
 
-struct VerifyFigures {
+struct VerifyMetrics {
     double seconds = 0.0, rate_hz = 0.0;
     std::uint64_t cycles = 0, overruns = 0, skipped = 0, allocations = 0, locks = 0, page_faults = 0;
     std::uint32_t schedule_flags = 0;  // ScheduleFlag of ipc/topics/health.hpp
@@ -44,8 +44,8 @@ struct Check {
 };
 
 [[nodiscard]] const char* grade_text(Grade grade);
-[[nodiscard]] std::vector<Check> judge_station(const VerifyFigures& f, const VerifyLimits& limits);
+[[nodiscard]] std::vector<Check> judge_station(const VerifyMetrics& f, const VerifyLimits& limits);
 [[nodiscard]] Grade worst_of(const std::vector<Check>& checks);
-[[nodiscard]] nlohmann::json station_report_json(const VerifyFigures& f, const VerifyLimits& limits);
+[[nodiscard]] nlohmann::json station_report_json(const VerifyMetrics& f, const VerifyLimits& limits);
 
 }  // namespace tact::launch

@@ -56,7 +56,7 @@ void need_emulated_device(const std::filesystem::path& config) {
 std::string trimmed(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 // The cycles between two samples of a histogram that only grows.
-void lateness_between(const LatenessTopic& before, const LatenessTopic& after, VerifyFigures& f) {
+void lateness_between(const LatenessTopic& before, const LatenessTopic& after, VerifyMetrics& f) {
     std::array<std::uint64_t, DurationHistogram::kBuckets> counts{};
     std::uint64_t total = 0, most_ns = 0;
     for (std::size_t b = 0; b < counts.size(); ++b) {
@@ -85,7 +85,7 @@ public:
           json_(scratch_.path() / "cyclictest.json") {}
 
     // False: a signal asked to end.
-    bool run(const std::filesystem::path& scene, VerifyFigures& f) {
+    bool run(const std::filesystem::path& scene, VerifyMetrics& f) {
         read_machine_state(f);
         start(scene);
         if (!wait_until_it_runs() || !pass(kSettleS, "start")) return false;
@@ -129,7 +129,7 @@ public:
     }
 
 private:
-    void read_machine_state(VerifyFigures& f) const {
+    void read_machine_state(VerifyMetrics& f) const {
         f.seconds = o_.seconds;
         f.verified_at_s = static_cast<std::int64_t>(std::time(nullptr));
         f.kernel = kernel_identity();
@@ -197,7 +197,7 @@ private:
         return place_cyclictest(servo, isolated, siblings);
     }
 
-    void start_cyclictest(const CyclictestPlace& place, VerifyFigures& f) {
+    void start_cyclictest(const CyclictestPlace& place, VerifyMetrics& f) {
         const auto program = find_in_path("cyclictest");
         f.cyclictest_text = place.text;
         if (program.empty()) {
@@ -213,7 +213,7 @@ private:
         if (s.output_fd >= 0) close(s.output_fd);
     }
 
-    void finish_cyclictest(VerifyFigures& f) {
+    void finish_cyclictest(VerifyMetrics& f) {
         if (!cyclictest_) return;
         const auto& ending = cyclictest_->wait(std::chrono::seconds(30));
         if (ending && ending->clean()) f.cyclictest_max_us = parse_cyclictest(read_small(json_));
@@ -235,14 +235,14 @@ private:
 
 }  // namespace
 
-std::optional<VerifyFigures> measure_station(const VerifyOptions& options,
+std::optional<VerifyMetrics> measure_station(const VerifyOptions& options,
                                              const std::function<void(const std::string&)>& report) {
     need_emulated_device(options.config);
     const std::filesystem::path scene =
         options.scene.empty() ? baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}})
                               : options.scene;
     if (scene.empty()) return std::nullopt;
-    VerifyFigures f;
+    VerifyMetrics f;
     Verification verification(options, report);
     if (!verification.run(scene, f)) return std::nullopt;
     return f;

@@ -19,7 +19,7 @@ struct VerifyOptions {
 };
 
 // Nothing: a signal ended it. Throws StartupError. `report` gets a line for a person now and then.
-[[nodiscard]] std::optional<VerifyFigures> measure_station(
+[[nodiscard]] std::optional<VerifyMetrics> measure_station(
     const VerifyOptions& options, const std::function<void(const std::string&)>& report);
 
 }  // namespace tact::launch

@@ -3,7 +3,7 @@
 //
 // Field     (depth / 4 A)^4 at a point, dimensionless, body frame. Depth is the distance to the nearest
 //           place where an atom's centre of another body may be: 2.8 A or more from all atoms (two carbons
-//           that overlap by 0.6 A, see ipc/assets/clashes.hpp). Zero outside, C2 throughout, never below 0.
+//           that overlap by 0.6 A, see ipc/scene/fit/clashes.hpp). Zero outside, C2 throughout, never below 0.
 // Points    atoms at the surface, some 5 A apart, at most 1024; in runs that lie close together, so that
 //           most of them are passed over where only corners of two bodies meet. point_weight: how many
 //           points of 5 A spacing one of them stands for.
@@ -13,8 +13,8 @@
 
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {

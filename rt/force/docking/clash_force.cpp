@@ -104,7 +104,7 @@ ClashResult clash_force(const ClashBody& active, std::span<const ClashBody> othe
 
 // Bodies at random rotations, come together from a random side to a random depth; which pair of structures
 // goes round, each with its own copy among them. The stiffness is the largest eigenvalue, by size, of the
-// slope of the force, over half an angstrom as in ipc/assets/docking_gain.cpp. K goes up or down by what is
+// slope of the force, over half an angstrom as in ipc/scene/density/docking_gain.cpp. K goes up or down by what is
 // left to the limit.
 ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_per_model) {
     ClashGains gains;

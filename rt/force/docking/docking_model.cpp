@@ -9,7 +9,7 @@
 #include <typeinfo>
 #include <utility>
 
-#include "ipc/assets/docking_gain.hpp"
+#include "ipc/scene/density/docking_gain.hpp"
 #include "rt/force/docking/reach.hpp"
 
 namespace tact {
@@ -19,7 +19,7 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
                            const DockingSettings& settings)
     : parts_(make_docking_parts(meta, grid, structures, codebooks)),
       energy_j_per_sigma_(start_energy_j_per_sigma(meta, settings)),
-      whole_(make_felt_density(*parts_, newtons_per_gradient(), 0, {})),
+      whole_(make_force_map(*parts_, newtons_per_gradient(), 0, {})),
       built_(whole_),
       felt_(whole_.get()),
       bodies_(start_bodies(*parts_, settings), static_cast<std::uint32_t>(parts_->structures.size())) {
@@ -34,13 +34,12 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
       energy_j_per_sigma_(like.energy_j_per_sigma_),
       clash_gains_(like.clash_gains_),
       bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())) {
-    const std::uint32_t asked = bodies.options_asked & kFeltOptions;
+    const std::uint32_t asked = bodies.options_asked & kForceMapOptions;
     const std::uint32_t asked_whole = asked & ~kOptionSubtraction;
     whole_ = like.whole_->options == asked_whole
                  ? like.whole_
-                 : make_felt_density(*parts_, newtons_per_gradient(), asked_whole, bodies);
-    built_ =
-        asked == asked_whole ? whole_ : make_felt_density(*parts_, newtons_per_gradient(), asked, bodies);
+                 : make_force_map(*parts_, newtons_per_gradient(), asked_whole, bodies);
+    built_ = asked == asked_whole ? whole_ : make_force_map(*parts_, newtons_per_gradient(), asked, bodies);
     felt_ = built_.get();
     bodies_.list() = bodies;
     error_scale_.fill(1.0);
@@ -50,7 +49,7 @@ LevelBlend DockingModel::blend() const noexcept {
     const std::size_t structure = bodies_.structure();
     return {.map = felt_->map,
             .levels = parts_->levels[structure],
-            .figures = felt_->figures[structure],
+            .metrics = felt_->metrics[structure],
             .error_scale = error_scale_[structure],
             .energy_j_per_sigma = energy_j_per_sigma_,
             .newtons_per_gradient = newtons_per_gradient()};
@@ -171,7 +170,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
 // A measurement above the bound raises the bound of all levels of this structure, for good. A step that used
 // old sums says nothing about its level, and has no time for this either.
 void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noexcept {
-    if (result.status != StepStatus::ok || result.load.fresh < 1.0F) return;
+    if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F) return;
     double& scale = error_scale_[bodies_.structure()];
     const double per_newton = 1.0 / std::max(newtons_per_gradient(), 1e-300);
     if (!audit_.step(felt_->map, parts_->levels[bodies_.structure()].back(), T_model_body,
@@ -196,8 +195,8 @@ void DockingModel::let_go() noexcept {
 // The density that is as ordered, where there is one. A body must never feel a density that lacks the body
 // itself, and does so where another one was in the hand when it was made. True: another one than before.
 bool DockingModel::choose_density() noexcept {
-    const FeltDensity* const before = felt_;
-    const std::uint32_t asked = bodies_.list().options_asked & kFeltOptions;
+    const ForceMap* const before = felt_;
+    const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
     const bool fits = (built_->options & kOptionSubtraction) == 0 || built_->active_id == bodies_.active_id();
     if (fits && built_->options == asked) {
         felt_ = built_.get();
@@ -214,7 +213,7 @@ void DockingModel::show_options() noexcept {
 
 bool DockingModel::order(const ModelOrder& order) noexcept {
     if (order.kind == ModelOrder::Kind::option) {
-        if ((order.option & ~(kFeltOptions | kOptionClash)) != 0 || order.option == 0) return false;
+        if ((order.option & ~(kForceMapOptions | kOptionClash)) != 0 || order.option == 0) return false;
         std::uint32_t& asked = bodies_.list().options_asked;
         const std::uint32_t before = asked;
         asked = order.on ? asked | order.option : asked & ~order.option;
@@ -248,7 +247,7 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
 
 bool DockingModel::stale() const noexcept {
     if (!bodies_.in_hand()) return false;
-    const std::uint32_t asked = bodies_.list().options_asked & kFeltOptions;
+    const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
     if (asked != felt_->options) return true;
     return (asked & kOptionSubtraction) != 0 && felt_->others != bodies_.list().others;
 }

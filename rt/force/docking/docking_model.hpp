@@ -27,16 +27,16 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
 #include "rt/force/docking/docking_start.hpp"
 #include "rt/force/docking/error_audit.hpp"
-#include "rt/force/docking/felt_density.hpp"
+#include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/level_blend.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
@@ -51,7 +51,7 @@ public:
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
-    // By the choice of the scene's gain (ipc/assets/docking_gain.hpp), and of the clash on top.
+    // By the choice of the scene's gain (ipc/scene/density/docking_gain.hpp), and of the clash on top.
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -100,8 +100,8 @@ private:
     ClashGains clash_gains_;
     // With nothing subtracted, and as ordered when this model was built: maybe the same. What is felt is one
     // of the two, so that a step can go from one to the other.
-    std::shared_ptr<const FeltDensity> whole_, built_;
-    const FeltDensity* felt_;
+    std::shared_ptr<const ForceMap> whole_, built_;
+    const ForceMap* felt_;
     DockingBodies bodies_;
     // The grip: translation from tool to centre of mass (world axes, it does not turn with the tool), and
     // rotation.

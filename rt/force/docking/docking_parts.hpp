@@ -11,15 +11,15 @@
 #include <mutex>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/structure.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {
 
-// Of the Laplacian, the same whatever is subtracted (felt_density.hpp): found when first asked for, then kept.
+// Of the Laplacian, the same whatever is subtracted (force_map.hpp): found when first asked for, then kept.
 struct LaplacianUnit {
     std::once_flag once;
     double value = 0.0;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
 

@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "ipc/assets/density_map.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/density/density_map.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {

@@ -48,12 +48,12 @@ std::uint32_t LevelBlend::items(float fidelity) const noexcept {
     return static_cast<std::uint32_t>(levels[plan(fidelity).upper].size());
 }
 
-double LevelBlend::error_n(std::size_t level) const noexcept { return error_scale * figures[level].error_n; }
+double LevelBlend::error_n(std::size_t level) const noexcept { return error_scale * metrics[level].error_n; }
 
 PathLoad LevelBlend::predict(float fidelity) const noexcept {
     const Plan p = plan(fidelity);
     PathLoad load;
-    load.cost_predicted = figures[p.lower].cost + (p.upper != p.lower ? figures[p.upper].cost : Duration{0});
+    load.cost_predicted = metrics[p.lower].cost + (p.upper != p.lower ? metrics[p.upper].cost : Duration{0});
     load.error = (1.0 - p.blend) * error_n(p.lower) + p.blend * error_n(p.upper);
     load.items = static_cast<std::uint32_t>(levels[p.upper].size());
     return load;
@@ -65,7 +65,7 @@ PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model
     const Deadline deadline = points.size() > DockingParts::kAlways ? budget.deadline : Deadline();
     if (kept != nullptr && points.size() >= PartialSums::kPointsMin)
         return (*kept)[level % kept->size()].step(map, points, T_model_body,
-                                                  static_cast<double>(budget.share), deadline);
+                                                  static_cast<double>(budget.work_fraction), deadline);
     PartialSums::Result result;
     result.complete = sum_until(map, points.view(), T_model_body, deadline, result.sums);
     return result;
@@ -89,7 +89,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
         result.wrench_world = wrench(sum.sums);
         result.load.error = error_n(level) + newtons_per_gradient * sum.stale;
         result.load.items = static_cast<std::uint32_t>(levels[level].size());
-        result.load.fresh = sum.fresh;
+        result.load.recomputed_fraction = sum.recomputed_fraction;
     };
     const std::size_t wanted = levels[p.lower].size();
     if (wanted > DockingParts::kAlways) {  // something to fall back on, small beside the whole
@@ -117,7 +117,8 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
                                                                              p.blend * upper.stale);
                 result.load.items = promised.items;
                 const auto m = static_cast<float>(wanted), n = static_cast<float>(levels[p.upper].size());
-                result.load.fresh = (m * lower.fresh + n * upper.fresh) / (m + n);
+                result.load.recomputed_fraction =
+                    (m * lower.recomputed_fraction + n * upper.recomputed_fraction) / (m + n);
             }
         } else if (budget.deadline.passed()) {
             result.status = StepStatus::out_of_time;  // complete, but too late

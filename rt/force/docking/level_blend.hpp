@@ -14,9 +14,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
 #include "ipc/base/rt.hpp"
-#include "rt/force/docking/felt_density.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/partial_sums.hpp"
 #include "rt/force/docking/point_set.hpp"
 #include "rt/force/force_model.hpp"
@@ -29,7 +29,7 @@ using KeptSums = std::array<PartialSums, 2>;
 struct LevelBlend {
     const DensityMap& map;
     const std::vector<PointSet>& levels;       // sizes rising; the last is all atoms
-    const std::vector<LevelFigures>& figures;  // of each level, in this map
+    const std::vector<LevelMetrics>& metrics;  // of each level, in this map
     double error_scale;                        // times the error of the figures
     double energy_j_per_sigma;
     double newtons_per_gradient;  // of the force in the world, by the gradient in sigma per model metre

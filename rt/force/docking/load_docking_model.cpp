@@ -18,7 +18,7 @@ std::unique_ptr<DockingModel> load_docking_model(const SceneFile& scene, const D
         structures.push_back(read_structure(scene, i));
         codebooks.push_back(read_codebook(scene, i));
     }
-    return std::make_unique<DockingModel>(meta, read_felt_grid(scene), structures, codebooks, settings);
+    return std::make_unique<DockingModel>(meta, read_force_map_grid(scene), structures, codebooks, settings);
 }
 
 }  // namespace tact

@@ -84,7 +84,7 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
         if (turn < due) next_ = (k + 1) % kSlices;
     }
     for (const Slice& slice : slices_) add(result.sums, slice.sums);  // in one order, whoever was renewed
-    result.fresh = static_cast<float>(static_cast<double>(summed) / static_cast<double>(n));
+    result.recomputed_fraction = static_cast<float>(static_cast<double>(summed) / static_cast<double>(n));
     return result;
 }
 

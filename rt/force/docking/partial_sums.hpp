@@ -17,9 +17,9 @@
 #include <array>
 #include <cstddef>
 
-#include "ipc/assets/density_map.hpp"
 #include "ipc/base/knob.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/density/density_map.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {
@@ -33,13 +33,13 @@ public:
 
     struct Result {
         DensitySums sums{};
-        double stale = 0.0;    // of the gradient
-        float fresh = 1.0F;    // of the points, summed in this step
-        bool complete = true;  // else the deadline came first; the slices made by then are kept
+        double stale = 0.0;                // of the gradient
+        float recomputed_fraction = 1.0F;  // of the points, summed in this step
+        bool complete = true;              // else the deadline came first; the slices made by then are kept
     };
 
     // share in (0, 1]; anything else is 1. The pose finite.
-    Result step(const DensityMap& map, const PointSet& points, const Pose& T_model_body, double share,
+    Result step(const DensityMap& map, const PointSet& points, const Pose& T_model_body, double work_fraction,
                 const Deadline& deadline) noexcept TACT_RT;
 
 private:

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/assets/density_map.hpp"
+#include "ipc/scene/density/density_map.hpp"
 
 namespace tact {
 

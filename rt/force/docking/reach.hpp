@@ -3,9 +3,9 @@
 // Thread   any; constant time, no allocation.
 #pragma once
 
-#include "ipc/assets/scene_meta.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact {
 

@@ -37,7 +37,7 @@ struct DrillToolSettings {
     double tip_radius_m = 1e-3;     // of a cone
     double shaft_radius_m = 1e-3;   // 0: none
     double shaft_length_m = 25e-3;  // that is felt
-    bool cuts = true;               // false: a sucker, say
+    bool cuts = true;               // false: a suction tube, say
 };
 
 // Weights included. Fails by StartupError where a size is out of range or the shape needs more than kMax balls.

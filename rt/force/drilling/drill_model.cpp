@@ -278,9 +278,9 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
         const double gain = fade_.gain() * scale;
         result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
-        const double felt_block = felt.late ? kBlockCoarse : block, voxel = per_voxel_m_ / head_radius_m_;
+        const double used_block = felt.late ? kBlockCoarse : block, voxel = per_voxel_m_ / head_radius_m_;
         const double share =
-            kErrorLeast + kErrorPerBlock * felt_block * felt_block + kErrorPerVoxel * voxel * voxel;
+            kErrorLeast + kErrorPerBlock * used_block * used_block + kErrorPerVoxel * voxel * voxel;
         result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max);
 
         const bool cuts = !clutch && drive_.burr_rad_s > 0.0;

@@ -24,7 +24,7 @@
 #include <array>
 #include <span>
 
-#include "ipc/assets/scene_meta.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
 #include "rt/force/drilling/burr_shapes.hpp"

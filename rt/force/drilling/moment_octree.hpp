@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/bone_bricks.hpp"
 #include "ipc/base/huge_pages.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/bone/bone_bricks.hpp"
 
 namespace tact {
 

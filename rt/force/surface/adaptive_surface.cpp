@@ -74,8 +74,8 @@ bool AdaptiveSurface::still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) 
     return built_ > 0;
 }
 
-RefineStep AdaptiveSurface::tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
-                                 const FilterForm& form) noexcept {
+RefineStep AdaptiveSurface::slow_update(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
+                                        const FilterForm& form) noexcept {
     const Instant begin = Monotonic::now();
     set_filter(fidelity, form);
     const RefineStep done = refinement_.step(tool_m, velocity_m_s);

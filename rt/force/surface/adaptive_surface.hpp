@@ -15,11 +15,11 @@
 #include <array>
 #include <atomic>
 
-#include "ipc/assets/refinement.hpp"
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/triple_buffer.hpp"
-#include "ipc/assets/vertex_forest.hpp"
+#include "ipc/scene/mesh/refinement.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/vertex_forest.hpp"
 #include "rt/force/surface/near_surface.hpp"
+#include "rt/force/surface/triple_buffer.hpp"
 
 namespace tact {
 
@@ -36,8 +36,8 @@ public:
     AdaptiveSurface(const SurfaceMesh& full, const VertexForest& forest, const AdaptiveSettings& settings);
 
     // Slow thread, 200 times a second or more.
-    RefineStep tend(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
-                    const FilterForm& form = {}) noexcept;
+    RefineStep slow_update(const Vec3& tool_m, const Vec3& velocity_m_s, float fidelity,
+                           const FilterForm& form = {}) noexcept;
     // Servo. Whether a ball lies in what was built, the one of before or a newer one; then near() is it.
     [[nodiscard]] bool around(const Vec3& centre_m, double radius_m) noexcept TACT_RT;
     [[nodiscard]] const NearSurface& near() const noexcept TACT_RT { return surface_.same(); }

@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <span>
 
-#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 
 namespace tact {
 
 class AllTriangles {
 public:
-    explicit AllTriangles(const SurfaceMesh& mesh) : mesh_(mesh), kernel_(&best_look_kernel()) {}
+    explicit AllTriangles(const SurfaceMesh& mesh) : mesh_(mesh), kernel_(&best_query_kernel()) {}
 
     // Those nearer than this, in their order. False: they are more than `out` takes.
     bool near(const Vec3& place_m, double radius_m, std::span<std::uint32_t> out,
@@ -22,7 +22,7 @@ public:
 
 private:
     SurfaceMesh mesh_;  // a view
-    const LookKernel* kernel_;
+    const QueryKernel* kernel_;
 };
 
 }  // namespace tact

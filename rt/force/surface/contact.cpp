@@ -28,7 +28,7 @@ SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& s
     : mesh_(mesh),
       all_(mesh),
       settings_(settings),
-      kernel_(&best_look_kernel()),
+      kernel_(&best_query_kernel()),
       leaf_(kLeavesMax),
       triangle_(4 * kLeavesMax),
       bound_m_(4 * kLeavesMax),
@@ -36,7 +36,7 @@ SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& s
       number_(4 * kLeavesMax + kLooks) {}
 
 double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
-    const double allowed = kFollowedSteps * (goal_m - goal_m_).norm() + settings_.glide_m;
+    const double allowed = kFollowedSteps * (goal_m - goal_m_).norm() + settings_.lag_m;
     return settings_.radius_m + (1.0 + kCollectedMoves) * std::max(allowed, settings_.margin_m);
 }
 
@@ -80,9 +80,9 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
 
 // The guards of all triangles that a move of reach_m can touch: shorter, where there are too many, and up to
 // most_m where that has no more than are looked at together.
-void SurfaceContact::look(double& reach_m, double most_m, std::uint32_t& triangles) noexcept {
-    LookJob job = mesh_.look_job(proxy_m_);
-    TriangleLooks seen;
+void SurfaceContact::query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept {
+    QueryJob job = mesh_.query_job(proxy_m_);
+    TriangleQueries seen;
     const auto way = static_cast<float>(way_m_ * (1.0 - kBoundSlack));
     const auto bound = [&](double reach) {
         return static_cast<float>((settings_.radius_m + reach + way_m_) * (1.0 + kBoundSlack));
@@ -97,7 +97,7 @@ void SurfaceContact::look(double& reach_m, double most_m, std::uint32_t& triangl
         if (all <= 2 * kLooks || all == some) reach_m = most_m;
     }
     for (int attempt = 0; attempt < 8; ++attempt) {
-        guards_.clear();
+        half_spaces_.clear();
         job.limit = static_cast<float>(settings_.radius_m + reach_m);
         const float in_reach = bound(reach_m);
         std::size_t count = 0;
@@ -112,13 +112,13 @@ void SurfaceContact::look(double& reach_m, double most_m, std::uint32_t& triangl
             const std::size_t lanes = std::min(kLooks, count - first);
             for (std::size_t lane = lanes; lane < kLooks; ++lane) number_[first + lane] = number_[first];
             job.triangle = &number_[first];
-            kernel_->look(job, seen);
+            kernel_->query(job, seen);
             for (std::size_t lane = 0; lane < lanes; ++lane)
                 bound_m_[slot_[first + lane]] = seen.distance[lane] + way;
             std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
             for (; near != 0 && room; near &= near - 1)
-                room = guard(number_[first + static_cast<std::size_t>(std::countr_zero(near))], seen,
-                             static_cast<std::size_t>(std::countr_zero(near)));
+                room = half_space(number_[first + static_cast<std::size_t>(std::countr_zero(near))], seen,
+                                  static_cast<std::size_t>(std::countr_zero(near)));
         }
         if (room) return;
         reach_m *= 0.5;
@@ -127,31 +127,32 @@ void SurfaceContact::look(double& reach_m, double most_m, std::uint32_t& triangl
 }
 
 // False: there is no room.
-bool SurfaceContact::guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept {
+bool SurfaceContact::half_space(std::uint32_t triangle, const TriangleQueries& seen,
+                                std::size_t lane) noexcept {
     const double radius = settings_.radius_m, margin = settings_.margin_m;
     const bool over = (seen.over >> lane & 1U) != 0;
     // Out again by no more than a margin a move: what is inside is so by rounding, or was put there.
     const double slack =
         std::max(static_cast<double>(seen.distance[lane]) - (over ? radius : radius - margin), -margin);
     const double height = static_cast<double>(seen.height[lane]) - radius;
-    return guards_.add(triangle, seen, lane, static_cast<float>(slack), static_cast<float>(height),
-                       !over && height >= 0.0);
+    return half_spaces_.add(triangle, seen, lane, static_cast<float>(slack), static_cast<float>(height),
+                            !over && height >= 0.0);
 }
 
 // What holds the solution touches the ball there, and pushes as it was taken to: another move would find the same
 // place again. The triangles that do not hold it are no nearer than their guards say.
-bool SurfaceContact::rests(const Guards::Solution& solution) const noexcept {
+bool SurfaceContact::rests(const HalfSpaces::Solution& solution) const noexcept {
     if (!solution.exact) return false;
     const double most = kTangentMargins * settings_.margin_m;
     std::array<std::uint32_t, 4> number{};
     for (std::size_t i = 0; i < number.size(); ++i)
-        number[i] = guards_.triangle(solution.active[i < solution.active_count ? i : 0].guard);
-    LookJob job = mesh_.look_job(proxy_m_ + solution.move_m);
+        number[i] = half_spaces_.triangle(solution.active[i < solution.active_count ? i : 0].half_space);
+    QueryJob job = mesh_.query_job(proxy_m_ + solution.move_m);
     job.triangle = number.data();
-    TriangleLooks seen;
-    look_at_four(job, seen);
+    TriangleQueries seen;
+    query_four(job, seen);
     for (std::size_t i = 0; i < solution.active_count; ++i) {
-        const Guards::Active& active = solution.active[i];
+        const HalfSpaces::Active& active = solution.active[i];
         const bool over = (seen.over >> i & 1U) != 0;
         const double rest = settings_.radius_m - (over ? 0.0 : settings_.margin_m);
         if (std::abs(static_cast<double>(seen.distance[i]) - rest) > most) return false;
@@ -163,8 +164,8 @@ bool SurfaceContact::rests(const Guards::Solution& solution) const noexcept {
 }
 
 // Where friction leaves the proxy that would go to `free` without.
-Guards::Solution SurfaceContact::held_back(const Guards::Solution& free, const Vec3& goal_m,
-                                           double tolerance_m) const noexcept {
+HalfSpaces::Solution SurfaceContact::held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
+                                               double tolerance_m) const noexcept {
     const Vec3 lift = free.move_m - goal_m;
     const double depth = lift.norm();
     if (!(depth > 0.0) || free.active_count == 0) return free;
@@ -177,7 +178,7 @@ Guards::Solution SurfaceContact::held_back(const Guards::Solution& free, const V
     const Vec3 along = free.move_m - normal.dot(free.move_m) * normal;
     const double way = along.norm(), held = settings_.friction * depth;
     const Vec3 wanted = way > held ? Vec3(free.move_m - (held / way) * along) : Vec3(free.move_m - along);
-    return guards_.solve(wanted, tolerance_m);
+    return half_spaces_.solve(wanted, tolerance_m);
 }
 
 Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
@@ -188,7 +189,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     if (settings_.brute) collected_m_ = -1.0;
     const Vec3 begin_m = proxy_m_;
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
-    const double allowed = step + settings_.glide_m;
+    const double allowed = step + settings_.lag_m;
     double left = allowed;
     double least_m = std::numeric_limits<double>::infinity();  // from the goal, of the moves
     bool cut_before = false;
@@ -202,26 +203,26 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
             break;
         }
         ++contact.moves;
-        const Vec3 wish = goal_m - proxy_m_;
-        double reach_now = std::min({reach, left, std::max(wish.norm(), settings_.margin_m)});
+        const Vec3 request = goal_m - proxy_m_;
+        double reach_now = std::min({reach, left, std::max(request.norm(), settings_.margin_m)});
         if (!collect(reach_now)) break;
         // Where it rubs, the place without friction is found with the guards in reach, however the rest was collected.
         const bool rubs = settings_.friction > 0.0;
         const double room = collected_m_ - (proxy_m_ - collected_at_m_).norm();
-        look(reach_now, rubs ? 0.0 : std::min({room, left, std::max(wish.norm(), settings_.margin_m)}),
-             contact.triangles);
+        query(reach_now, rubs ? 0.0 : std::min({room, left, std::max(request.norm(), settings_.margin_m)}),
+              contact.triangles);
         // Single precision of a guard over the length of the wish, and of the distances.
-        const double tolerance = 3e-7 * (wish.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
-        Guards::Solution free = guards_.solve(wish, tolerance);
+        const double tolerance = 3e-7 * (request.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
+        HalfSpaces::Solution free = half_spaces_.solve(request, tolerance);
         if (!free.exact) {
-            guards_.allow_staying();
-            free = guards_.solve(wish, tolerance);
+            half_spaces_.allow_staying();
+            free = half_spaces_.solve(request, tolerance);
         }
         contact.planes = static_cast<std::uint32_t>(free.active_count);
         for (std::size_t i = 0; i < free.active_count; ++i)
             contact.plane[i] = {free.active[i].normal, free.active[i].weight_m,
-                                guards_.triangle(free.active[i].guard)};
-        const Guards::Solution held = rubs ? held_back(free, wish, tolerance) : free;
+                                half_spaces_.triangle(free.active[i].half_space)};
+        const HalfSpaces::Solution held = rubs ? held_back(free, request, tolerance) : free;
         Vec3 move = held.move_m;
         const double length = move.norm();
         const bool cut = length > reach_now;

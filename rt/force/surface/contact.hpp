@@ -26,12 +26,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/triangle_look.hpp"
 #include "ipc/base/knob.hpp"
 #include "ipc/base/pose.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/triangle_query.hpp"
 #include "rt/force/surface/all_triangles.hpp"
-#include "rt/force/surface/guards.hpp"
+#include "rt/force/surface/half_spaces.hpp"
 
 namespace tact {
 
@@ -39,7 +39,7 @@ struct ContactSettings {
     double radius_m = 0.0;  // of the ball, > 0
     double margin_m = 0.0;  // > 0, less than the radius
     double friction = 0.0;  // coefficient
-    double glide_m = 0.0;   // see Glide, > 0
+    double lag_m = 0.0;     // see Glide, > 0
     bool brute = false;     // every triangle is looked at in every step, without the tree
 };
 
@@ -92,18 +92,18 @@ public:
 private:
     bool collect(double& reach_m) noexcept TACT_RT;
     bool find(double radius_m) noexcept TACT_RT;
-    void look(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
-    bool guard(std::uint32_t triangle, const TriangleLooks& seen, std::size_t lane) noexcept TACT_RT;
-    [[nodiscard]] bool rests(const Guards::Solution& solution) const noexcept TACT_RT;
-    [[nodiscard]] Guards::Solution held_back(const Guards::Solution& free, const Vec3& goal_m,
-                                             double tolerance_m) const noexcept TACT_RT;
+    void query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
+    bool half_space(std::uint32_t triangle, const TriangleQueries& seen, std::size_t lane) noexcept TACT_RT;
+    [[nodiscard]] bool rests(const HalfSpaces::Solution& solution) const noexcept TACT_RT;
+    [[nodiscard]] HalfSpaces::Solution held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
+                                                 double tolerance_m) const noexcept TACT_RT;
     [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
     AllTriangles all_;  // of brute
     ContactSettings settings_;
-    Guards guards_;
-    const LookKernel* kernel_;
+    HalfSpaces half_spaces_;
+    const QueryKernel* kernel_;
     std::vector<std::uint32_t> leaf_;  // scratch
     // The collected triangles. None is nearer than its bound less the way since they were collected.
     std::vector<std::uint32_t> triangle_;

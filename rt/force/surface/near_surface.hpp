@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/surface_mesh.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 
 namespace tact {
 

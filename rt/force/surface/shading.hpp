@@ -11,9 +11,9 @@
 
 #include <algorithm>
 
-#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 
 namespace tact {
 
@@ -34,9 +34,9 @@ public:
         way_m_.setZero();
     }
     // wanted_m: the turn without a pace. way_m: from the tool to the proxy. gone_m: by the tool, since the last step.
-    const Vec& follow(const Vec& wanted_m, const Vec& way_m, double gone_m, double glide_m) noexcept TACT_RT {
-        const double pulled = (way_m - way_m_).norm(), left = kForceSteps * gone_m + glide_m - pulled;
-        const double most = glide_m + std::clamp(kTurnShare * pulled, 0.0, std::max(left, 0.0));
+    const Vec& follow(const Vec& wanted_m, const Vec& way_m, double gone_m, double lag_m) noexcept TACT_RT {
+        const double pulled = (way_m - way_m_).norm(), left = kForceSteps * gone_m + lag_m - pulled;
+        const double most = lag_m + std::clamp(kTurnShare * pulled, 0.0, std::max(left, 0.0));
         const Vec change_m = wanted_m - turn_m_;
         const double change = change_m.norm();
         turn_m_ += (change > most ? most / change : 1.0) * change_m;

@@ -21,9 +21,9 @@ ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s
     const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
     // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
     const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
-    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
+    const double lag = SurfaceModel::kLagN / s.stiffness_n_m;
     return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
-            glide / meta.world_per_model, s.mode == SurfaceMode::off_brute};
+            lag / meta.world_per_model, s.mode == SurfaceMode::off_brute};
 }
 
 }  // namespace
@@ -48,11 +48,12 @@ SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const
     : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)), full_(mesh) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
     if (settings.mode == SurfaceMode::chr)
-        tended_ = tended_surface(mesh, forest, solver_.settings().radius_m, meta.world_per_model);
+        adaptive_ = tended_surface(mesh, forest, solver_.settings().radius_m, meta.world_per_model);
 }
 
-void SurfaceModel::tend(const ToolState& predicted, const Budget&) noexcept {
-    if (tended_ != nullptr) tended_->tend(predicted.twist_world.linear_m_s / meta_.world_per_model);
+void SurfaceModel::slow_update(const ToolState& predicted, const Budget&) noexcept {
+    if (adaptive_ != nullptr)
+        adaptive_->slow_update(predicted.twist_world.linear_m_s / meta_.world_per_model);
 }
 
 void SurfaceModel::use_full_surface() noexcept {
@@ -63,9 +64,9 @@ void SurfaceModel::use_full_surface() noexcept {
 
 // Before a step: what holds all that it may look at.
 void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
-    if (tended_ == nullptr) return;
-    if (tended_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
-        const NearSurface& near = tended_->near();
+    if (adaptive_ == nullptr) return;
+    if (adaptive_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
+        const NearSurface& near = adaptive_->near();
         if (used_ != near.version()) solver_.use(near.mesh());
         used_ = near.version();
         regime_ = SurfaceRegime::adaptive;
@@ -73,7 +74,7 @@ void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
         use_full_surface();
         regime_ = SurfaceRegime::tree;
     }
-    tended_->is_at(solver_.proxy_m(), fidelity);
+    adaptive_->is_at(solver_.proxy_m(), fidelity);
 }
 
 KnobSpec SurfaceModel::knob() const noexcept {
@@ -81,8 +82,9 @@ KnobSpec SurfaceModel::knob() const noexcept {
 }
 
 std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
-    return tended_ == nullptr ? moves(fidelity)
-                              : static_cast<std::uint32_t>(tended_->surface().predicted_triangles(fidelity));
+    return adaptive_ == nullptr
+               ? moves(fidelity)
+               : static_cast<std::uint32_t>(adaptive_->surface().predicted_triangles(fidelity));
 }
 
 std::uint32_t SurfaceModel::moves(float fidelity) noexcept {
@@ -119,7 +121,7 @@ ModelTouch SurfaceModel::touch() const noexcept {
     t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
     t.state = static_cast<std::uint8_t>(contact_.state);
     t.regime = static_cast<std::uint8_t>(regime_);
-    if (tended_ != nullptr) t.detail = tended_->detail();
+    if (adaptive_ != nullptr) t.detail = adaptive_->detail();
     t.planes = contact_.planes;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
         t.normal[i] = contact_.plane[i].normal;
@@ -128,7 +130,7 @@ ModelTouch SurfaceModel::touch() const noexcept {
     return t;
 }
 
-Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m, double gone_m) noexcept {
+Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& goal_model_m, double gone_m) noexcept {
     Vec3 turn_m = Vec3::Zero();
     for (std::uint32_t i = 0; settings_.shading && i < contact_.planes; ++i) {
         const ContactPlane& plane = contact_.plane[i];
@@ -137,7 +139,7 @@ Vec3 SurfaceModel::felt_n(const ToolState& tool, const Vec3& goal_model_m, doubl
     }
     const Vec3 pull_m = contact_.proxy_m - goal_model_m;
     const Vec3 way_m =
-        meta_.world_per_model * (pull_m + turn_.follow(turn_m, pull_m, gone_m, solver_.settings().glide_m));
+        meta_.world_per_model * (pull_m + turn_.follow(turn_m, pull_m, gone_m, solver_.settings().lag_m));
     const double depth_m = way_m.norm();
     if (!(depth_m > 0.0)) return Vec3::Zero();
     const Vec3 normal = way_m / depth_m;
@@ -186,7 +188,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             result.load.error = contact_.state == ContactState::settled
                                     ? 2.0 * newton * solver_.settings().margin_m
                                     : 2.0 * std::min(pulled_n, settings_.force_n_max);
-            result.wrench_world = fade_.show({fade_.gain() * felt_n(tool, goal_m, gone_m), Vec3::Zero()});
+            result.wrench_world = fade_.show({fade_.gain() * force_n(tool, goal_m, gone_m), Vec3::Zero()});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
                 use_full_surface();

@@ -16,7 +16,7 @@
 // Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
 //          of a surface kept fine around the tool by tend() (adaptive_surface.hpp), and where that does not hold
 //          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
-//          radius of full detail, TendedSurface::kLeastM to kMostM beyond the tool's.
+//          radius of full detail, AdaptiveToolSurface::kLeastM to kMostM beyond the tool's.
 // Bodies   one, the proxy, in the hand; orders are refused.
 // Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
 // Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.
@@ -27,15 +27,15 @@
 #include <array>
 #include <memory>
 
-#include "ipc/assets/scene_file.hpp"
-#include "ipc/assets/scene_meta.hpp"
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/triple_buffer.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
+#include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/shading.hpp"
-#include "rt/force/surface/tended_surface.hpp"
+#include "rt/force/surface/triple_buffer.hpp"
 
 namespace tact {
 
@@ -64,7 +64,7 @@ public:
     static constexpr float kLeastLevel = 0.05F;
     static constexpr double kPointM = 4e-6;
     static constexpr double kDampedDepthM = 5e-4;
-    static constexpr double kGlideN = 0.05;  // what a step may change the force by, besides what the hand did
+    static constexpr double kLagN = 0.05;  // what a step may change the force by, besides what the hand did
     static constexpr double kLostLimits = 2.0;
     static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
 
@@ -90,24 +90,24 @@ public:
 
     // The filter's form, in mode chr.
     bool order(const ModelOrder& order) noexcept TACT_RT override {
-        return tended_ != nullptr && tended_->order(order);
+        return adaptive_ != nullptr && adaptive_->order(order);
     }
-    [[nodiscard]] double tend_s() const noexcept TACT_RT override {
-        return tended_ == nullptr ? 0.0 : tended_->turn_s();
+    [[nodiscard]] double slow_update_s() const noexcept TACT_RT override {
+        return adaptive_ == nullptr ? 0.0 : adaptive_->turn_s();
     }
-    [[nodiscard]] bool tended() const noexcept override { return tended_ != nullptr; }
-    void tend(const ToolState& predicted, const Budget& budget) noexcept override;
+    [[nodiscard]] bool has_slow_update() const noexcept override { return adaptive_ != nullptr; }
+    void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
     // Of mode chr.
-    [[nodiscard]] const RefineStep& refined() const { return tended_->refined(); }
+    [[nodiscard]] const RefineStep& refined() const { return adaptive_->refined(); }
     [[nodiscard]] const AdaptiveSurface* adaptive() const {
-        return tended_ == nullptr ? nullptr : &tended_->surface();
+        return adaptive_ == nullptr ? nullptr : &adaptive_->surface();
     }
 
 private:
     // gone_m: by the tool since the last step, in the model.
-    [[nodiscard]] Vec3 felt_n(const ToolState& tool, const Vec3& goal_model_m,
-                              double gone_m) noexcept TACT_RT;
+    [[nodiscard]] Vec3 force_n(const ToolState& tool, const Vec3& goal_model_m,
+                               double gone_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
     void use_full_surface() noexcept TACT_RT;
 
@@ -122,7 +122,7 @@ private:
     std::uint64_t grips_ = 0;
     std::uint64_t lagging_ = 0, released_ = 0;
     SurfaceMesh full_;
-    std::unique_ptr<TendedSurface> tended_;
+    std::unique_ptr<AdaptiveToolSurface> adaptive_;
     SurfaceRegime regime_ = SurfaceRegime::tree;
     std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
 };

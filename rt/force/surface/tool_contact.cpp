@@ -27,7 +27,7 @@ ToolContact::ToolContact(const SurfaceMesh& mesh, const TouchTool& tool, const T
     : mesh_(mesh),
       settings_(settings),
       points_(mesh, tool, settings.ball_m, settings.brute),
-      kernel_(&best_look_kernel()),
+      kernel_(&best_query_kernel()),
       lists_(mesh, points_.size(), settings.brute),
       beyond_(kBeyondAtOnce),
       // An arc of angle a leaves its tangent by a^2 / 2 of its radius.
@@ -49,12 +49,12 @@ void ToolContact::seat(const Pose& goal) noexcept {
 }
 
 // The guards of all triangles that a ball touches within reach_m; shorter, where there are too many.
-bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept {
+bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept {
     const Vec3 place = points_.place_m(point);
     const Eigen::Vector3f lever = points_.lever_m(point) / static_cast<float>(points_.gyration_m());
     const double ball = settings_.ball_m, edge = ball - settings_.margin_m;
-    LookJob job = mesh_.look_job(place);
-    TriangleLooks seen;
+    QueryJob job = mesh_.query_job(place);
+    TriangleQueries seen;
     for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
         ++touch.looked;
         const ToolLists::Near list = lists_.near(point, place, ball + reach_m);
@@ -64,7 +64,7 @@ bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) no
         for (std::size_t first = 0; first < list.count; first += kLooks) {
             const std::size_t lanes = std::min(kLooks, list.count - first);
             job.triangle = list.triangle + first;
-            kernel_->look(job, seen);
+            kernel_->query(job, seen);
             for (std::size_t lane = 0; lane < lanes; ++lane) least = std::min(least, seen.distance[lane]);
             std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
             for (; near != 0; near &= near - 1) {
@@ -74,9 +74,9 @@ bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) no
                 const bool over = (seen.over >> lane & 1U) != 0;
                 // Out again by no more than a margin a move.
                 const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
-                if (!guards_.add(point, list.triangle[first + lane], lever, seen, lane,
-                                 static_cast<float>(slack), static_cast<float>(height),
-                                 !over && height >= 0.0))
+                if (!half_spaces_.add(point, list.triangle[first + lane], lever, seen, lane,
+                                      static_cast<float>(slack), static_cast<float>(height),
+                                      !over && height >= 0.0))
                     return false;
             }
         }
@@ -86,7 +86,7 @@ bool ToolContact::look(std::uint32_t point, double reach_m, ToolTouch& touch) no
     return false;
 }
 
-Vec6 ToolContact::held_back(const TwistGuards::Solution& free, const Vec6& goal_m,
+Vec6 ToolContact::held_back(const TwistHalfSpaces::Solution& free, const Vec6& goal_m,
                             double tolerance_m) const noexcept {
     const Vec6 lift = free.move_m - goal_m;
     const double depth = lift.norm();
@@ -100,26 +100,26 @@ Vec6 ToolContact::held_back(const TwistGuards::Solution& free, const Vec6& goal_
     const Vec6 along = free.move_m - normal.dot(free.move_m) * normal;
     const double way = along.norm(), held = settings_.friction * depth;
     const Vec6 wanted = way > held ? Vec6(free.move_m - (held / way) * along) : Vec6(free.move_m - along);
-    TwistGuards::Solution s = TwistGuards::fresh(wanted);
-    guards_.solve(wanted, tolerance_m, s);
+    TwistHalfSpaces::Solution s = TwistHalfSpaces::fresh(wanted);
+    half_spaces_.solve(wanted, tolerance_m, s);
     return s.move_m;
 }
 
-void ToolContact::list_places(const TwistGuards::Solution& solution, ToolTouch& touch) const noexcept {
+void ToolContact::list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept {
     touch.places = 0;
     for (std::size_t i = 0; i < solution.active_count; ++i) {
-        const TwistGuards::Active& a = solution.active[i];
-        const std::uint32_t point = guards_.point(a.guard);
+        const TwistHalfSpaces::Active& a = solution.active[i];
+        const std::uint32_t point = half_spaces_.point(a.half_space);
         touch.place[touch.places++] = {points_.lever_m(point).cast<double>(), linear(a.normal), a.weight_m,
-                                       point, guards_.triangle(a.guard)};
+                                       point, half_spaces_.triangle(a.half_space)};
     }
 }
 
-ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTouch& touch,
+ToolContact::Move ToolContact::find_move(const Vec6& request, double left_m, ToolTouch& touch,
                                          const Deadline& deadline) noexcept {
     for (;;) {
         const double tried_m = std::min(left_m, longest_m_);
-        const Move move = find_move_within(wish, tried_m, touch, deadline);
+        const Move move = find_move_within(request, tried_m, touch, deadline);
         if (!move.full) {
             longest_m_ = move.cut ? kGrows * tried_m
                                   : std::max(kNextMoves * move.y.norm(), kLeastMargins * settings_.margin_m);
@@ -131,34 +131,34 @@ ToolContact::Move ToolContact::find_move(const Vec6& wish, double left_m, ToolTo
     }
 }
 
-ToolContact::Move ToolContact::find_move_within(const Vec6& wish, double left_m, ToolTouch& touch,
+ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left_m, ToolTouch& touch,
                                                 const Deadline& deadline) noexcept {
     const double gyration = points_.gyration_m();
     const auto twist = [&](const Vec6& y) {
         return std::pair<Vec3, Vec3>(y.head<3>(), y.tail<3>() / gyration);
     };
     points_.begin_move(proxy_);
-    guards_.clear();
+    half_spaces_.clear();
     bool room = true;
     const double expected = std::clamp(kLookedWays * last_move_m_, 4.0 * settings_.margin_m,
                                        std::max(left_m, 4.0 * settings_.margin_m));
     for (std::size_t i = 0; i < held_count_ && room; ++i) {
-        if (points_.is_awake(held_[i])) room = look(held_[i], expected, touch);
+        if (points_.is_awake(held_[i])) room = query(held_[i], expected, touch);
     }
     // Single precision of a guard over the length of the wish.
-    const double tolerance = 6e-7 * (wish.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
-    TwistGuards::Solution free = TwistGuards::fresh(wish);
+    const double tolerance = 6e-7 * (request.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
+    TwistHalfSpaces::Solution free = TwistHalfSpaces::fresh(request);
     Move move;
     for (int round = 0;; ++round) {
-        guards_.solve(wish, tolerance, free);
+        half_spaces_.solve(request, tolerance, free);
         if (!free.exact) {
-            guards_.allow_staying();
-            free = TwistGuards::fresh(wish);
-            guards_.solve(wish, tolerance, free);
+            half_spaces_.allow_staying();
+            free = TwistHalfSpaces::fresh(request);
+            half_spaces_.solve(request, tolerance, free);
         }
-        TwistGuards::Solution best = free;
-        guards_.turn(wish, tolerance, best);
-        move.y = settings_.friction > 0.0 ? held_back(best, wish, tolerance) : best.move_m;
+        TwistHalfSpaces::Solution best = free;
+        half_spaces_.turn(request, tolerance, best);
+        move.y = settings_.friction > 0.0 ? held_back(best, request, tolerance) : best.move_m;
         const double length = move.y.norm(), turned = move.y.tail<3>().norm() / gyration;
         const double share =
             std::min({1.0, left_m / std::max(length, 1e-300), turn_max_rad_ / std::max(turned, 1e-300)});
@@ -183,7 +183,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& wish, double left_m,
                 points_.ask(i, way);
                 if (points_.room_m(i) >= way) continue;
             }
-            room = look(i, kLookedWays * way, touch);
+            room = query(i, kLookedWays * way, touch);
         }
     }
     move.full = !room;
@@ -203,8 +203,8 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
     lists_.begin_step(near);
     longest_m_ = std::max(kFirstMoves * last_move_m_, kLeastMargins * settings_.margin_m);
     const Pose to{goal.p_m, goal.q.normalized()};
-    const double glide = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.glide_m;
-    const double allowed = kGoneSteps * way_m(goal_, to).norm() + glide;
+    const double lag = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.lag_m;
+    const double allowed = kGoneSteps * way_m(goal_, to).norm() + lag;
     goal_ = to;
     if (seating_ > 0) --seating_;
     points_.wake(proxy_, points, std::span(held_).first(held_count_),

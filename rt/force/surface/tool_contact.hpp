@@ -23,7 +23,7 @@
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/tool_lists.hpp"
 #include "rt/force/surface/tool_points.hpp"
-#include "rt/force/surface/twist_guards.hpp"
+#include "rt/force/surface/twist_half_spaces.hpp"
 
 namespace tact {
 
@@ -31,7 +31,7 @@ struct ToolContactSettings {
     double ball_m = 0.0;    // > 0
     double margin_m = 0.0;  // > 0, less than the ball's radius
     double friction = 0.0;
-    double glide_m = 0.0;  // > 0
+    double lag_m = 0.0;  // > 0
     bool brute =
         false;  // every triangle is looked at in every step, without the tree; not to seat or wake points
 };
@@ -89,20 +89,20 @@ private:
         bool full = false;    // there was no room for all guards
     };
     // As long as left_m, as longest_m_, and as there is room for its guards.
-    Move find_move(const Vec6& wish, double left_m, ToolTouch& touch,
+    Move find_move(const Vec6& request, double left_m, ToolTouch& touch,
                    const Deadline& deadline) noexcept TACT_RT;
-    Move find_move_within(const Vec6& wish, double left_m, ToolTouch& touch,
+    Move find_move_within(const Vec6& request, double left_m, ToolTouch& touch,
                           const Deadline& deadline) noexcept TACT_RT;
-    bool look(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
-    [[nodiscard]] Vec6 held_back(const TwistGuards::Solution& free, const Vec6& goal_m,
+    bool query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
+    [[nodiscard]] Vec6 held_back(const TwistHalfSpaces::Solution& free, const Vec6& goal_m,
                                  double tolerance_m) const noexcept TACT_RT;
-    void list_places(const TwistGuards::Solution& solution, ToolTouch& touch) const noexcept TACT_RT;
+    void list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
     ToolContactSettings settings_;
     ToolPoints points_;
-    TwistGuards guards_;
-    const LookKernel* kernel_;
+    TwistHalfSpaces half_spaces_;
+    const QueryKernel* kernel_;
     ToolLists lists_;
     std::vector<std::uint32_t> beyond_;
     std::array<std::uint32_t, 6> held_{};  // points that held the last move

@@ -14,9 +14,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/assets/surface_mesh.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
 #include "rt/force/surface/all_triangles.hpp"
 #include "rt/force/surface/near_surface.hpp"
 

@@ -22,8 +22,8 @@ ToolContactSettings tool_contact_settings(const SceneMeta& meta, const TouchTool
                                           const SurfaceSettings& s) {
     check_surface_settings(s);
     const double ball = s.radius_m > 0.0 ? s.radius_m / meta.world_per_model : tool.ball_m;
-    const double glide = SurfaceModel::kGlideN / s.stiffness_n_m;
-    return {ball, kBallMargin * ball, s.friction, glide / meta.world_per_model,
+    const double lag = SurfaceModel::kLagN / s.stiffness_n_m;
+    return {ball, kBallMargin * ball, s.friction, lag / meta.world_per_model,
             s.mode == SurfaceMode::off_brute};
 }
 
@@ -38,20 +38,21 @@ ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const Touch
       torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
     if (settings.mode == SurfaceMode::chr)
-        tended_ = tended_surface(mesh, forest, solver_.points().reach_m(), meta.world_per_model);
+        adaptive_ = tended_surface(mesh, forest, solver_.points().reach_m(), meta.world_per_model);
 }
 
-void ToolModel::tend(const ToolState& predicted, const Budget&) noexcept {
-    if (tended_ != nullptr) tended_->tend(predicted.twist_world.linear_m_s / meta_.world_per_model);
+void ToolModel::slow_update(const ToolState& predicted, const Budget&) noexcept {
+    if (adaptive_ != nullptr)
+        adaptive_->slow_update(predicted.twist_world.linear_m_s / meta_.world_per_model);
 }
 
 // Before a step: the one that holds the whole tool, however it turns; null: there is none.
 const NearSurface* ToolModel::choose_surface(float fidelity) noexcept {
-    if (tended_ == nullptr) return nullptr;
+    if (adaptive_ == nullptr) return nullptr;
     const Vec3& proxy_m = solver_.proxy().p_m;
-    const bool around = tended_->around(proxy_m, solver_.points().reach_m());
-    tended_->is_at(proxy_m, fidelity);
-    return around ? &tended_->near() : nullptr;
+    const bool around = adaptive_->around(proxy_m, solver_.points().reach_m());
+    adaptive_->is_at(proxy_m, fidelity);
+    return around ? &adaptive_->near() : nullptr;
 }
 
 KnobSpec ToolModel::knob() const noexcept {
@@ -111,7 +112,7 @@ ModelTouch ToolModel::touch() const noexcept {
     t.proxy_m = solver_.proxy().p_m;
     t.state = static_cast<std::uint8_t>(touch_.state);
     t.regime = static_cast<std::uint8_t>(regime_);
-    if (tended_ != nullptr) t.detail = tended_->detail();
+    if (adaptive_ != nullptr) t.detail = adaptive_->detail();
     double below_m = 1e300;  // the places go by their weights
     for (t.planes = 0; t.planes < ModelTouch::kPlanesMax; ++t.planes) {
         const TouchedPlace* next = nullptr;
@@ -189,7 +190,8 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             const double gone_m = solver_.way_m(solver_.goal(), to).norm();
             touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline,
                                     choose_surface(budget.fidelity));
-            if (tended_ != nullptr) regime_ = touch_.adaptive ? SurfaceRegime::adaptive : SurfaceRegime::tree;
+            if (adaptive_ != nullptr)
+                regime_ = touch_.adaptive ? SurfaceRegime::adaptive : SurfaceRegime::tree;
             const bool on_time = !hurried && !touch_.late;
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;
             if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
@@ -199,7 +201,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 result.load.error =
                     std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));
             const Wrench w =
-                felt(tool, way_m + turn_.follow(shaded_m(), way_m, gone_m, solver_.settings().glide_m));
+                felt(tool, way_m + turn_.follow(shaded_m(), way_m, gone_m, solver_.settings().lag_m));
             result.wrench_world = fade_.show({fade_.gain() * w.force_n, fade_.gain() * w.torque_n_m});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);

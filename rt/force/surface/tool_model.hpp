@@ -21,7 +21,7 @@
 
 #include <memory>
 
-#include "ipc/assets/touch_tool.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_contact.hpp"
@@ -50,13 +50,13 @@ public:
 
     // The filter's form, in mode chr.
     bool order(const ModelOrder& order) noexcept TACT_RT override {
-        return tended_ != nullptr && tended_->order(order);
+        return adaptive_ != nullptr && adaptive_->order(order);
     }
-    [[nodiscard]] double tend_s() const noexcept TACT_RT override {
-        return tended_ == nullptr ? 0.0 : tended_->turn_s();
+    [[nodiscard]] double slow_update_s() const noexcept TACT_RT override {
+        return adaptive_ == nullptr ? 0.0 : adaptive_->turn_s();
     }
-    [[nodiscard]] bool tended() const noexcept override { return tended_ != nullptr; }
-    void tend(const ToolState& predicted, const Budget& budget) noexcept override;
+    [[nodiscard]] bool has_slow_update() const noexcept override { return adaptive_ != nullptr; }
+    void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
 
     // Cost and error of a level before it is computed.
@@ -76,7 +76,7 @@ private:
     SceneMeta meta_;
     SurfaceSettings settings_;
     ToolContact solver_;
-    std::unique_ptr<TendedSurface> tended_;
+    std::unique_ptr<AdaptiveToolSurface> adaptive_;
     SurfaceRegime regime_ = SurfaceRegime::tree;
     ToolTouch touch_;
     PacedTurn<Vec6> turn_;  // by shading

@@ -17,10 +17,10 @@
 #include <span>
 #include <vector>
 
-#include "ipc/assets/surface_mesh.hpp"
-#include "ipc/assets/touch_tool.hpp"
 #include "ipc/base/pose.hpp"
 #include "ipc/base/rt.hpp"
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
 #include "rt/force/surface/all_triangles.hpp"
 
 namespace tact {

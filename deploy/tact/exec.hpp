@@ -1,0 +1,25 @@
+// Replaces this process by a program beside tact, so that its signals, its exit code and its --help are its own.
+#pragma once
+
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include "deploy/tact/child.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+
+// Throws StartupError where it cannot be started.
+[[noreturn]] inline void exec_program(const std::string& name, std::vector<std::string> words) {
+    const std::filesystem::path program = find_program(name);
+    words.insert(words.begin(), name);
+    std::vector<char*> arguments;
+    for (std::string& w : words) arguments.push_back(w.data());
+    arguments.push_back(nullptr);
+    execv(program.c_str(), arguments.data());
+    throw StartupError("starting " + program.string(), last_error(), "build it again");
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,46 @@
+#include "deploy/tact/scene_switch.hpp"
+
+#include <cstdio>
+
+#include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
+
+namespace tact::launch {
+
+std::string bound_to_one_scene(const RunOptions& o) {
+    for (const auto& [name, file] : {std::pair("--record", &o.record),
+                                     {"--save", &o.save},
+                                     {"--out", &o.out},
+                                     {"--json", &o.json},
+                                     {"--screenshot", &o.screenshot}})
+        if (!file->empty()) return name;
+    return {};
+}
+
+std::optional<std::filesystem::path> SceneSwitch::poll() {
+    try {
+        const auto scene = take_asked_scene(folder());
+        if (!scene) return std::nullopt;
+        if (!bound_by_.empty())
+            throw StartupError("opening " + scene->string(),
+                               "this run writes files of its own scene at its end (" + bound_by_ + ")",
+                               "close the window and start: tact run " + scene->string());
+        static_cast<void>(read_meta(SceneFile::open(*scene)));
+        return scene;
+    } catch (const StartupError& e) {
+        refuse(e.what());
+        return std::nullopt;
+    }
+}
+
+void SceneSwitch::refuse(const std::string& why) {
+    std::fprintf(stderr, "tact: %s\n", why.c_str());
+    try {
+        refuse_scene(folder(), why);
+    } catch (const StartupError& e) {
+        std::fprintf(stderr, "tact: the window could not be told: %s\n", e.what());
+    }
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,36 @@
+// Rows of the list of scenes: what each file is, without reading all of it.
+//
+// Fails by words in a row.  Thread a worker's: a folder may lie on a disk that answers slowly.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gui/panels/browser.hpp"
+#include "gui/window/recent_scenes.hpp"
+
+namespace tact {
+
+inline constexpr std::size_t kFolderRowsMost = 500;
+
+struct FolderRows {
+    std::vector<SceneRow>
+        rows;  // the folder above, itself where it is a scan, folders, scenes, raw data; by name
+    std::string trouble;
+};
+
+// used_unix_s: 0, the file's own time.
+[[nodiscard]] SceneRow scene_row_of(const std::filesystem::path& path, std::int64_t used_unix_s,
+                                    std::int64_t now_unix_s);
+[[nodiscard]] std::vector<SceneRow> recent_rows(const std::vector<RecentScene>& scenes,
+                                                std::int64_t now_unix_s);
+[[nodiscard]] FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_unix_s);
+
+// "820 kB", "12.3 MB"
+[[nodiscard]] std::string size_text(std::uint64_t bytes);
+// "just now", "5 min ago", "3 h ago", "2026-11-20"
+[[nodiscard]] std::string ago_text(std::int64_t then_unix_s, std::int64_t now_unix_s);
+
+}  // namespace tact

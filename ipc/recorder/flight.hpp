@@ -1,0 +1,63 @@
+// The flight recorder: the last seconds of a controller, kept in memory, written to a file when something happens.
+//
+// Memory   `length` of batches, or `bytes_max` where a loop runs so fast that these are fewer seconds; never more.
+// Written  at a fault, an overrun, a command "mark" (the window's key) or save(); kAfter later, so that what came of it is
+//          in the file too. A cause within `length` of the one before is in that one's file mostly, and makes no new one.
+// Kept     the newest `files_max` of its files in the folder; older ones are removed.
+// Thread   one. Fails by StartupError where the folder cannot be used; a file that cannot be written is said, and it goes on.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/recorder/drain.hpp"
+
+namespace tact::record {
+
+// The last batches.
+class FlightTape {
+public:
+    FlightTape(Duration length, std::size_t bytes_max) : length_(length), bytes_max_(bytes_max) {}
+    void add(Batch&& batch);
+    [[nodiscard]] const std::deque<Batch>& batches() const { return batches_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    [[nodiscard]] double length_s() const;           // from its first cycle to its last
+    [[nodiscard]] std::uint64_t first_step() const;  // 0: there is none
+
+private:
+    void shorten();
+    Duration length_;
+    std::size_t bytes_max_, bytes_ = 0;
+    std::deque<Batch> batches_;
+};
+
+// Why a batch would be saved; empty: it would not.
+[[nodiscard]] std::string cause_in(const Batch& batch);
+
+struct FlightSettings {
+    std::filesystem::path folder;
+    std::string session = "default";
+    std::string program;
+    Duration length = std::chrono::seconds(30);
+    Duration after = std::chrono::seconds(1);
+    std::size_t bytes_max = std::size_t{256} << 20U;
+    std::size_t files_max = 20;
+    double seconds = 0.0, wait_s = 0.0;  // as of a recording
+    std::function<bool()> stop = [] { return false; };
+    std::function<bool()> save = [] { return false; };  // true once for each wish
+};
+
+struct FlightOutcome {
+    std::uint64_t files = 0, failed = 0, dropped = 0;
+    bool began = false;
+};
+
+// say: each file and its cause, and what failed.
+FlightOutcome fly(const FlightSettings& settings, const std::function<void(const std::string&)>& say);
+
+}  // namespace tact::record

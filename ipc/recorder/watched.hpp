@@ -1,0 +1,51 @@
+// What both ways of recording stand on: the controller that is watched, and how its words get into a file.
+//
+// Thread  one. Fails by StartupError.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "ipc/record/recording_writer.hpp"
+#include "ipc/recorder/drain.hpp"
+#include "ipc/shm/link.hpp"
+
+namespace tact::record {
+
+// A controller's region; stays mapped after it ended.
+class Watched {
+public:
+    Watched(const std::string& session, LinkRole as) : link_(session, -1, as) {}
+
+    // True: there is one, and its loop has begun.
+    bool look();
+    [[nodiscard]] bool ended() const { return ended_; }
+    [[nodiscard]] const RtRegion& region() const { return *region_; }
+    [[nodiscard]] std::uint64_t generation() const { return region_.generation(); }
+    [[nodiscard]] std::string waiting_for() const;
+
+private:
+    LinkClient link_;
+    MappedRegion<RtRegion> region_;
+    std::string refusal_;
+    bool ended_ = false;
+};
+
+struct AwaitSettings {
+    std::string session;
+    double wait_s = 0.0;  // 0: as long as it takes
+    std::function<bool()> stop;
+};
+
+// Until there is a controller whose loop has begun, and its first steps. False: it was told to stop before.
+bool await(Watched& watched, const AwaitSettings& settings,
+           const std::function<void(const std::string&)>& say);
+
+// first_step: of the rows that will come first; 0: not known.
+[[nodiscard]] RecordingHead head_of(const Watched& watched, const std::string& session,
+                                    const std::string& program, std::uint64_t first_step);
+void add(RecordingWriter& writer, const Batch& batch);
+[[nodiscard]] bool disk_nearly_full(const std::filesystem::path& file, std::uint64_t least);
+void sleep_a_turn();  // 5 ms
+
+}  // namespace tact::record

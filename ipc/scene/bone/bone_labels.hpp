@@ -1,0 +1,54 @@
+// Which structure each voxel of a bone volume belongs to, and what the structures are called.
+//
+// Label    0: none; 1 to 255: row label - 1 of the table. One byte a voxel in the order of the bone's BoneBricks.
+// Critical structures are those that a surgeon keeps away from: nerves, vessels, dura. Each has a distance field.
+// Section LABL: a header of 64 bytes, the table with 64 bytes a row, the labels. A view on the mapped file.
+// Thread   immutable; the file outlives the view.  Fails by  StartupError: counts, names, length, labels that no
+//          row is for, another size than the bone's.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ipc/scene/bone/bone_bricks.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+
+namespace tact {
+
+struct BoneStructure {
+    static constexpr std::size_t kNameBytesMax = 47;  // UTF-8
+    std::string name;
+    std::array<std::uint8_t, 4> rgba{};
+    bool critical = false;
+};
+
+struct BoneLabelsView {
+    std::vector<BoneStructure> structure;  // of label 1, 2, …
+    std::span<const std::uint8_t> label;   // bricks.bytes()
+
+    [[nodiscard]] bool critical(std::uint8_t l) const { return l > 0 && structure[l - 1U].critical; }
+};
+
+// What prep hands over and the sections hold.
+struct BoneData {
+    BoneBricks bricks;
+    float hu_at_0 = std::numeric_limits<float>::quiet_NaN();
+    float hu_at_255 = std::numeric_limits<float>::quiet_NaN();
+    std::vector<std::uint8_t> density;
+    std::vector<BoneStructure> structure;  // none: no labels
+    std::vector<std::uint8_t> label;       // empty, or as many as densities
+
+    [[nodiscard]] BoneVolumeView view() const { return {bricks, hu_at_0, hu_at_255, density}; }
+};
+
+bool has_bone_labels(const SceneFile& file);
+// Throws StartupError where the view is none that could be read again.
+void write_bone_labels(SceneWriter& out, const BoneBricks& bricks, const BoneLabelsView& labels);
+BoneLabelsView read_bone_labels(const SceneFile& file, const BoneBricks& bricks);
+
+}  // namespace tact

@@ -1,0 +1,40 @@
+// How the bytes of a scene file begin: for the reader of all of it and for the one that only looks what it is.
+#pragma once
+
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "ipc/scene/file/scene_file.hpp"
+
+namespace tact::scene_layout {
+
+inline constexpr char kMagic[8] = {'T', 'A', 'C', 'T', 'S', 'C', 'N', '1'};
+inline constexpr std::uint32_t kFormatVersion = 1;
+inline constexpr std::uint32_t kSectionsMax = 4096;
+inline constexpr std::uint64_t kAlign = 64;
+inline constexpr std::uint64_t kBytesMax = std::uint64_t{1} << 36;  // 64 GiB
+
+struct Header {
+    char magic[8];
+    std::uint32_t format_version;
+    std::uint32_t section_count;
+    std::uint64_t total_bytes;
+    std::uint32_t table_crc;
+    std::uint8_t reserved[36];  // zero
+};
+static_assert(sizeof(Header) == 64);
+
+struct TableRow {
+    SectionTag tag;
+    std::uint32_t index, version, crc;
+    std::uint64_t offset, bytes;
+};
+static_assert(sizeof(TableRow) == 32);
+
+inline std::uint32_t crc_of(const std::byte* data, std::size_t size) {
+    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(data), size));
+}
+
+}  // namespace tact::scene_layout

@@ -1,0 +1,51 @@
+// What a scene is and how the hand's world maps onto it. Sections META (this struct) and NOTE (text).
+//
+// x_world = world_per_model * (x_model - centre_model_m): axes are parallel, the scale is uniform.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include "ipc/base/pose.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+
+namespace tact {
+
+enum class SceneKind : std::uint32_t { docking = 1, surface = 2, drilling = 3 };
+
+inline constexpr std::uint32_t kSceneBodiesMax = 16;  // as many as a force model holds
+
+struct SceneMeta {
+    static constexpr SectionTag kTag{'M', 'E', 'T', 'A'};
+    static constexpr std::uint32_t kVersion = 1;
+
+    SceneKind kind;
+    std::uint32_t body_count;
+    double world_per_model;
+    double centre_model_m[3];
+    double energy_j_per_sigma;  // docking: gain of the force, see rt/force/docking
+    double map_mean;            // docking: of the map as in its file, in the file's unit
+    double map_sigma;
+    double map_background;  // value that the map is continued with outside its box
+    double contour;         // isosurface level, in the map's unit
+    double resolution_m;    // 0: not known
+    char title[128];        // UTF-8, ends with 0
+
+    [[nodiscard]] Vec3 to_world(const Vec3& model_m) const {
+        return world_per_model * (model_m - Vec3(centre_model_m[0], centre_model_m[1], centre_model_m[2]));
+    }
+    [[nodiscard]] Vec3 to_model(const Vec3& world_m) const {
+        return world_m / world_per_model + Vec3(centre_model_m[0], centre_model_m[1], centre_model_m[2]);
+    }
+};
+static_assert(std::is_trivially_copyable_v<SceneMeta> && sizeof(SceneMeta) == 216);
+
+void write_meta(SceneWriter& out, const SceneMeta& meta, const std::string& note);
+// Checks every field: finite, positive where a scale, known kind, terminated title.
+SceneMeta read_meta(const SceneFile& file);
+// Provenance as lines "key: value": source files, the origin rule applied, sizes, times.
+std::string read_note(const SceneFile& file);
+
+}  // namespace tact

@@ -1,0 +1,72 @@
+#include "ipc/scene/file/scene_switch.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "ipc/base/error.hpp"
+#include "ipc/base/whole_file.hpp"
+
+namespace tact {
+namespace {
+
+constexpr const char* kAsked = "open";
+constexpr const char* kRefused = "refused";
+
+// The content of a small file, which is gone then, whatever it was; nothing: there is none. More than `most` bytes, and
+// what is no regular file, give an empty text.
+std::optional<std::string> take_small(const std::filesystem::path& path, std::size_t most) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
+    if (fd < 0 && errno == ENOENT) return std::nullopt;
+    std::string text;
+    struct stat info {};
+    if (fd >= 0 && ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0 &&
+        static_cast<std::size_t>(info.st_size) <= most) {
+        text.resize(static_cast<std::size_t>(info.st_size));
+        const ssize_t got = ::pread(fd, text.data(), text.size(), 0);
+        text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+    }
+    if (fd >= 0) ::close(fd);
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+    return text;
+}
+
+bool control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+}  // namespace
+
+void ask_for_scene(const std::filesystem::path& folder, const std::filesystem::path& scene) {
+    write_whole_file(folder / kAsked, std::filesystem::absolute(scene).lexically_normal().string() + "\n");
+}
+
+std::optional<std::filesystem::path> take_asked_scene(const std::filesystem::path& folder) {
+    const auto text = take_small(folder / kAsked, kAskedPathMost);
+    if (!text) return std::nullopt;
+    const auto refuse = [](const std::string& why) {
+        throw StartupError("opening another scene", why, "choose the scene again, or tact run FILE");
+    };
+    if (text->empty()) refuse("what was asked for is no path, or longer than a path may be");
+    const std::string path = text->substr(0, text->size() - 1);
+    if (text->back() != '\n' || std::any_of(path.begin(), path.end(), control))
+        refuse("the path that was asked for is no single line of text");
+    if (path.empty() || path.front() != '/') refuse("the path that was asked for is not absolute");
+    return path;
+}
+
+void refuse_scene(const std::filesystem::path& folder, const std::string& why) {
+    write_whole_file(folder / kRefused, why.substr(0, kRefusalMost));
+}
+
+std::optional<std::string> take_refusal(const std::filesystem::path& folder) {
+    auto text = take_small(folder / kRefused, kRefusalMost);
+    if (text)
+        std::replace_if(
+            text->begin(), text->end(), [](char c) { return control(c) && c != '\n'; }, '?');
+    return text;
+}
+
+}  // namespace tact

@@ -1,0 +1,172 @@
+#include "ipc/scene/fit/fit_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr float kRegionShare = 0.05F;
+
+Vec3 in_voxels(const DensityGrid& grid, const PlacedStructure& placed, std::size_t atom) {
+    const Structure& s = *placed.structure;
+    const Vec3 body(static_cast<double>(s.x_m[atom]), static_cast<double>(s.y_m[atom]),
+                    static_cast<double>(s.z_m[atom]));
+    return (placed.T_model_body * body - grid.origin_m).cwiseQuotient(grid.spacing_m);
+}
+
+// Map value between eight voxels; outside the box the background.
+double trilinear(const DensityGrid& grid, const Vec3& at, double background) {
+    double value = 0.0;
+    const Vec3 low = at.array().floor();
+    if (!(low.array() >= -1.0).all() ||
+        !(low.x() < grid.size[0] && low.y() < grid.size[1] && low.z() < grid.size[2])) {
+        return background;
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        double weight = 1.0;
+        std::array<std::int64_t, 3> voxel{};
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) {
+            const int up = (corner >> a) & 1;
+            const double part = at[a] - low[a];
+            weight *= up == 1 ? part : 1.0 - part;
+            const auto axis = static_cast<std::size_t>(a);
+            voxel[axis] = static_cast<std::int64_t>(low[a]) + up;
+            inside = inside && voxel[axis] >= 0 && voxel[axis] < static_cast<std::int64_t>(grid.size[axis]);
+        }
+        value += weight * (inside ? static_cast<double>(grid.at(static_cast<std::uint32_t>(voxel[0]),
+                                                                static_cast<std::uint32_t>(voxel[1]),
+                                                                static_cast<std::uint32_t>(voxel[2])))
+                                  : background);
+    }
+    return value;
+}
+
+struct Sums {
+    double u = 0.0, v = 0.0, uu = 0.0, vv = 0.0, uv = 0.0;
+    std::uint64_t voxels = 0;
+};
+
+// simulated: one value per voxel of the box.
+void correlate(const DensityGrid& grid, const VoxelBox& box, std::span<const float> simulated,
+               FitMetrics& fit) {
+    const float most = simulated.empty() ? 0.0F : *std::max_element(simulated.begin(), simulated.end());
+    if (!(most > 0.0F)) return;
+    Sums sum;
+    std::size_t i = 0;
+    for (std::uint32_t z = 0; z < box.size[2]; ++z) {
+        for (std::uint32_t y = 0; y < box.size[1]; ++y) {
+            const float* const row =
+                &grid.values[(std::size_t{box.first[2] + z} * grid.size[1] + box.first[1] + y) *
+                                 grid.size[0] +
+                             box.first[0]];
+            for (std::uint32_t x = 0; x < box.size[0]; ++x, ++i) {
+                if (!(simulated[i] > kRegionShare * most)) continue;
+                const auto u = static_cast<double>(row[x]), v = static_cast<double>(simulated[i]);
+                sum.u += u, sum.v += v;
+                sum.uu += u * u, sum.vv += v * v, sum.uv += u * v;
+                ++sum.voxels;
+            }
+        }
+    }
+    const auto n = static_cast<double>(sum.voxels);
+    const double zero = std::sqrt(sum.uu * sum.vv);
+    const double varied =
+        std::sqrt(std::max(0.0, sum.uu - sum.u * sum.u / n) * std::max(0.0, sum.vv - sum.v * sum.v / n));
+    fit.region_voxels = sum.voxels;
+    fit.overlap = sum.uv;
+    fit.cc_zero = zero > 0.0 ? sum.uv / zero : 0.0;
+    fit.cc_mean = varied > 0.0 ? (sum.uv - sum.u * sum.v / n) / varied : 0.0;
+}
+
+// Adds a box of values to those of the whole grid.
+void add_box(const DensityGrid& grid, const VoxelBox& box, std::span<const float> part,
+             std::span<float> whole) {
+    for (std::uint32_t z = 0; z < box.size[2]; ++z) {
+        for (std::uint32_t y = 0; y < box.size[1]; ++y) {
+            const float* const from = &part[(std::size_t{z} * box.size[1] + y) * box.size[0]];
+            float* const to =
+                &whole[(std::size_t{box.first[2] + z} * grid.size[1] + box.first[1] + y) * grid.size[0] +
+                       box.first[0]];
+            for (std::uint32_t x = 0; x < box.size[0]; ++x) to[x] += from[x];
+        }
+    }
+}
+
+// Sums over atoms, not yet divided.
+void look_at_atoms(const DensityGrid& grid, const PlacedStructure& placed, double background, double contour,
+                   FitMetrics& fit) {
+    for (std::size_t i = 0; i < placed.structure->size(); ++i) {
+        const double value = trilinear(grid, in_voxels(grid, placed, i), background);
+        fit.mean_density += value;
+        fit.fraction_inside += value > contour ? 1.0 : 0.0;
+    }
+    fit.atoms = placed.structure->size();
+}
+
+void divide_by_atoms(FitMetrics& fit, double background, double sigma) {
+    if (fit.atoms == 0) return;
+    const auto n = static_cast<double>(fit.atoms);
+    fit.mean_density /= n;
+    fit.fraction_inside /= n;
+    if (sigma > 0.0) fit.mean_density_sigma = (fit.mean_density - background) / sigma;
+}
+
+}  // namespace
+
+FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructure> placed,
+                          const FitSettings& settings) {
+    if (!(settings.resolution_m > 0.0) || !std::isfinite(settings.resolution_m)) {
+        throw StartupError("computing the fit", "the resolution of the map is not known",
+                           "state it with --resolution-a");
+    }
+    FitOfBodies fit;
+    fit.body.resize(placed.size());
+    if (grid.values.size() != grid.count() || grid.values.empty()) return fit;
+    double background = settings.background, sigma = settings.sigma;
+    if (!(sigma > 0.0)) {
+        double sum = 0.0, squares = 0.0;
+        for (const float v : grid.values) sum += static_cast<double>(v);
+        background = sum / static_cast<double>(grid.values.size());
+        for (const float v : grid.values) squares += std::pow(static_cast<double>(v) - background, 2.0);
+        sigma = std::sqrt(squares / static_cast<double>(grid.values.size()));
+    }
+    // All together: in the box that holds all of them, which is the whole grid only when it has to be.
+    const VoxelBox together = reached_box(grid, placed, settings.resolution_m);
+    DensityGrid frame;  // of that box, without values
+    frame.size = together.size;
+    std::vector<float> sum(placed.size() > 1 ? together.count() : 0, 0.0F), own;
+    for (std::size_t b = 0; b < placed.size(); ++b) {
+        VoxelBox box = reached_box(grid, placed.subspan(b, 1), settings.resolution_m);
+        own.assign(box.count(), 0.0F);
+        add_simulated(grid, placed[b], settings.resolution_m, 1.0F, box, own);
+        correlate(grid, box, own, fit.body[b]);
+        look_at_atoms(grid, placed[b], background, settings.contour, fit.body[b]);
+        fit.all.mean_density += fit.body[b].mean_density;
+        fit.all.fraction_inside += fit.body[b].fraction_inside;
+        fit.all.atoms += fit.body[b].atoms;
+        divide_by_atoms(fit.body[b], background, sigma);
+        if (placed.size() < 2 || own.empty()) continue;
+        for (std::size_t a = 0; a < 3; ++a) box.first[a] -= together.first[a];
+        add_box(frame, box, own, sum);
+    }
+    divide_by_atoms(fit.all, background, sigma);
+    if (placed.size() == 1) fit.all = fit.body.front();
+    if (placed.size() > 1) correlate(grid, together, sum, fit.all);
+    const ClashCounts clashes = count_clashes(placed);
+    fit.all.clashes = clashes.pairs;
+    for (std::size_t b = 0; b < placed.size(); ++b) fit.body[b].clashes = clashes.pairs_of[b];
+    return fit;
+}
+
+FitMetrics fit_metrics(const DensityGrid& grid, std::span<const PlacedStructure> placed,
+                       const FitSettings& settings) {
+    return fit_of_bodies(grid, placed, settings).all;
+}
+
+}  // namespace tact

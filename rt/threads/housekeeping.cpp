@@ -1,0 +1,295 @@
+#include "rt/threads/housekeeping.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <numeric>
+
+#include "ipc/topics/text.hpp"
+#include "rt/govern/law.hpp"
+#include "rt/threads/thread_setup.hpp"
+
+namespace tact {
+
+namespace {
+
+constexpr int kPollMs = 10;           // a command waits for no longer than this
+constexpr int kCommandsPerTurn = 16;  // the ring holds 64: a flood costs bounded work and is seen as missed
+
+std::atomic<ServoMailbox*> signalled{nullptr};
+static_assert(std::atomic<ServoMailbox*>::is_always_lock_free);
+
+extern "C" void on_signal(int number) {
+    ServoMailbox* const mailbox = signalled.load(std::memory_order_relaxed);
+    if (mailbox != nullptr) mailbox->stop_signal.store(number, std::memory_order_relaxed);
+}
+
+// A place that some scene may have: no model is kilometres wide. What a scene really has the model says.
+bool read_pose(const CommandTopic& command, ServoOrder& order) {
+    double square = 0.0;
+    for (const double p : command.pos_model_m)
+        if (!(std::abs(p) <= 1e3)) return false;
+    for (const double q : command.quat_model_body_xyzw) square += q * q;
+    if (!(square > 0.98 && square < 1.02)) return false;
+    std::copy(std::begin(command.pos_model_m), std::end(command.pos_model_m), order.pos_model_m);
+    for (int i = 0; i < 4; ++i)
+        order.quat_model_body_xyzw[i] = command.quat_model_body_xyzw[i] / std::sqrt(square);
+    return true;
+}
+
+// Which bodies there are only the servo knows.
+bool read_body_order(const CommandTopic& command, ServoOrder& order) {
+    order.body = command.body;
+    const bool id = command.body != 0 && command.body != kNoBody;
+    const bool yes_or_no = command.value == 0.0 || command.value == 1.0;
+    switch (static_cast<CommandKind>(command.kind)) {
+        case CommandKind::select_body:
+            return command.body != 0;
+        case CommandKind::fix_body:
+            return id && yes_or_no;
+        case CommandKind::place_body:
+            return id && read_pose(command, order);
+        case CommandKind::add_body:
+            return command.body <= 0xFFFFU && read_pose(command, order);
+        case CommandKind::remove_body:
+            return id;
+        case CommandKind::set_detail_filter:  // how wide a filter may be the model knows
+            order.pos_model_m[0] = command.pos_model_m[0];
+            return command.body <= 0xFFU && std::isfinite(command.pos_model_m[0]);
+        default:  // options
+            return yes_or_no;
+    }
+}
+
+}  // namespace
+
+CheckedCommand check_command(const CommandTopic& command, std::span<const std::string> path_names) {
+    CheckedCommand checked;
+    checked.order = {.sequence = command.sequence, .value = command.value, .kind = command.kind, .index = 0};
+    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(kLastCommand)) {
+        checked.result = CommandResult::unknown;
+        return checked;
+    }
+    const bool ends = std::memchr(command.text, 0, sizeof command.text) != nullptr;
+    if (!std::isfinite(command.value) || !ends || command.sequence == 0) {
+        checked.result = CommandResult::refused_value;
+        return checked;
+    }
+    const std::string_view text(command.text);
+    const auto kind = static_cast<CommandKind>(command.kind);
+    if (kind == CommandKind::set_law) {
+        const auto law = law_named(text);
+        if (!law) checked.result = CommandResult::refused_value;
+        checked.order.index = law ? static_cast<std::uint32_t>(*law) : 0;
+    } else if (kind == CommandKind::set_level) {
+        const auto found = std::find(path_names.begin(), path_names.end(), text);
+        const bool good = found != path_names.end() && command.value >= 0.0 && command.value <= 1.0;
+        if (!good) checked.result = CommandResult::refused_value;
+        checked.order.index = good ? static_cast<std::uint32_t>(found - path_names.begin()) : 0;
+    } else if (kind == CommandKind::set_goal_hz) {
+        if (!(command.value >= 1.0 && command.value <= 1e7)) checked.result = CommandResult::refused_value;
+    } else if (command.kind >= static_cast<std::uint16_t>(CommandKind::select_body)) {
+        if (!read_body_order(command, checked.order)) checked.result = CommandResult::refused_value;
+    }
+    return checked;
+}
+
+bool plausible(const LoadTopic& load) {
+    const auto time = [](double s) { return std::isfinite(s) && s >= 0.0 && s < 1e9; };
+    bool good = time(load.frame_s) && time(load.busy_s) && time(load.cpu_s) && std::isfinite(load.fps) &&
+                load.fps >= 0.0 && load.fps < 1e6 && load.vertices_drawn <= load.vertices_max &&
+                load.vertices_max < 1U << 31U && load.particles <= load.particles_max &&
+                load.particle_moves <= load.particles_max && load.particles_max < 1U << 31U;
+    for (const double s : load.part_s) good = good && time(s);
+    return good;
+}
+
+Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>& region,
+                           ServoMailbox& mailbox, LinkServer& link)
+    : settings_(std::move(settings)),
+      region_(region),
+      mailbox_(mailbox),
+      link_(link),
+      builder_(mailbox, settings_.servo_thread_id) {
+    report_.gui_heartbeat_ns = -1;
+}
+
+void Housekeeping::catch_signals(ServoMailbox& mailbox) {
+    signalled.store(&mailbox);
+    struct sigaction action {};
+    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the house ends at once
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) sigaction(number, &action, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void Housekeeping::order(CommandKind kind, double value, std::uint32_t index) {
+    mailbox_.orders.push(
+        {.sequence = 0, .value = value, .kind = static_cast<std::uint32_t>(kind), .index = index});
+}
+
+void Housekeeping::run() {
+    const Instant begin = Monotonic::now();
+    Instant reported_at = begin;
+    while (!mailbox_.ended.load(std::memory_order_acquire)) {
+        serve_link();
+        serve_gui();
+        log_events();
+        builder_.poll();
+        mailbox_.model.collect().reset();
+        const Instant now = Monotonic::now();
+        if (now - reported_at >= std::chrono::milliseconds(100)) {
+            const std::uint64_t faults = page_faults_of(settings_.servo_thread_id);
+            report_.page_faults =
+                faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
+            reported_at = now;
+            notify_service(now);
+            spdlog::default_logger_raw()->flush();  // what nobody read, said now that somebody does
+        }
+        report();
+        const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;
+        int none = 0;
+        if (over) mailbox_.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
+        if (mailbox_.stop_signal.load(std::memory_order_relaxed) != 0) service_.stopping();
+    }
+    log_events();
+}
+
+void Housekeeping::serve_link() {
+    LinkServer::News news = link_.poll(kPollMs);
+    count_recorders();
+    if (news.gui_left) {
+        gui_ = {};
+        report_.gui_attached = 0;
+        spdlog::info("the visual process left");
+    }
+    if (news.gui_arrived) {
+        std::string refusal;
+        gui_ = MappedRegion<GuiRegion>::map(std::move(news.gui_fd), refusal);
+        if (gui_.empty()) {
+            ++bad_input_;
+            spdlog::warn("refused the region of the visual process {}: {}", news.gui_pid, refusal);
+            return;
+        }
+        commands_ = gui_->commands.tail();  // what an earlier controller was told is not for this one
+        loads_seen_ = frames_seen_ = 0;
+        report_.gui_attached = 1;
+        report_.gui_generation = gui_.generation();
+        report_.gui_heartbeat_ns = to_ns(Monotonic::now());
+        spdlog::info("visual process {} attached", news.gui_pid);
+    }
+}
+
+void Housekeeping::count_recorders() {
+    const LinkServer::Recorders now = link_.recorders();
+    if (now == recorders_) return;
+    recorders_ = now;
+    RecordersTopic t{};
+    t.taken_at_ns = to_ns(Monotonic::now());
+    t.recorders = now.recorders;
+    t.flights = now.flights;
+    region_->recorders.publish(t);
+}
+
+void Housekeeping::pass_on_frames() {
+    const std::uint64_t count = gui_->frames.count();
+    FramesTopic frames{};
+    if (count == frames_seen_ || !gui_->frames.read(frames)) return;
+    frames_seen_ = count;
+    if (!plausible(frames.metrics)) {
+        ++bad_input_;
+        return;
+    }
+    DisplayTopic picture{};
+    picture.taken_at_ns = to_ns(Monotonic::now());  // what the other process wrote there is not believed
+    picture.metrics = frames.metrics;
+    region_->picture.publish(picture);
+}
+
+void Housekeeping::serve_gui() {
+    if (gui_.empty()) return;
+    const std::uint64_t loads = gui_->load.count();
+    LoadTopic load{};
+    if (loads != loads_seen_ && gui_->load.read(load)) {
+        loads_seen_ = loads;
+        if (plausible(load)) {
+            report_.gui_heartbeat_ns = to_ns(Monotonic::now());
+            report_.gui_fps = load.fps;
+            report_.gui_busy_s = load.busy_s;
+            report_.gui_frame = load.frame;
+            report_.gui_levels_sequence = load.levels_sequence;
+            report_.gui_taken_at_ns = load.taken_at_ns;
+            report_.gui_work_s = std::accumulate(std::begin(load.part_s), std::end(load.part_s), 0.0);
+            report_.gui_cpu_s = load.cpu_s;
+            report_.gui_vertices = load.vertices_drawn;
+            report_.gui_vertices_max = load.vertices_max;
+            report_.gui_particles_max = load.particles_max;
+            report_.gui_particles_s = load.part_s[static_cast<std::size_t>(FramePart::particles)];
+            if (settings_.arm_with_gui && load.vertices_drawn > 0) {
+                settings_.arm_with_gui = false;
+                order(CommandKind::arm, 0.0, 0);
+            }
+        } else {
+            ++bad_input_;
+        }
+    }
+    pass_on_frames();
+    CommandTopic command{};
+    const std::uint64_t missed = commands_.missed;
+    for (int i = 0; i < kCommandsPerTurn && gui_->commands.next(commands_, command); ++i) {
+        const CheckedCommand checked = check_command(command, settings_.path_names);
+        if (checked.result == CommandResult::none) {
+            mailbox_.orders.push(checked.order);
+            continue;
+        }
+        // The servo answers all commands, so that the answers come in order: a refused one goes as kind none.
+        ++bad_input_;
+        mailbox_.orders.push({.sequence = command.sequence,
+                              .value = 0.0,
+                              .kind = static_cast<std::uint32_t>(CommandKind::none),
+                              .index = static_cast<std::uint32_t>(checked.result)});
+    }
+    bad_input_ += commands_.missed - missed;
+}
+
+void Housekeeping::log_events() {
+    EventTopic event{};
+    for (int i = 0; i < 64 && region_->events.next(events_, event); ++i) {
+        const auto code = static_cast<EventCode>(event.code);
+        if (code == EventCode::fault_latched) {
+            spdlog::error("cycle {}: {}", event.cycle, event_text(event));
+        } else if (code == EventCode::level_changed || code == EventCode::slew_limited ||
+                   code == EventCode::torque_slew_limited) {
+            spdlog::debug("cycle {}: {}", event.cycle, event_text(event));
+        } else {
+            spdlog::info("cycle {}: {}", event.cycle, event_text(event));
+        }
+    }
+    FaultSnapshot s{};
+    if (mailbox_.fault.count() == faults_seen_ || !mailbox_.fault.read(s)) return;
+    faults_seen_ = mailbox_.fault.count();
+    spdlog::error(
+        "at the fault: cycle {}, late {:.1f} us, sample {:.1f} us old, at ({:.4f}, {:.4f}, {:.4f}) m, wanted "
+        "({:.3f}, {:.3f}, {:.3f}) N, applied before ({:.3f}, {:.3f}, {:.3f}) N",
+        s.cycle, static_cast<double>(s.lateness_ns) * 1e-3, static_cast<double>(s.sample_age_ns) * 1e-3,
+        s.pos_world_m[0], s.pos_world_m[1], s.pos_world_m[2], s.wanted_n[0], s.wanted_n[1], s.wanted_n[2],
+        s.applied_before_n[0], s.applied_before_n[1], s.applied_before_n[2]);
+}
+
+void Housekeeping::report() {
+    report_.bad_input = bad_input_ + link_.refused();
+    mailbox_.housekeeping.publish(report_);
+}
+
+void Housekeeping::notify_service(Instant now) {
+    HealthTopic h{};
+    if (!region_->health.read(h)) return;
+    service_.update({.heartbeat = mailbox_.pulse.beat_ns.load(std::memory_order_relaxed),
+                     .state = run_state_text(static_cast<RunState>(h.state)),
+                     .rate_hz = h.force_rate_hz},
+                    now);
+}
+
+}  // namespace tact

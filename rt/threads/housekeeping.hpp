@@ -1,0 +1,81 @@
+// The house thread: everything of tact-rt that may wait, allocate or speak.
+//
+// Does      serves the link, maps the GUI's region, checks its commands and loads and passes them on to the
+//           servo, prints events, has models built, collects old ones, ends the run after its time
+// Runs on   the main thread, ordinary scheduling; never on the servo's core by choice
+// Hostile   what the GUI's region holds is checked field by field; what is wrong is counted and dropped
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ipc/shm/link.hpp"
+#include "ipc/shm/region.hpp"
+#include "ipc/topics/regions.hpp"
+#include "rt/servo/mailbox.hpp"
+#include "rt/threads/model_builder.hpp"
+#include "rt/threads/service_notify.hpp"
+
+namespace tact {
+
+// A command in the servo's terms, or why not. path_names in the order of the governor's paths.
+struct CheckedCommand {
+    ServoOrder order{};
+    CommandResult result = CommandResult::none;  // none: fit to pass on
+};
+[[nodiscard]] CheckedCommand check_command(const CommandTopic& command,
+                                           std::span<const std::string> path_names);
+// False: some field cannot be true.
+[[nodiscard]] bool plausible(const LoadTopic& load);
+
+struct HousekeepingSettings {
+    std::string session = "default";
+    double seconds = 0.0;       // 0: until a signal
+    bool arm_with_gui = false;  // arm once, when the visual process has drawn
+    std::vector<std::string> path_names;
+    int servo_thread_id = 0;
+    std::uint64_t page_faults_at_start = 0;
+};
+
+class Housekeeping {
+public:
+    Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>& region, ServoMailbox& mailbox,
+                 LinkServer& link);
+    // Passes an order from the command line.
+    void order(CommandKind kind, double value, std::uint32_t index);
+    // Until the servo has ended.
+    void run();
+    // The signals that stop a run go to `mail`; installs the handlers.
+    static void catch_signals(ServoMailbox& mailbox);
+
+private:
+    void serve_link();
+    void serve_gui();
+    void pass_on_frames();
+    void count_recorders();
+    void log_events();
+    void report();
+    void notify_service(Instant now);
+
+    HousekeepingSettings settings_;
+    OwnedRegion<RtRegion>& region_;
+    ServoMailbox& mailbox_;
+    LinkServer& link_;
+    ModelBuilder builder_;
+    MappedRegion<GuiRegion> gui_;
+    RingCursor commands_;
+    RingCursor events_;
+    std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
+    LinkServer::Recorders recorders_;
+    std::uint64_t bad_input_ = 0;
+    std::uint64_t faults_seen_ = 0;
+    HousekeepingReport report_{};
+    ServiceNotify service_;
+};
+
+}  // namespace tact

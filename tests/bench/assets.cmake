@@ -1,2 +1,0 @@
-# Benches of assets.
-tact_bench(bench/fit_bench.cpp USES base assets)

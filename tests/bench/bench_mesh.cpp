@@ -1,0 +1,186 @@
+#include "tests/bench/bench_mesh.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "ipc/base/random.hpp"
+#include "ipc/scene/mesh/mesh_cut.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::uint32_t kTorusSide = 1024, kBaseSide = 8;
+
+// Grid numbers in the order in which they go, and where each goes.
+struct Contractions {
+    std::vector<std::uint32_t> gone;
+    std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kTorusSide} * kTorusSide);
+};
+
+Contractions contractions() {
+    Contractions c;
+    SeededRandom random(1);
+    std::vector<std::uint32_t> round;
+    const auto finish = [&] {
+        for (std::size_t i = round.size(); i > 1; --i) std::swap(round[i - 1], round[random.below(i)]);
+        c.gone.insert(c.gone.end(), round.begin(), round.end());
+        round.clear();
+    };
+    for (std::uint32_t s = 1; s < kTorusSide / kBaseSide; s *= 2) {
+        for (std::uint32_t i = s; i < kTorusSide; i += 2 * s) {
+            for (std::uint32_t j = 0; j < kTorusSide; j += s) {
+                round.push_back(i * kTorusSide + j);
+                c.into[i * kTorusSide + j] = (i - s) * kTorusSide + j;
+            }
+        }
+        finish();
+        for (std::uint32_t i = 0; i < kTorusSide; i += 2 * s) {
+            for (std::uint32_t j = s; j < kTorusSide; j += 2 * s) {
+                round.push_back(i * kTorusSide + j);
+                c.into[i * kTorusSide + j] = i * kTorusSide + j - s;
+            }
+        }
+        finish();
+    }
+    return c;
+}
+
+MeshVertex torus_vertex(std::uint32_t at) {
+    const std::uint32_t row = at / kTorusSide;
+    const double u = 2.0 * std::numbers::pi * row / kTorusSide;
+    const double v = 2.0 * std::numbers::pi * (at % kTorusSide) / kTorusSide;
+    const double ring = 1.0 + 0.3 * std::cos(v);
+    const auto pack = [](double x) { return static_cast<std::int16_t>(std::lround(32767.0 * x)); };
+    return {{static_cast<float>(ring * std::cos(u)), static_cast<float>(ring * std::sin(u)),
+             static_cast<float>(0.3 * std::sin(v))},
+            {pack(std::cos(v) * std::cos(u)), pack(std::cos(v) * std::sin(u)), pack(std::sin(v)), 0}};
+}
+
+ProgressiveMeshData torus() {
+    constexpr std::uint32_t kVertices = kTorusSide * kTorusSide;
+    const Contractions c = contractions();
+    const auto steps = static_cast<std::uint32_t>(c.gone.size());
+    ProgressiveMeshData data;
+    data.base_vertices = kVertices - steps;
+    std::vector<std::uint32_t> number(kVertices, UINT32_MAX);
+    for (std::uint32_t s = 0; s < steps; ++s) number[c.gone[s]] = kVertices - 1 - s;
+    std::uint32_t next = 0;
+    for (std::uint32_t& n : number) n = n == UINT32_MAX ? next++ : n;
+    data.vertex.resize(kVertices);
+    for (std::uint32_t at = 0; at < kVertices; ++at) data.vertex[number[at]] = torus_vertex(at);
+    data.parent.resize(steps);
+    data.merged.resize(steps);
+    data.error_m.resize(steps + 1);
+    for (std::uint32_t s = 0; s < steps; ++s) {
+        const std::uint32_t k = steps - 1 - s;
+        data.parent[k] = number[c.into[c.gone[s]]];
+        data.merged[k] = data.vertex[data.parent[k]];
+        // Somewhere else, so that there is something to copy.
+        data.merged[k].position_m[2] += 1e-7F * static_cast<float>(s);
+        data.error_m[k] = 1e-7F * static_cast<float>(s + 1);
+    }
+    // Triangles by counting sort on the level where two of their corners meet.
+    std::vector<std::array<std::uint32_t, 3>> triangle;
+    std::vector<std::uint32_t> level;
+    data.triangle_count.assign(steps + 1, 0);
+    for (std::uint32_t i = 0; i < kTorusSide; ++i) {
+        for (std::uint32_t j = 0; j < kTorusSide; ++j) {
+            const auto at = [&](std::uint32_t di, std::uint32_t dj) {
+                return number[(i + di) % kTorusSide * kTorusSide + (j + dj) % kTorusSide];
+            };
+            for (const auto& t :
+                 {std::array{at(0, 0), at(1, 0), at(1, 1)}, std::array{at(0, 0), at(1, 1), at(0, 1)}}) {
+                auto v = t;
+                std::uint32_t k = 0;  // of the lowest level that has it, counted from the base
+                while (k == 0) {
+                    std::uint32_t& last = *std::max_element(v.begin(), v.end());
+                    if (last < data.base_vertices) break;
+                    const std::uint32_t gone = last - data.base_vertices;
+                    last = data.parent[gone];
+                    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) k = gone + 1;
+                }
+                triangle.push_back(t);
+                level.push_back(k);
+                ++data.triangle_count[k];
+            }
+        }
+    }
+    std::vector<std::uint32_t> place(steps + 1, 0);
+    for (std::uint32_t k = 1; k <= steps; ++k) {
+        place[k] = data.triangle_count[k - 1];
+        data.triangle_count[k] += data.triangle_count[k - 1];
+    }
+    data.triangle.resize(3 * triangle.size());
+    for (std::size_t t = 0; t < triangle.size(); ++t)
+        std::copy(triangle[t].begin(), triangle[t].end(),
+                  data.triangle.begin() + std::ptrdiff_t{3} * place[level[t]]++);
+    return data;
+}
+
+double processor_ms() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+template <class Prepare, class Timed>
+double median_ms(int runs, Prepare&& prepare, Timed&& timed) {
+    std::vector<double> times_ms;
+    for (int i = 0; i < runs; ++i) {
+        prepare();
+        const double begin_ms = processor_ms();
+        timed();
+        times_ms.push_back(processor_ms() - begin_ms);
+    }
+    std::sort(times_ms.begin(), times_ms.end());
+    return times_ms[times_ms.size() / 2];
+}
+
+}  // namespace
+
+MeshBench bench_mesh() {
+    const ProgressiveMesh mesh(torus());
+    MeshCut cut(mesh);
+    const std::uint32_t all = mesh.vertices(), few = all / 100 * 28, half = all / 2;
+    const auto go = [&](std::uint32_t vertices) {
+        cut.set_vertices(vertices);
+        (void)cut.changes();
+    };
+    MeshBench bench;
+    bench.bytes_per_vertex = static_cast<double>(mesh.memory_bytes()) / all;
+    bench.jump_ms = median_ms(
+        15, [&] { go(all); }, [&] { go(few); });
+    bench.jump_back_ms = median_ms(
+        15, [&] { go(few); }, [&] { go(all); });
+    go(few);
+    std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
+    bench.copy_ms = median_ms(
+        15, [] {},
+        [&] {
+            std::memcpy(copy.data(), cut.vertex().data(), sizeof(PackedVertex) * few);
+            std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
+                        std::size_t{12} * cut.triangles());
+        });
+    // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.
+    bench.ns_per_contraction = 1e3 * median_ms(
+                                         101, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
+    bench.ns_per_vertex_split = 1e3 * median_ms(
+                                          101, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
+    bench.changes_ms = median_ms(
+        101,
+        [&] {
+            go(half);
+            cut.set_vertices(half - 1000);
+        },
+        [&] { (void)cut.changes(); });
+    return bench;
+}
+
+}  // namespace tact

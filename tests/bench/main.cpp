@@ -1,0 +1,211 @@
+// tact-bench: the figures by which an operator judges a PC, measured on it. `tact bench` starts it.
+//
+// Exit  0  measured; 1  error; 2  wrong usage
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ipc/manual/manual.hpp"
+#include "ipc/version/version.hpp"
+#include "tests/bench/bench_docking.hpp"
+#include "tests/bench/bench_drilling.hpp"
+#include "tests/bench/bench_ipc.hpp"
+#include "tests/bench/bench_mesh.hpp"
+#include "tests/bench/bench_particles.hpp"
+#include "tests/bench/bench_prep.hpp"
+#include "tests/bench/bench_servo.hpp"
+#include "tests/bench/bench_surface.hpp"
+
+namespace tact::launch {
+namespace {
+
+using nlohmann::json;
+
+struct Measure {
+    const char* name;
+    const char* help;
+    json (*run)();
+    bool only_named = false;  // too long and too large for who just asks what this machine is good for
+};
+
+json ipc() {
+    const IpcBench b = bench_ipc();
+    return {{"publish_ns_p50", b.publish_ns_p50},
+            {"publish_ns_max", b.publish_ns_max},
+            {"publish_contended_ns_p50", b.publish_contended_ns_p50},
+            {"publish_tool_ns_p50", b.publish_tool_ns_p50},
+            {"read_ns_p50", b.read_ns_p50},
+            {"read_contended_ns_p50", b.read_contended_ns_p50},
+            {"trace_push_ns_p50", b.trace_push_ns_p50},
+            {"torn", b.torn}};
+}
+
+json servo() {
+    const ServoBench b = bench_servo();
+    return {{"lateness_us_p50", b.lateness.p50_us},
+            {"lateness_us_p99", b.lateness.p99_us},
+            {"lateness_us_p999", b.lateness.p999_us},
+            {"lateness_us_max", b.lateness.max_us},
+            {"lateness_asleep_us_p50", b.lateness_asleep.p50_us},
+            {"lateness_asleep_us_p99", b.lateness_asleep.p99_us},
+            {"lateness_asleep_us_max", b.lateness_asleep.max_us},
+            {"lateness_cycles", b.lateness.cycles},
+            {"lateness_overruns", b.overruns},
+            {"lateness_fifo", b.fifo},
+            {"lateness_core", b.core}};
+}
+
+json docking() {
+    const DockingBench b = bench_docking();
+    const MeshBench m = bench_mesh();
+    return {{"force_kernel", b.kernel},
+            {"force_us_n200_p50", b.force_us_n200_p50},
+            {"force_us_n200_p99", b.force_us_n200_p99},
+            {"force_us_n200_quietest", b.force_us_n200_quietest},
+            {"force_us_atoms100k_p50", b.force_us_atoms100k_p50},
+            {"force_us_atoms100k_p99", b.force_us_atoms100k_p99},
+            {"force_us_atoms100k_quietest", b.force_us_atoms100k_quietest},
+            {"force_ns_per_point_n200", b.ns_per_point_n200},
+            {"force_ns_per_point_atoms100k", b.ns_per_point_atoms},
+            {"force_map_bytes", b.map_bytes},
+            {"jump_1m_ms", m.jump_ms},
+            {"jump_1m_back_ms", m.jump_back_ms},
+            {"jump_1m_copy_ms", m.copy_ms},
+            {"ns_per_vertex_contraction", m.ns_per_contraction},
+            {"ns_per_vertex_split", m.ns_per_vertex_split},
+            {"changes_1000_steps_ms", m.changes_ms},
+            {"mesh_bytes_per_vertex", m.bytes_per_vertex}};
+}
+
+json docking_and_meshes() {
+    json all = docking();
+    all.update(bench_prep());
+    return all;
+}
+
+json drilling_and_particles() {
+    json all = bench_drilling();
+    all.update(bench_particles_by_child());
+    return all;
+}
+
+constexpr Measure kMeasures[] = {
+    {"servo", "how late a cycle of 1 ms begins", &servo},
+    {"docking", "one force of the docking model; changing the detail of a surface, and simplifying meshes",
+     &docking_and_meshes},
+    {"surface", "one step of touching a surface of 92 480, 2 and 10 million triangles; some minutes and 4 GB",
+     &bench_surface, true},
+    {"drilling",
+     "one step of drilling, force and erosion, burrs of 1 to 20 mm; moving particles; two minutes",
+     &drilling_and_particles, true},
+    {"ipc", "publishing and reading the state of a servo cycle", &ipc},
+};
+
+int bench(const std::vector<std::string>& wanted, bool as_json) {
+    json all = json::object();
+    for (const Measure& m : kMeasures) {
+        const bool named = std::find(wanted.begin(), wanted.end(), m.name) != wanted.end();
+        if (!named && (!wanted.empty() || m.only_named)) continue;
+        const json numbers = m.run();
+        if (!as_json) {
+            std::printf("%s: %s\n", m.name, m.help);
+            for (const auto& [key, value] : numbers.items())
+                std::printf("  %-28s %s\n", key.c_str(),
+                            value.is_number_float() ? (std::to_string(value.get<double>())).c_str()
+                                                    : value.dump().c_str());
+            std::fflush(stdout);
+        }
+        all.update(numbers);  // the keys differ and say what they are
+    }
+    if (as_json) std::printf("%s\n", all.dump(2).c_str());
+    return 0;
+}
+
+void describe(CLI::App& app, int& exit_code) {
+    CLI::App* const command = &app;
+    const auto wanted = std::make_shared<std::vector<std::string>>();
+    const auto as_json = std::make_shared<bool>(false);
+    std::vector<std::string> names;
+    std::string help = "which; default: all but surface and drilling.";
+    for (const Measure& m : kMeasures) {
+        names.emplace_back(m.name);
+        help += std::string(" ") + m.name + ": " + m.help + ".";
+    }
+    command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
+    command->add_flag("--json", *as_json, "print as JSON, for programs");
+    const auto work = std::make_shared<SurfaceWork>();
+    auto* const group = command->add_option_group("Surface", "your own work, printed as CSV");
+    auto* const mesh =
+        group->add_option("--mesh", work->mesh, "PLY, OBJ, STL or OFF, also .gz")->check(CLI::ExistingFile);
+    auto* const path =
+        group
+            ->add_option(
+                "--trajectory", work->trajectory,
+                "text: x y z a line, a millisecond apart, in the unit of the mesh, or mm in a volume")
+            ->check(CLI::ExistingFile);
+    mesh->needs(path);
+    group->add_option("--unit", work->unit, "unit of lengths in mesh and trajectory")
+        ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
+        ->capture_default_str();
+    group->add_option("--tool-radius-mm", work->radius_mm, "radius of the ball; 0: a point")
+        ->check(CLI::Range(0.0, 50.0))
+        ->capture_default_str();
+    const auto drilling = std::make_shared<DrillingWork>();
+    auto* const bone = command->add_option_group("Drilling", "your own work, printed as CSV");
+    auto* const volume = bone->add_option("--volume", drilling->volume,
+                                          "raw, a byte a voxel, x fastest: 0 none, 255 solid bone")
+                             ->check(CLI::ExistingFile)
+                             ->excludes(mesh);
+    bone->add_option("--size", drilling->size, "size of the volume, in voxels")
+        ->expected(3)
+        ->check(CLI::Range(1, 2048))
+        ->capture_default_str();
+    bone->add_option("--voxel-mm", drilling->voxel_mm, "edge of a voxel")
+        ->check(CLI::Range(0.01, 10.0))
+        ->capture_default_str();
+    bone->add_option("--burr-radius-mm", drilling->radius_mm, "radius of the burr")
+        ->check(CLI::Range(0.1, 50.0))
+        ->capture_default_str();
+    command->callback([=, &exit_code] {
+        if (*volume && !*path)
+            throw CLI::ValidationError("--volume",
+                                       "needs --trajectory: x y z of the burr's centre a line, in mm");
+        if (*path && !*mesh && !*volume)
+            throw CLI::ValidationError("--trajectory", "needs --mesh or --volume");
+        if (*volume) {
+            drilling->trajectory = work->trajectory;
+            std::fputs(drilling_work_csv(*drilling).c_str(), stdout);
+            exit_code = 0;
+            return;
+        }
+        if (work->mesh.empty()) {
+            exit_code = bench(*wanted, *as_json);
+            return;
+        }
+        std::fputs(surface_work_csv(*work).c_str(), stdout);
+        exit_code = 0;
+    });
+}
+
+}  // namespace
+}  // namespace tact::launch
+
+int main(int argc, char** argv) {
+    CLI::App app{"tact-bench: measures what this machine is good for"};
+    app.set_version_flag("--version", tact::program_version("tact-bench"));
+    app.footer("Exit codes: 0 measured; 1 error; 2 wrong usage.");
+    int exit_code = 0;
+    tact::launch::describe(app, exit_code);
+    if (const auto answered = tact::manual::answer(app, "tact-bench", argc, argv)) return *answered;
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact-bench: %s\n", e.what());
+        return 1;
+    }
+    return exit_code;
+}

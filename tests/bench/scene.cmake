@@ -1,0 +1,2 @@
+# Benches of assets.
+tact_bench(bench/fit_bench.cpp USES base scene)

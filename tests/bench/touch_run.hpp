@@ -1,0 +1,44 @@
+// A model of touch, step by step along a path, for measurements: forces, times, and whether the proxy follows.
+//
+// Method   whole steps of the servo's model, on one core and without a servo. A path is gone along `passes`
+//          times, and of each position the least time counts: what other users of the machine take is not the
+//          model's.
+// Stands   a proxy that is not where it should be and came no nearer
+// Fails by StartupError: tact-prep does not bake.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ipc/scene/mesh/surface_mesh.hpp"
+#include "rt/force/surface/surface_model.hpp"
+
+namespace tact::launch {
+
+struct TouchStep {
+    Vec3 force_n = Vec3::Zero();
+    double us = 1e300;
+    bool settled = true, stands = false;
+    bool adaptive = false;  // felt on the adaptive surface
+};
+
+inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand are a jam
+inline constexpr std::size_t kSlowUpdateEvery =
+    4;  // steps: 250 times a second, as the thread that tends does
+
+// Baked by tact-prep with the given words before -o, without a picture; what it said as JSON.
+nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);
+
+// world_per_model: 1 is as large as in its file. forest: for mode chr, whose surface is tended between every
+// fourth step and the next, and not counted. The force has faded in when the path begins.
+std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
+                                   const SurfaceSettings& settings, int passes, double world_per_model = 1.0,
+                                   const VertexForest* forest = nullptr);
+
+double percentile_us(const std::vector<TouchStep>& steps, double share);
+std::uint64_t jammed_cycles(const std::vector<TouchStep>& steps);
+std::uint64_t unsettled_cycles(const std::vector<TouchStep>& steps);
+
+}  // namespace tact::launch

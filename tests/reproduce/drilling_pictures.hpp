@@ -1,0 +1,14 @@
+// Figure 1 of the drilling seed: a surgeon and a suction tube at work in the synthetic temporal bone, six pictures of one run.
+//
+// Writes   fig1_drilling-01.png to -06.png, of the view alone, equally far apart in time; the first before the burr is in
+//          the bone; fig1_drilling.png, the whole window at the end; fig1_run.json
+// Fails by StartupError where programs are missing
+#pragma once
+
+#include <filesystem>
+
+namespace tact::launch {
+
+int drilling_pictures(const std::filesystem::path& out, bool quick);  // the exit code of the run
+
+}  // namespace tact::launch

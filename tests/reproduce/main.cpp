@@ -1,0 +1,90 @@
+// tact-reproduce: the published experiments again, on this machine. `tact reproduce` starts it.
+//
+// Exit  0  done; 1  error; 2  wrong usage
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "ipc/manual/manual.hpp"
+#include "ipc/version/version.hpp"
+#include "tests/reproduce/docking.hpp"
+#include "tests/reproduce/drilling.hpp"
+#include "tests/reproduce/surface.hpp"
+
+namespace tact::launch {
+
+namespace {
+
+void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const char* about, bool meshes) {
+    auto* const command = reproduce.add_subcommand(name, about);
+    const auto e = std::make_shared<DockingExperiment>();
+    e->with_meshes = meshes;
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_option("--core", e->rates.core.core, "the core that all share; -1: the last")
+        ->check(CLI::Range(-1, 1023));
+    command->add_option("--fps-max", e->rates.core.fps_max, "pictures a second, at most")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
+    command->add_option("--law", e->rates.law, "law of the governor in the adapted runs")
+        ->check(CLI::IsMember({"elastic", "sensitus"}))
+        ->capture_default_str();
+    command
+        ->add_option("--goal", e->rates.goal_hz,
+                     "force rate to hold under load, in Hz; 0: from a measurement")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_flag("--quick", e->rates.quick, "seconds instead of a minute; shows that it works");
+    command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
+}
+
+void add_surface(CLI::App& reproduce, int& exit_code) {
+    auto* const command = reproduce.add_subcommand(
+        "surface", "table 1 of the surface paper, with meshes to 10 million triangles; minutes and 4 GB");
+    const auto e = std::make_shared<SurfaceExperiment>();
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_option("--mesh", e->meshes, "meshes to touch, instead of synthetic ones")
+        ->check(CLI::ExistingFile);
+    command->add_option("--unit", e->unit, "unit of lengths in these files")->capture_default_str();
+    command->add_option("--triangles-max", e->triangles_max, "most triangles of the synthetic meshes")
+        ->capture_default_str();
+    command->add_flag("--quick", e->quick, "seconds instead of minutes; shows that it works");
+    command->callback([e, &exit_code] { exit_code = reproduce_surface(*e); });
+}
+
+void add_drilling(CLI::App& reproduce, int& exit_code) {
+    auto* const command = reproduce.add_subcommand("drilling", "figures 1 to 4 of the drilling paper");
+    const auto e = std::make_shared<DrillingExperiment>();
+    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
+    command->add_flag("--quick", e->quick, "fewer places; shows that it works");
+    command->add_flag("!--no-pictures", e->pictures,
+                      "leave figure 1 out, a run of half a minute with a window");
+    command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
+}
+
+}  // namespace
+}  // namespace tact::launch
+
+int main(int argc, char** argv) {
+    using namespace tact::launch;
+    CLI::App app{"tact-reproduce: repeats the published experiments on this machine"};
+    app.set_version_flag("--version", tact::program_version("tact-reproduce"));
+    app.footer("Exit codes: 0 done; 1 error; 2 wrong usage.");
+    app.require_subcommand(1);
+    int exit_code = 0;
+    add_docking(app, exit_code, "docking", "figures 3 to 8 of the docking paper", true);
+    add_docking(
+        app, exit_code, "governor",
+        "force rate of the docking paper, with and without its law, with and without an external load",
+        false);
+    add_surface(app, exit_code);
+    add_drilling(app, exit_code);
+    if (const auto answered = tact::manual::answer(app, "tact-reproduce", argc, argv)) return *answered;
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "tact-reproduce: %s\n", e.what());
+        return 1;
+    }
+    return exit_code;
+}

@@ -1,0 +1,23 @@
+// The docking seed's figures of meshes: 3 (an open border, with and without protection), 4 (a chaperonin at
+// three sizes) and 6 (the surface before and after adaptation).
+//
+// Simplified  by tact-prep, as a child; ours to draw and to measure
+// Thread      one; takes some seconds.  Fails by  StartupError
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "tests/reproduce/summary.hpp"
+
+namespace tact::launch {
+
+// Writes fig3_border.png, fig4_chaperonin.png and meshes.csv into `out`; `scratch` is for what lies between.
+std::vector<SummaryRow> mesh_figures(const std::filesystem::path& out, const std::filesystem::path& scratch);
+
+// fig6_triangles.png: all of the mesh, and with so many vertices.
+std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_t vertices,
+                                       const std::filesystem::path& out);
+
+}  // namespace tact::launch

@@ -1,0 +1,38 @@
+// Triangle meshes as pictures: flat shaded with their edges, side by side at one scale.
+//
+// Drawn   orthographic, into a depth buffer of three by three samples a pixel; both sides of a surface,
+//         the back in another tone, so that a border can be told from a fold
+// Thread  any.  Fails by  StartupError where the file cannot be written
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ipc/base/pose.hpp"
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "tests/reproduce/plot_canvas.hpp"
+
+namespace tact::launch {
+
+struct MeshPanel {
+    const TriangleMesh* mesh = nullptr;
+    std::string title{};   // "(b) 100 vertices, no protection"
+    std::string remark{};  // a smaller line under it
+    bool edges = true;
+};
+
+struct MeshPicture {
+    std::string title{}, remark{};
+    std::vector<MeshPanel> panels{};
+    Vec3 eye = Vec3(1.0, -1.6, 1.0);  // where it is looked from, in the mesh's frame; z is up
+    int panel_px = 460;
+    int panel_height_px = 0;  // 0: as wide
+};
+
+// All panels show the box of the first one's mesh. `width_px` by `height_px`, on white.
+[[nodiscard]] plot::Image draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye,
+                                    bool edges, int width_px, int height_px);
+void save(const MeshPicture& picture, const std::filesystem::path& path);
+
+}  // namespace tact::launch

@@ -1,0 +1,273 @@
+// Numbers, curves and words of the rate experiments.
+#include <algorithm>
+#include <cmath>
+
+#include "deploy/tact/files.hpp"
+#include "tests/reproduce/plot.hpp"
+#include "tests/reproduce/rates.hpp"
+#include "tests/reproduce/text.hpp"
+
+namespace tact::launch {
+namespace {
+
+std::string whole(double v) { return std::to_string(std::lround(v)); }
+
+double off_percent(double value, double of) { return of > 0.0 ? 100.0 * (value - of) / of : 0.0; }
+
+plot::Curve rate_curve(const Run& run, const std::string& name, int colour) {
+    plot::Curve c{.name = name, .colour = colour};
+    for (const RateWindow100& w : windows(run.samples, 0.2, 1e9)) c.points.push_back({w.t_s, w.rate_hz});
+    return c;
+}
+
+plot::Curve triangle_curve(const Rates& r, const Run& run, const std::string& name, int colour) {
+    plot::Curve c{.name = name, .colour = colour};
+    for (const RateSample& s : run.samples)
+        if (s.t_s > 0.2) c.points.push_back({s.t_s, 1e-3 * r.triangles(s.vertices)});
+    return c;
+}
+
+// Where windows of a run were disturbed, joined where they touch, in the colour of its curve.
+void mark_disturbed(const Rates& r, const std::vector<plot::Panel*>& panels, const Run& run, int colour,
+                    double until_s = 1e9) {
+    std::vector<plot::Span> spans;
+    for (const RateWindow100& w : windows(run.samples, 0.2, until_s, kWindow_s, r.fast_s(run))) {
+        if (!w.disturbed) continue;
+        const double from_s = w.t_s - kWindow_s;
+        if (!spans.empty() && from_s <= spans.back().x_to)
+            spans.back().x_to = w.t_s;
+        else
+            spans.push_back({from_s, w.t_s, "", colour});
+    }
+    for (plot::Panel* const panel : panels) {
+        const auto first = panel->spans.insert(panel->spans.end(), spans.begin(), spans.end());
+        if (first != panel->spans.end() && panel == panels.front())
+            first->name = "disturbed from outside, in the colour of the run";
+    }
+}
+
+std::string remark_of(const Rates& r) {
+    return "one core for all" + std::string(r.finely_shared ? ", in turns of 1 ms" : "") + ", " +
+           precedence_text(r.settings.precedence) + "; " + whole(static_cast<double>(r.scene.points_summed)) +
+           " points felt, " + whole(r.triangles(r.scene.vertices)) + " triangles at most; each point: 0.1 s";
+}
+
+constexpr const char* kRateLabel = "force updates per second";
+constexpr const char* kTriangleLabel = "triangles drawn, thousands";
+
+plot::Plot figure_5(const Rates& r) {
+    const auto goal = [](const Run& run, const char* seed) {
+        return "goal " + whole(run.goal_hz) + " (seed: " + seed + ")";
+    };
+    const std::string c = "C  no adaptation (seed: about 550)", b = "B  " + goal(r.low, "800, held"),
+                      a = "A  " + goal(r.high, "1200, not reached");
+    const double end = r.low.phase.end_s();
+    plot::Curve off = rate_curve(r.off, c, 0), off_triangles = triangle_curve(r, r.off, "C", 0);
+    for (plot::Curve* const k : {&off, &off_triangles})
+        std::erase_if(k->points,
+                      [&](const plot::Point& p) { return p.x > std::min(r.off.phase.load_on_s(), end); });
+    plot::Panel rates{.y_label = kRateLabel,
+                      .curves = {off, rate_curve(r.low, b, 1), rate_curve(r.high, a, 2)},
+                      .goals = {{r.low.goal_hz, "goals of B and A"}, {r.high.goal_hz, ""}}};
+    plot::Panel triangles{
+        .y_label = kTriangleLabel,
+        .curves = {off_triangles, triangle_curve(r, r.low, "B", 1), triangle_curve(r, r.high, "A", 2)}};
+    mark_disturbed(r, {&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
+    mark_disturbed(r, {&rates, &triangles}, r.low, 1);
+    mark_disturbed(r, {&rates, &triangles}, r.high, 2);
+    return {.title = "Figure 5: force rate without external load, by goal",
+            .remark = remark_of(r),
+            .x_label = "time, s",
+            .panels = {rates, triangles}};
+}
+
+plot::Plot with_load(const Rates& r, const std::string& title,
+                     const std::vector<std::pair<const Run*, std::string>>& runs, const Run& main) {
+    plot::Plot p{.title = title, .remark = remark_of(r), .x_label = "time, s"};
+    plot::Panel rates{.y_label = kRateLabel}, triangles{.y_label = kTriangleLabel};
+    rates.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), "external load"});
+    triangles.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), ""});
+    int colour = 0;
+    for (const auto& [run, name] : runs) {
+        const int of = run == &r.on_seed ? 3 : colour++;
+        mark_disturbed(r, {&rates, &triangles}, *run, of);
+        rates.curves.push_back(rate_curve(*run, name, of));
+        triangles.curves.push_back(triangle_curve(r, *run, "", of));
+    }
+    if (main.goal_hz > 0.0) rates.goals.push_back({main.goal_hz, "goal " + whole(main.goal_hz)});
+    p.panels = {rates, triangles};
+    return p;
+}
+
+nlohmann::json json_of(const RateSummary& s, double goal_hz, double settled_s) {
+    if (s.seconds <= 0.0) return nullptr;
+    nlohmann::json j{{"seconds", s.seconds},
+                     {"rate_mean_hz", s.rate_mean_hz},
+                     {"rate_worst_1s_hz", s.rate_worst_1s_hz},
+                     {"rate_worst_100ms_hz", s.rate_worst_100ms_hz},
+                     {"rate_worst_100ms_undisturbed_hz", s.rate_worst_quiet_hz},
+                     {"step_work_done_anew",
+                      {{"mean", s.recomputed_fraction_mean}, {"least_100ms", s.recomputed_fraction_least}}},
+                     {"strangers_share_of_core", s.foreign_share},
+                     {"windows_disturbed_percent", s.disturbed_percent},
+                     {"share_of_core",
+                      {{"controller", s.used_share[0]},
+                       {"visual", s.used_share[1]},
+                       {"load", s.used_share[2]},
+                       {"tick_source", s.used_share[3]}}},
+                     {"vertices_mean", s.vertices_mean},
+                     {"fps_mean", s.fps_mean},
+                     {"level_force_min", s.level_force_min}};
+    if (goal_hz > 0.0) {
+        j["deviation_from_goal_percent"] = off_percent(s.rate_mean_hz, goal_hz);
+        j["undisturbed_windows_below_95_percent_of_goal_percent"] = s.share_below_percent;
+        j["settled_after_s"] = settled_s >= 0.0 ? nlohmann::json(settled_s) : nlohmann::json();
+    }
+    return j;
+}
+
+// The note, and how much was disturbed.
+std::string disturbed(const std::string& note, const RateSummary& s) {
+    if (s.disturbed_percent <= 0.0) return note;
+    return note + (note.empty() ? "" : "; ") +
+           text("%.0f %% of the windows were disturbed by other programs or a core slower than at its best",
+                s.disturbed_percent);
+}
+
+// Rate, worst window and picture of a run with a goal.
+std::string held(const RateSummary& s, double goal_hz) {
+    const std::string quiet = s.rate_worst_quiet_hz > 0.0
+                                  ? text("undisturbed %.0f (%.0f %%)", s.rate_worst_quiet_hz,
+                                         100.0 * s.rate_worst_quiet_hz / goal_hz)
+                                  : std::string("none undisturbed");
+    return text(
+        "%.0f of %.0f (%+.1f %%), worst 0.1 s %.0f (%.0f %%), %s; %.0f %% of each step's work done anew",
+        s.rate_mean_hz, goal_hz, off_percent(s.rate_mean_hz, goal_hz), s.rate_worst_100ms_hz,
+        100.0 * s.rate_worst_100ms_hz / goal_hz, quiet.c_str(), 100.0 * s.recomputed_fraction_mean);
+}
+
+}  // namespace
+
+void write_rates(const Rates& r, const std::filesystem::path& out) {
+    std::string csv =
+        "run,goal_hz,t_s,external_load,force_rate_100ms_hz,strangers_share,update_processor_us,step_work_"
+        "done_anew,disturbed,"
+        "level_mesh,level_force,vertices,"
+        "triangles,fps\n";
+    for (const Run* const run : r.runs()) {
+        auto w = windows(run->samples, 0.0, 1e9, kWindow_s, r.fast_s(*run));
+        auto at = w.begin();
+        double written_s = -1.0;
+        for (const RateSample& s : run->samples) {
+            if (s.t_s < written_s + 0.02) continue;
+            while (at != w.end() && at->t_s < s.t_s) ++at;
+            if (at == w.end()) break;
+            if (at->t_s > s.t_s) continue;
+            written_s = s.t_s;
+            csv += text("\"%s\",%.0f,%.3f,%d,%.2f,%.4f,%.2f,%.4f,%d,%.5f,%.5f,%u,%.0f,%.2f\n",
+                        run->name.c_str(), run->goal_hz, s.t_s, s.load ? 1 : 0, at->rate_hz,
+                        at->foreign_share, 1e6 * at->update_s, at->recomputed_fraction, at->disturbed ? 1 : 0,
+                        s.level_mesh, s.level_force, s.vertices, r.triangles(s.vertices), s.fps);
+        }
+    }
+    write_whole(out / "rates.csv", csv);
+    plot::save(figure_5(r), out / "fig5_rates.png");
+    plot::save(with_load(r, "Figure 7: force rate under an external load, no adaptation",
+                         {{&r.off, "no adaptation (seed: falls to 300 to 400)"}}, r.off),
+               out / "fig7_load_without_law.png");
+    std::vector<std::pair<const Run*, std::string>> runs{
+        {&r.off, "no adaptation"}, {&r.on, "law " + r.settings.law + " (seed: stays near its goal)"}};
+    if (!r.on_seed.samples.empty()) runs.emplace_back(&r.on_seed, "law sensitus, the seed's own");
+    plot::save(with_load(r, "Figure 8: force rate under an external load, with adaptation", runs, r.on),
+               out / "fig8_load_with_law.png");
+}
+
+nlohmann::json json_of(const Rates& r) {
+    nlohmann::json runs = nlohmann::json::array();
+    for (const Run* const run : r.runs())
+        runs.push_back({{"name", run->name},
+                        {"law", run->law},
+                        {"goal_hz", run->goal_hz > 0.0 ? nlohmann::json(run->goal_hz) : nlohmann::json()},
+                        {"without_load", json_of(run->free, run->goal_hz, run->settled_free_s)},
+                        {"with_load", json_of(run->loaded, run->goal_hz, run->settled_loaded_s)},
+                        {"load_share_of_core", run->load_share}});
+    return {
+        {"quick", r.settings.quick},
+        {"conditions",
+         {{"core", r.core},
+          {"precedence", precedence_text(r.settings.precedence)},
+          {"scheduling", "ordinary, fair shares, but for the runs named FIFO"},
+          {"turns", r.finely_shared ? "1 ms, by a tick_source in all runs" : "as the kernel's tick has it"},
+          {"fps_max", r.settings.core.fps_max},
+          {"window", "320x240"},
+          {"drawing", "software, one thread"}}},
+        {"scale",
+         {{"vertices", r.scene.vertices},
+          {"points_summed", r.scene.points_summed},
+          {"atom_repeats", r.scale.atom_repeats},
+          {"map_finer", r.scale.map_finer}}},
+        {"reachable_under_load_hz", r.reach_hz},
+        {"disturbed_windows",
+         {{"cost_of_an_update_at_most_times_fast", kSlowerMax},
+          {"strangers_share_at_most", kForeignShareMax},
+          {"fast_us", 1e6 * r.fast_update_s},
+          {"fast_us_fifo", 1e6 * r.fifo_fast_update_s},
+          {"fast_is", "the lower quartile over all windows of all runs with that scheduling"}}},
+        {"runs", runs}};
+}
+
+std::vector<SummaryRow> summary_of(const Rates& r) {
+    const double fall = -off_percent(r.off.loaded.rate_mean_hz, r.off.free.rate_mean_hz);
+    const auto fewer = [&](const RateSummary& now, const RateSummary& before) {
+        return -off_percent(r.triangles(now.vertices_mean), r.triangles(before.vertices_mean));
+    };
+    std::vector<SummaryRow> rows{
+        {"5", "C: updates/s without adaptation", "about 550", whole(r.off.free.rate_mean_hz),
+         disturbed("today's core is faster: every atom is felt " + std::to_string(r.scale.atom_repeats) +
+                       " times (" + std::to_string(r.scene.points_summed) +
+                       " points, the seed had 200) and the surface has " +
+                       whole(r.triangles(r.scene.vertices)) + " triangles",
+                   r.off.free)},
+        {"5", "B: goal 800", "held", held(r.low.free, r.low.goal_hz),
+         disturbed("the goal is 1.45 times C, as there", r.low.free)},
+        {"5", "A: goal 1200", "not reached",
+         text("%.0f of %.0f, %.0f %% of each step's work done anew", r.high.free.rate_mean_hz, r.high.goal_hz,
+              100.0 * r.high.free.recomputed_fraction_mean),
+         "the coarsest picture still needs " + text("%.0f %% of the core (%.0f pictures/s)",
+                                                    100.0 * r.high.free.used_share[1], r.high.free.fps_mean)},
+        {"5, 6", "triangles fewer at goal 800, percent", "72", whole(fewer(r.low.free, r.off.free)),
+         text("%.0f to %.0f triangles on average, at %.1f instead of %.1f pictures/s; the seed 10140 to 2776",
+              r.triangles(r.off.free.vertices_mean), r.triangles(r.low.free.vertices_mean),
+              r.low.free.fps_mean, r.off.free.fps_mean)},
+        {"7", "updates/s with load, no adaptation", "300 to 400 (-27 to -45 %)",
+         text("%.0f (-%.0f %%)", r.off.loaded.rate_mean_hz, fall), disturbed("", r.off.loaded)},
+        {"8", "updates/s with load, law " + r.settings.law, "near its goal", held(r.on.loaded, r.on.goal_hz),
+         disturbed(text("without adaptation %.0f %% below this goal; settled %.1f s after the load began; "
+                        "%.0f %% fewer "
+                        "triangles",
+                        -off_percent(r.off.loaded.rate_mean_hz, r.on.goal_hz), r.on.settled_loaded_s,
+                        fewer(r.on.loaded, r.off.loaded)),
+                   r.on.loaded)}};
+    if (!r.on_seed.samples.empty())
+        rows.push_back({"8", "the same, law sensitus", "near its goal",
+                        held(r.on_seed.loaded, r.on_seed.goal_hz),
+                        disturbed("the seed's own law", r.on_seed.loaded)});
+    if (!r.fifo_on.samples.empty()) {
+        const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
+            rows.push_back({"8", name, "not tried",
+                            held(run.loaded, run.goal_hz) + text("; %.1f pictures/s", run.loaded.fps_mean),
+                            differs});
+        };
+        row(r.fifo_off, "the same with FIFO, no adaptation",
+            "with the right to run before others the force loop needs no law; the picture pays");
+        row(r.fifo_on, "the same with FIFO, law " + r.settings.law,
+            text("the law holds the picture's own goal of 15 frames/s, with %.0f %% fewer triangles",
+                 fewer(r.fifo_on.loaded, r.fifo_off.loaded)));
+    }
+    rows.push_back(
+        {"7, 8", "share of the core that the load got, percent", "not said",
+         text("%.0f without adaptation, %.0f with", 100.0 * r.off.load_share, 100.0 * r.on.load_share), ""});
+    return rows;
+}
+
+}  // namespace tact::launch

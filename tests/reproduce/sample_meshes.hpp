@@ -1,0 +1,16 @@
+// Meshes for the docking seed's figures 3 and 4, made in code.
+#pragma once
+
+#include "ipc/scene/mesh/progressive_mesh.hpp"
+
+namespace tact::launch {
+
+// A bent sheet with an open border: 50 by 25 vertices, 1 m by 0.6 m.
+[[nodiscard]] TriangleMesh open_sheet();
+
+// Closed isosurface of a density like that of a chaperonin: two rings of eight subunits back to back, each
+// with a peak that stands out at the end of the cylinder. The coarsest grid that gives at least so many
+// vertices.
+[[nodiscard]] TriangleMesh chaperonin(std::size_t vertices_min);
+
+}  // namespace tact::launch

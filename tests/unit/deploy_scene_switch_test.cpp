@@ -1,0 +1,139 @@
+// Another scene from the window: what is asked, what is refused, and what of a run stays.
+#include <fstream>
+#include <sstream>
+
+#include "deploy/tact/scene_switch.hpp"
+#include "tests/unit/deploy_run_stand_ins.hpp"
+
+namespace tact::launch {
+namespace {
+
+class OtherScene : public DeployRun {
+protected:
+    void SetUp() override {
+        DeployRun::SetUp();
+        options_.json.clear();
+        options_.seconds = 0.0;
+        other_ = scratch_.path() / "other.tact";
+        sample::scene().write(other_);
+        ask(other_);
+        setenv("TOLD", (scratch_.path() / "told").c_str(), 1);
+        setenv("CONTROLLERS", (scratch_.path() / "controllers").c_str(), 1);
+        setenv("WINDOWS", (scratch_.path() / "windows").c_str(), 1);
+    }
+    static void ask(const std::filesystem::path& scene) { setenv("ASKS_FOR", scene.c_str(), 1); }
+    [[nodiscard]] std::vector<std::string> lines(const char* name) const {
+        std::istringstream in(read_small(scratch_.path() / name));
+        std::vector<std::string> all;
+        for (std::string line; std::getline(in, line);) all.push_back(line);
+        return all;
+    }
+    std::filesystem::path other_;
+};
+
+TEST_F(OtherScene, the_launcher_ends_one_and_starts_the_other_unarmed_with_the_options_that_were_typed) {
+    options_.controller = {"--rate", "500"};
+    options_.add_for_scene({"--start-offset-a", "15"});
+    ASSERT_EQ(run(), 0) << said_;
+    const auto controllers = lines("controllers");
+    ASSERT_EQ(controllers.size(), 2U) << said_;
+    EXPECT_EQ(controllers[0],
+              scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15");
+    EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
+    EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
+    EXPECT_NE(said_.find("another scene was asked for"), std::string::npos) << said_;
+}
+
+TEST_F(OtherScene, the_next_window_is_as_a_person_left_the_one_before) {
+    ASSERT_EQ(run(), 0) << said_;
+    const auto windows = lines("windows");
+    ASSERT_EQ(windows.size(), 2U) << said_;
+    const auto window_state_of = [](const std::string& words) {
+        const auto at = words.find("--window-state ");
+        return at == std::string::npos ? std::string()
+                                       : words.substr(at + 7, words.find(' ', at + 7) - at - 7);
+    };
+    EXPECT_NE(windows[0].find("--size 1280x800"), std::string::npos) << windows[0];
+    EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];
+    ASSERT_FALSE(window_state_of(windows[0]).empty()) << windows[0];
+    EXPECT_EQ(window_state_of(windows[0]), window_state_of(windows[1]));
+    EXPECT_FALSE(std::filesystem::exists(window_state_of(windows[0]))) << "the run is over";
+}
+
+TEST_F(OtherScene, a_size_that_was_given_is_that_of_the_first_window) {
+    options_.size = "640x480";
+    options_.size_given = true;
+    options_.visual = {"--window-state", scratch_.path() / "mine.toml"};
+    ASSERT_EQ(run(), 0) << said_;
+    const auto windows = lines("windows");
+    ASSERT_EQ(windows.size(), 2U) << said_;
+    EXPECT_NE(windows[0].find("--size 640x480"), std::string::npos) << windows[0];
+    EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];
+    for (const std::string& words : windows)
+        EXPECT_EQ(words.find("--window-state"), words.rfind("--window-state")) << words;
+    EXPECT_TRUE(std::filesystem::exists(scratch_.path() / "mine.toml"));
+}
+
+TEST_F(OtherScene, a_file_that_is_no_scene_is_refused_in_the_window_and_the_old_one_goes_on) {
+    std::ofstream(other_) << "not a scene, but long enough for the header of one: sixty-four bytes and more";
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_EQ(lines("controllers").size(), 1U);
+    const auto told = lines("told");
+    ASSERT_GE(told.size(), 3U);
+    EXPECT_NE(told[1].find("so it is not a scene of tact"), std::string::npos) << told[1];
+    EXPECT_NE(told[2].find("mend:"), std::string::npos) << told[2];
+}
+
+TEST_F(OtherScene, where_the_other_cannot_be_started_the_old_one_comes_back_and_the_window_says_why) {
+    misbehave("refuse-other");
+    ASSERT_EQ(run(), 0) << said_;
+    const auto controllers = lines("controllers");
+    ASSERT_EQ(controllers.size(), 2U) << said_;
+    EXPECT_TRUE(controllers[1].starts_with(scene_.string()));
+    EXPECT_EQ(controllers[1].find("--arm"), std::string::npos) << "a force would come back by itself";
+    const auto told = lines("told");
+    ASSERT_GE(told.size(), 3U);
+    EXPECT_EQ(told[told.size() - 3], scene_.string());
+    EXPECT_NE(told[told.size() - 2].find("could not be started"), std::string::npos) << said_;
+}
+
+TEST_F(OtherScene, a_run_that_writes_of_its_scene_at_its_end_keeps_it) {
+    options_.json = scratch_.path() / "run.json";
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_EQ(lines("controllers").size(), 1U);
+    EXPECT_NE(lines("told")[1].find("(--json)"), std::string::npos);
+}
+
+TEST_F(OtherScene, a_request_is_one_absolute_path_and_is_gone_once_it_was_taken) {
+    const auto folder = scratch_.path();
+    const auto taken = [&](const std::string& text) {
+        std::ofstream(folder / "open", std::ios::binary) << text;
+        std::optional<std::filesystem::path> path;
+        const std::string error = sample::error_of([&] { path = take_asked_scene(folder); });
+        EXPECT_FALSE(std::filesystem::exists(folder / "open"));
+        EXPECT_EQ(path.has_value(), error.empty());
+        return path ? path->string() : error;
+    };
+    EXPECT_EQ(taken("/a/b c.tact\n"), "/a/b c.tact");
+    for (const std::string& bad : {std::string(), std::string("\n"), std::string("relative.tact\n"),
+                                   std::string("/a\n/b\n"), std::string("/without-end"),
+                                   std::string("/a\0b\n", 5), "/" + std::string(kAskedPathMost, 'x') + "\n"})
+        EXPECT_NE(taken(bad).find("mend:"), std::string::npos) << bad.substr(0, 40);
+    std::filesystem::create_directory(folder / "open");
+    EXPECT_THROW((void)take_asked_scene(folder), StartupError);
+    std::filesystem::create_symlink(scene_, folder / "open");
+    EXPECT_THROW((void)take_asked_scene(folder), StartupError);
+    EXPECT_TRUE(std::filesystem::exists(scene_)) << "the link went, not what it led to";
+    EXPECT_EQ(take_asked_scene(folder), std::nullopt);
+    refuse_scene(folder, "why\x1b[31m\n" + std::string(2 * kRefusalMost, 'y'));
+    const auto refusal = take_refusal(folder);
+    ASSERT_TRUE(refusal);
+    EXPECT_TRUE(refusal->starts_with("why?[31m\ny"));
+    EXPECT_EQ(refusal->size(), kRefusalMost);
+    EXPECT_EQ(take_refusal(folder), std::nullopt);
+}
+
+}  // namespace
+}  // namespace tact::launch
+
+int main(int argc, char** argv) { return tact::launch::play(argc, argv); }

@@ -1,0 +1,258 @@
+// What the reproduction says of a run's samples: means are cycles over time, the worst second is found.
+#include "tests/reproduce/mesh_error.hpp"
+#include "tests/reproduce/mesh_picture.hpp"
+#include "tests/reproduce/ply.hpp"
+#include "tests/reproduce/rate_samples.hpp"
+#include "tests/reproduce/sample_meshes.hpp"
+#include "tests/reproduce/summary.hpp"
+#include "tests/reproduce/surface_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "deploy/tact/files.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact::launch {
+namespace {
+
+// Ten samples a second: `slow` cycles per sample within [slow_from_s, slow_to_s), else `fast`.
+std::vector<RateSample> samples(double seconds, std::uint64_t fast, std::uint64_t slow, double slow_from_s,
+                                double slow_to_s) {
+    std::vector<RateSample> all;
+    RateSample s;
+    for (int i = 0; i <= static_cast<int>(seconds * 10.0 + 0.5); ++i) {
+        s.t_s = i * 0.1;
+        s.vertices = i % 2 == 0 ? 1000 : 3000;
+        s.fps = 20.0;
+        s.level_force = i == 7 ? 0.5 : 1.0;
+        all.push_back(s);
+        s.cycle += s.t_s >= slow_from_s - 1e-9 && s.t_s < slow_to_s - 1e-9 ? slow : fast;
+    }
+    return all;
+}
+
+TEST(GovernorSummary, the_mean_rate_is_cycles_over_time_and_not_the_mean_of_rates) {
+    auto some = samples(10.0, 100, 100, 0, 0);
+    some.erase(some.begin() + 20, some.begin() + 60);  // a launcher that was held up sees fewer samples
+    const RateSummary r = summarize(some, 0.0, 10.0);
+    EXPECT_DOUBLE_EQ(r.rate_mean_hz, 1000.0);
+    EXPECT_DOUBLE_EQ(r.seconds, 10.0);
+    EXPECT_DOUBLE_EQ(r.fps_mean, 20.0);
+    EXPECT_DOUBLE_EQ(r.level_force_min, 0.5);
+}
+
+TEST(GovernorSummary, the_worst_second_is_found_wherever_it_lies) {
+    const RateSummary r = summarize(samples(10.0, 100, 40, 6.3, 7.3), 0.0, 10.0);
+    EXPECT_NEAR(r.rate_worst_1s_hz, 400.0, 1e-6);
+    EXPECT_NEAR(r.rate_mean_hz, (90 * 100 + 10 * 40) / 10.0, 1e-6);
+}
+
+TEST(GovernorSummary, half_a_slow_second_counts_half) {
+    EXPECT_NEAR(summarize(samples(10.0, 100, 40, 2.0, 2.5), 0.0, 10.0).rate_worst_1s_hz, 700.0, 1e-6);
+}
+
+TEST(GovernorSummary, a_window_of_a_tenth_of_a_second_begins_between_two_samples) {
+    std::vector<RateSample> some;
+    for (int i = 0; i <= 100; ++i)  // every 30 ms, 1000 Hz; from 1.5 s on half of it
+        some.push_back(
+            {.t_s = 0.03 * i, .cycle = static_cast<std::uint64_t>(i <= 50 ? 30 * i : 1500 + 15 * (i - 50))});
+    for (const RateWindow100& w : windows(some, 0.0, 3.0)) {
+        if (w.t_s <= 1.5) {
+            EXPECT_NEAR(w.rate_hz, 1000.0, 1e-6) << w.t_s;
+        }
+        if (w.t_s >= 1.6) {
+            EXPECT_NEAR(w.rate_hz, 500.0, 1e-6) << w.t_s;
+        }
+    }
+    EXPECT_NEAR(summarize(some, 0.0, 3.0).rate_worst_100ms_hz, 500.0, 1e-6);
+    EXPECT_NEAR(settling_s(some, 0.0, 3.0, 500.0), 0.12, 1e-9);
+    EXPECT_LT(settling_s(some, 1.6, 3.0, 1000.0), 0.0);
+}
+
+TEST(GovernorSummary, windows_in_which_strangers_or_a_slower_core_took_part_are_told_apart) {
+    std::vector<RateSample> some;
+    RateSample s;
+    for (int i = 0; i <= 1000; ++i) {
+        s.t_s = 0.01 * i;
+        some.push_back(s);
+        const bool stranger = i >= 200 && i < 210, slower = i >= 600 && i < 620;
+        s.cycle += stranger || slower ? 5 : 10;
+        s.used_s[0] += stranger ? 0.005 : 0.01;  // the core is never idle
+    }
+    const RateSummary r = summarize(some, 0.0, 10.0, 1000.0);
+    EXPECT_NEAR(r.rate_worst_100ms_hz, 500.0, 1e-6);
+    EXPECT_GT(r.rate_worst_quiet_hz, 950.0);
+    EXPECT_GT(r.disturbed_percent, 2.0);
+    EXPECT_LT(r.disturbed_percent, 8.0);
+    EXPECT_NEAR(r.foreign_share, 0.005, 1e-9);
+}
+
+// Slow for most of its time: only another run can say so.
+TEST(GovernorSummary, a_run_on_a_slow_core_is_measured_by_what_is_fast_in_all_runs) {
+    std::vector<RateSample> slow, fast;
+    RateSample s;
+    for (int i = 0; i <= 200; ++i) {
+        s.t_s = 0.01 * i;
+        slow.push_back(s);
+        s.cycle += i < 60 ? 10 : 7;  // of a core that is never idle
+        s.used_s[0] += 0.01;
+    }
+    for (int i = 0; i <= 200; ++i) {
+        fast.push_back({.t_s = 0.01 * i, .cycle = static_cast<std::uint64_t>(10 * i), .used_s = {0.01 * i}});
+    }
+    const double fast_s = fast_update_s(windows(fast, 0.0, 2.0));
+    EXPECT_NEAR(fast_s, 1e-3, 1e-9);
+    EXPECT_EQ(fast_update_s({}), 0.0);
+    const RateSummary r = summarize(slow, 0.0, 2.0, 1000.0, fast_s);
+    EXPECT_GT(r.disturbed_percent, 70.0);
+    EXPECT_GT(r.rate_worst_quiet_hz, 940.0);
+    EXPECT_EQ(summarize(fast, 0.0, 2.0, 1000.0, fast_s).disturbed_percent, 0.0);
+}
+
+// Half of each update stood for by older sums: twice the rate, nearly, of a core that is no faster.
+TEST(GovernorSummary, an_update_that_did_a_part_of_its_work_is_counted_as_that_part) {
+    std::vector<RateSample> some;
+    RateSample s;
+    const double half = kFixedPart + 0.5 * (1.0 - kFixedPart);
+    for (int i = 0; i <= 100; ++i) {
+        s.t_s = 0.1 * i;
+        some.push_back(s);
+        s.cycle += 200;
+        s.given_up += 100.0;
+        s.used_s[0] += 200 * 0.5e-3 * half;
+    }
+    for (const RateWindow100& w : windows(some, 0.0, 10.0)) {
+        EXPECT_NEAR(w.recomputed_fraction, 0.5, 1e-9);
+        EXPECT_NEAR(w.update_s, 0.5e-3, 1e-9);
+    }
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).recomputed_fraction_mean, 0.5, 1e-9);
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).recomputed_fraction_least, 0.5, 1e-9);
+}
+
+TEST(Summary, is_a_table_of_the_seeds_numbers_and_ours) {
+    const std::vector<SummaryRow> rows{{"5", "updates/s", "550", "1173", "a faster core"},
+                                       {"7", "x", "1", "2", ""}};
+    const std::string text = table_of(rows);
+    EXPECT_NE(text.find("5    updates/s  550   1173"), std::string::npos) << text;
+    EXPECT_NE(text.find("a faster core"), std::string::npos);
+    EXPECT_EQ(json_of(rows)[0]["ours"], "1173");
+}
+
+TEST(GovernorSummary, only_the_samples_within_the_window_count) {
+    const RateSummary r = summarize(samples(10.0, 100, 40, 5.0, 10.0), 0.0, 4.95);
+    EXPECT_DOUBLE_EQ(r.rate_mean_hz, 1000.0);
+    EXPECT_DOUBLE_EQ(r.rate_worst_1s_hz, 1000.0);
+}
+
+TEST(GovernorSummary, nothing_measured_gives_nothing) {
+    EXPECT_EQ(summarize({}, 0.0, 10.0).seconds, 0.0);
+    EXPECT_EQ(summarize(samples(1.0, 100, 100, 0, 0), 5.0, 6.0).rate_mean_hz, 0.0);
+}
+
+// --- meshes ---
+
+TriangleMesh square(double height) {
+    TriangleMesh m;
+    const auto z = static_cast<float>(height);
+    m.position_m = {0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z};
+    m.triangle = {0, 1, 2, 0, 2, 3};
+    return m;
+}
+
+TEST(Meshes, the_error_is_the_distance_of_the_surfaces_and_of_their_borders) {
+    const MeshError same = mesh_error(square(0.0), square(0.0));
+    EXPECT_EQ(same.max_m, 0.0);
+    EXPECT_NEAR(same.diagonal_m, std::sqrt(2.0), 1e-6);
+    const MeshError apart = mesh_error(square(0.0), square(0.25));
+    EXPECT_NEAR(apart.rms_m, 0.25, 1e-6);
+    EXPECT_NEAR(apart.max_m, 0.25, 1e-6);
+    EXPECT_NEAR(apart.border_max_m, 0.25, 1e-6);
+    TriangleMesh half = square(0.0);
+    half.triangle.resize(3);  // the corner (0, 1) is gone
+    const MeshError cut = mesh_error(square(0.0), half);
+    EXPECT_NEAR(cut.max_m, std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(cut.border_max_m, std::sqrt(0.5), 1e-6);
+}
+
+TEST(Meshes, the_samples_are_the_seeds_in_size_one_open_and_one_closed) {
+    const TriangleMesh sheet = open_sheet();
+    EXPECT_EQ(sheet.vertices(), 1250U);
+    const TriangleMesh closed = chaperonin(2000);
+    EXPECT_GE(closed.vertices(), 2000U);
+    EXPECT_LT(closed.vertices(), 2400U);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    for (std::size_t t = 0; t < closed.triangle.size(); t += 3)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = closed.triangle[t + i], b = closed.triangle[t + (i + 1) % 3];
+            ++edges[{std::min(a, b), std::max(a, b)}];
+        }
+    for (const auto& [edge, n] : edges) ASSERT_EQ(n, 2);
+}
+
+TEST(Meshes, a_ply_file_comes_back_as_it_was_and_a_hostile_one_is_refused) {
+    const ScratchFolder folder;
+    const auto path = folder.path() / "m.ply";
+    write_ply(open_sheet(), 1e3, path);
+    const TriangleMesh back = read_ply(path, 1e3);
+    ASSERT_EQ(back.vertices(), 1250U);
+    EXPECT_EQ(back.triangle, open_sheet().triangle);
+    for (std::size_t i = 0; i < back.position_m.size(); ++i)
+        ASSERT_NEAR(back.position_m[i], open_sheet().position_m[i], 1e-6);
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+        "property float z\n";
+    const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const std::string& bad : {std::string(), std::string("ply\n"), head, head + face,
+                                   head + face + "0 0 0\n3 0 0 9\n", head + face + "0 0 0\n4 0 0 0 0\n",
+                                   head + face + "0 0 0\n3 0 0 -1\n", head + face + "0 0 0\n3 0 0 nan\n",
+                                   std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n") + face,
+                                   std::string("ply\nformat binary_big_endian 1.0\n") + face}) {
+        write_whole(path, bad);
+        EXPECT_THROW(static_cast<void>(read_ply(path, 1.0)), StartupError) << bad;
+    }
+}
+
+TEST(Meshes, the_picture_shows_front_and_back_and_paper_where_there_is_nothing) {
+    const TriangleMesh mesh = square(0.0);
+    const auto middle = [&](const Vec3& eye) {
+        const plot::Image i = draw_mesh(mesh, mesh, eye, false, 40, 40);
+        EXPECT_EQ(i.rgba[0], 255);  // a corner of the image
+        const std::size_t at = 4 * (20 * 40 + 20);
+        return std::array<int, 3>{i.rgba[at], i.rgba[at + 1], i.rgba[at + 2]};
+    };
+    const auto front = middle({0.3, -0.4, 1.0}), back = middle({0.3, -0.4, -1.0});
+    EXPECT_GT(front[2], front[0]);
+    EXPECT_GT(back[0], back[2]);
+}
+
+std::vector<TouchStep> steps_of(std::size_t count, double us, std::size_t slow, double slow_us) {
+    std::vector<TouchStep> steps(count, {.force_n = Vec3::UnitX(), .us = us});
+    for (std::size_t i = 0; i < slow; ++i) steps[i].us = slow_us;
+    return steps;
+}
+
+TEST(TouchRow, a_rate_is_one_over_the_mean_time_and_quality_follows_its_rule) {
+    TouchRow row = row_of(steps_of(4000, 400.0, 0, 0.0));
+    EXPECT_NEAR(row.rate_hz, 2500.0, 1e-6);
+    EXPECT_EQ(quality(row), "good");
+    EXPECT_EQ(quality(row_of(steps_of(4000, 400.0, 4, 1500.0))), "good");  // one in a thousand
+    EXPECT_EQ(quality(row_of(steps_of(4000, 400.0, 5, 1500.0))), "bad");
+    EXPECT_EQ(quality(row_of(steps_of(4000, 1001.0, 0, 0.0))), "breaks");
+    row.jammed = 5;
+    EXPECT_EQ(quality(row), "bad");
+}
+
+TEST(TouchRow, a_proxy_that_stands_for_five_cycles_is_jammed_from_the_first_of_them) {
+    std::vector<TouchStep> steps = steps_of(100, 1.0, 0, 0.0);
+    for (std::size_t i = 10; i < 14; ++i) steps[i].stands = true;
+    EXPECT_EQ(jammed_cycles(steps), 0U);
+    for (std::size_t i = 14; i < 17; ++i) steps[i].stands = true;
+    EXPECT_EQ(jammed_cycles(steps), 7U);
+}
+
+}  // namespace
+}  // namespace tact::launch

@@ -1,0 +1,57 @@
+// The tools that tact-rt starts with.
+#include <gtest/gtest.h>
+
+#include "rt/start/start_drill.hpp"
+
+namespace tact {
+namespace {
+
+TEST(StartDrill, the_configuration_says_what_the_tools_are) {
+    RtConfig c;
+    c.drilling.burr_diameter_mm = 4.0;
+    c.drilling.burr_shape = "cone";
+    c.drilling.suction_tube_diameter_mm = 3.0;
+    const DrillSettings burr = burr_settings(c, 7), suction_tube = suction_tube_settings(c, 7);
+    EXPECT_EQ(burr.tool.shape, BurrShape::cone);
+    EXPECT_DOUBLE_EQ(burr.tool.radius_m, 2e-3);
+    EXPECT_TRUE(burr.tool.cuts);
+    EXPECT_EQ(burr.seed, 7U);
+    EXPECT_EQ(suction_tube.tool.shape, BurrShape::sphere);
+    EXPECT_FALSE(suction_tube.tool.cuts);
+    EXPECT_DOUBLE_EQ(suction_tube.tool.radius_m, 1.5e-3);
+    EXPECT_DOUBLE_EQ(suction_tube.tool.shaft_radius_m, 1.5e-3);
+}
+
+TEST(StartDrill, every_sucker_that_the_configuration_allows_is_a_tool) {
+    for (double mm = 0.8; mm <= 10.0; mm += 0.1) {
+        RtConfig c;
+        c.drilling.suction_tube_diameter_mm = mm;
+        const DrillTool tool = make_drill_tool(suction_tube_settings(c, 1).tool);
+        for (std::uint32_t i = 0; i < tool.count; ++i) EXPECT_FALSE(tool.ball[i].cuts);
+    }
+}
+
+TEST(StartDrill, what_is_thinner_than_a_voxel_is_felt_as_thick_as_one) {
+    SceneMeta meta{};
+    meta.world_per_model = 1.0;
+    BoneBricks bricks;
+    bricks.voxel_m = 1.25e-3;
+    DrillSettings burr = burr_settings({}, 1), suction_tube = suction_tube_settings({}, 1);
+    EXPECT_TRUE(fit_to_voxels(burr, meta, bricks));
+    EXPECT_NEAR(burr.tool.shaft_radius_m, 1.25e-3, 1e-9);
+    EXPECT_DOUBLE_EQ(burr.tool.radius_m, 3e-3);
+    EXPECT_TRUE(fit_to_voxels(suction_tube, meta, bricks));
+    EXPECT_NEAR(suction_tube.tool.radius_m, 1.25e-3, 1e-9);
+    EXPECT_FALSE(fit_to_voxels(burr, meta, bricks));  // once
+    bricks.voxel_m = 0.3e-3;
+    DrillSettings fine = burr_settings({}, 1);
+    EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
+    bricks.voxel_m = 5e-3;  // larger than the head, which the model refuses
+    EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
+    fine.tool.shaft_radius_m = 0.0;  // none
+    bricks.voxel_m = 1.25e-3;
+    EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
+}
+
+}  // namespace
+}  // namespace tact
