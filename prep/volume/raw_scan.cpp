@@ -13,8 +13,6 @@
 namespace tact {
 namespace {
 
-constexpr float kNoNumber = -1024.0F;  // what is no number is air
-
 std::size_t bytes_of(RawType type) {
     switch (type) {
         case RawType::i8:
@@ -40,7 +38,6 @@ void to_floats(const char* from, bool swap, double slope, double intercept, std:
         std::memcpy(raw.data(), from, sizeof(T));
         if (swap) std::reverse(raw.begin(), raw.end());
         value = static_cast<float>(slope * static_cast<double>(std::bit_cast<T>(raw)) + intercept);
-        if (!std::isfinite(value)) value = kNoNumber;
         from += sizeof(T);
     }
 }
@@ -106,7 +103,7 @@ std::vector<char> inflated(std::string_view packed, std::uint64_t size, const st
 }  // namespace
 
 Scan raw_scan(RawHeader h, std::string_view bytes, std::shared_ptr<const void> owner,
-              const std::string& attempt) {
+              const std::string& attempt, float no_number) {
     const auto fail = [&](const std::string& why) {
         throw StartupError(attempt, why, "the file is damaged or cut short; export it again");
     };
@@ -138,14 +135,16 @@ Scan raw_scan(RawHeader h, std::string_view bytes, std::shared_ptr<const void> o
     scan.label = std::move(h.label);
     scan.read = [bytes, owner = std::move(owner), order, slice_bytes, type = h.type,
                  swap = h.big_endian != (std::endian::native == std::endian::big), slope = h.slope,
-                 intercept = h.intercept](std::uint32_t slice, std::span<float> pixels) {
+                 intercept = h.intercept, no_number](std::uint32_t slice, std::span<float> pixels) {
         convert(type, bytes.data() + order.at(slice) * slice_bytes, swap, slope, intercept, pixels);
+        for (float& value : pixels)
+            if (!std::isfinite(value)) value = no_number;
     };
     return scan;
 }
 
 Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHeaderReader reader,
-                   double unit_mm) {
+                   double unit_mm, float no_number) {
     const std::string attempt = "read scan " + path.string();
     auto input = std::make_shared<InputBytes>(path, kScanBytesMax + (1U << 20), kScanBytesMax + (1U << 20));
     RawHeader header = reader(input->view(), attempt, unit_mm);
@@ -163,7 +162,7 @@ Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHea
         if (header.packing == RawPacking::deflate && !packed) header.packing = RawPacking::plain;
     }
     const std::string_view bytes = input->view();
-    Scan scan = raw_scan(std::move(header), bytes, std::move(input), attempt);
+    Scan scan = raw_scan(std::move(header), bytes, std::move(input), attempt, no_number);
     scan.format = format;
     return scan;
 }

@@ -38,10 +38,11 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
 RawHeader nifti_header(std::string_view bytes, const std::string& attempt, double unit_mm);
 
 using RawHeaderReader = RawHeader (*)(std::string_view, const std::string&, double);
+// no_number: value that replaces numbers that are not finite; in a scan that is air.
 Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHeaderReader reader,
-                   double unit_mm);
+                   double unit_mm, float no_number = -1024.0F);
 // The numbers of a scan whose header is known; `bytes` lives as long as `owner`.
 Scan raw_scan(RawHeader header, std::string_view bytes, std::shared_ptr<const void> owner,
-              const std::string& attempt);
+              const std::string& attempt, float no_number = -1024.0F);
 
 }  // namespace tact

@@ -26,6 +26,7 @@ BELOW = {
     "ipc/scene/density": ["ipc/base", "ipc/scene/file", "ipc/scene/mesh"],
     "ipc/scene/bone": ["ipc/base", "ipc/scene/file"],
     "ipc/scene/fit": ["ipc/base", "ipc/scene/file", "ipc/scene/density"],
+    "ipc/scene/field": ["ipc/base", "ipc/scene/file"],
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
     "ipc/recorder": ["ipc/base", "ipc/version", "ipc/manual", "ipc/shm", "ipc/topics", "ipc/record"],
     "ipc/station": ["ipc/base"],

@@ -31,10 +31,9 @@ SceneMeta read_meta(const SceneFile& file) {
     const auto meta = in.get<SceneMeta>("meta");
     in.finish();
     if (meta.kind != SceneKind::docking && meta.kind != SceneKind::surface &&
-        meta.kind != SceneKind::drilling) {
+        meta.kind != SceneKind::drilling && meta.kind != SceneKind::field) {
         in.fail("kind is " + std::to_string(static_cast<std::uint32_t>(meta.kind)) +
-                ", which is none of docking (1), "
-                "surface (2), drilling (3)");
+                ", which is none of docking (1), surface (2), drilling (3), field (4)");
     }
     const auto within = [&](const char* field, double value, double low, double high) {
         if (!(value >= low && value <= high)) {

@@ -13,7 +13,7 @@
 
 namespace tact {
 
-enum class SceneKind : std::uint32_t { docking = 1, surface = 2, drilling = 3 };
+enum class SceneKind : std::uint32_t { docking = 1, surface = 2, drilling = 3, field = 4 };
 
 inline constexpr std::uint32_t kSceneBodiesMax = 16;  // as many as a force model holds
 

@@ -1,0 +1,147 @@
+#include "prep/field/bake_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+template <std::size_t N>
+void put_text(char (&to)[N], const std::string& text) {
+    std::size_t length = std::min(text.size(), N - 1);
+    while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
+        --length;
+    std::memcpy(to, text.data(), length);
+    for (std::size_t i = 0; i < length; ++i)
+        if (static_cast<unsigned char>(to[i]) < 0x20 || to[i] == 0x7f) to[i] = '?';
+}
+
+// Greatest gradient and greatest second derivative (Frobenius norm of the Hessian, which bounds its greatest eigenvalue) by
+// central differences over the inner points.
+struct Slopes {
+    double gradient = 0.0, curvature = 0.0;
+};
+
+Slopes slopes_of(const DensityGrid& grid, const Progress& progress) {
+    Slopes most;
+    const auto value = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        return static_cast<double>(grid.at(x, y, z));
+    };
+    const Vec3& h = grid.spacing_m;
+    for (std::uint32_t z = 1; z + 1 < grid.size[2]; ++z) {
+        report(progress, static_cast<double>(z) / grid.size[2], "measuring the field");
+        for (std::uint32_t y = 1; y + 1 < grid.size[1]; ++y) {
+            for (std::uint32_t x = 1; x + 1 < grid.size[0]; ++x) {
+                const double at = value(x, y, z);
+                const double low[3] = {value(x - 1, y, z), value(x, y - 1, z), value(x, y, z - 1)};
+                const double high[3] = {value(x + 1, y, z), value(x, y + 1, z), value(x, y, z + 1)};
+                double gradient2 = 0.0, curvature2 = 0.0;
+                for (Eigen::Index a = 0; a < 3; ++a) {
+                    gradient2 += std::pow((high[a] - low[a]) / (2.0 * h[a]), 2);
+                    curvature2 += std::pow((high[a] - 2.0 * at + low[a]) / (h[a] * h[a]), 2);
+                }
+                const auto mixed = [&](double pp, double pm, double mp, double mm, double area) {
+                    return 2.0 * std::pow((pp - pm - mp + mm) / (4.0 * area), 2);
+                };
+                curvature2 += mixed(value(x + 1, y + 1, z), value(x + 1, y - 1, z), value(x - 1, y + 1, z),
+                                    value(x - 1, y - 1, z), h.x() * h.y());
+                curvature2 += mixed(value(x + 1, y, z + 1), value(x + 1, y, z - 1), value(x - 1, y, z + 1),
+                                    value(x - 1, y, z - 1), h.x() * h.z());
+                curvature2 += mixed(value(x, y + 1, z + 1), value(x, y + 1, z - 1), value(x, y - 1, z + 1),
+                                    value(x, y - 1, z - 1), h.y() * h.z());
+                most.gradient = std::max(most.gradient, std::sqrt(gradient2));
+                most.curvature = std::max(most.curvature, std::sqrt(curvature2));
+            }
+        }
+    }
+    return most;
+}
+
+// The values of the faces, repeated on kFieldPad layers all round.
+DensityGrid padded(const DensityGrid& grid) {
+    DensityGrid out;
+    out.spacing_m = grid.spacing_m;
+    out.origin_m = grid.origin_m - static_cast<double>(kFieldPad) * grid.spacing_m;
+    for (std::size_t a = 0; a < 3; ++a) out.size[a] = grid.size[a] + 2 * kFieldPad;
+    out.values.reserve(out.count());
+    const auto inside = [&](std::uint32_t i, std::size_t axis) {
+        return std::min(i < kFieldPad ? 0U : i - kFieldPad, grid.size[axis] - 1);
+    };
+    for (std::uint32_t z = 0; z < out.size[2]; ++z)
+        for (std::uint32_t y = 0; y < out.size[1]; ++y)
+            for (std::uint32_t x = 0; x < out.size[0]; ++x)
+                out.values.push_back(grid.at(inside(x, 0), inside(y, 1), inside(z, 2)));
+    return out;
+}
+
+template <class... Values>
+std::string printed(const char* format, Values... values) {
+    char text[256];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+}  // namespace
+
+BakedField bake_field(const FieldInput& input, SceneWriter& out, const Progress& progress) {
+    BakedField baked;
+    FieldMeta& f = baked.field;
+    const DensityGrid& grid = input.grid;
+    for (const std::string& line : input.note) baked.note += line + '\n';
+
+    double sum = 0.0, sum2 = 0.0;
+    f.low = f.high = static_cast<double>(grid.values.front());
+    for (const float v : grid.values) {
+        const auto value = static_cast<double>(v);
+        f.low = std::min(f.low, value);
+        f.high = std::max(f.high, value);
+        sum += value;
+    }
+    f.mean = sum / static_cast<double>(grid.values.size());
+    for (const float v : grid.values) sum2 += std::pow(static_cast<double>(v) - f.mean, 2);
+    f.deviation = std::sqrt(sum2 / static_cast<double>(grid.values.size()));
+    const Slopes most = slopes_of(grid, part(progress, 0.0, 0.8));
+    if (!(f.deviation > 0.0) || !(most.gradient > 0.0))
+        throw StartupError("bake a field", "its values are all " + std::to_string(f.mean),
+                           "give a potential that changes in space");
+
+    const Vec3 extent_m =
+        grid.spacing_m.cwiseProduct(Vec3(grid.size[0] - 1.0, grid.size[1] - 1.0, grid.size[2] - 1.0));
+    SceneMeta& meta = baked.meta;
+    meta.kind = SceneKind::field;
+    meta.world_per_model = input.size_m / extent_m.maxCoeff();
+    const Vec3 middle_m = grid.origin_m + 0.5 * extent_m;
+    for (Eigen::Index a = 0; a < 3; ++a) {
+        meta.centre_model_m[a] = middle_m[a];
+        f.box_low_m[a] = grid.origin_m[a];
+        f.box_high_m[a] = grid.origin_m[a] + extent_m[a];
+    }
+    put_text(meta.title, input.title);
+    put_text(f.unit, input.unit);
+    f.force_n_m_per_unit = input.force_n_max / most.gradient;
+    f.stiffness_n_m = f.force_n_m_per_unit * most.curvature / meta.world_per_model;
+    const bool stiff = f.stiffness_n_m > input.stiffness_n_m_max;
+    if (stiff) {
+        f.force_n_m_per_unit *= input.stiffness_n_m_max / f.stiffness_n_m;
+        f.stiffness_n_m = input.stiffness_n_m_max;
+    }
+    f.force_n_max = f.force_n_m_per_unit * most.gradient;
+    f.probe_radius_m = input.probe_radius_m / meta.world_per_model;
+
+    baked.note += printed("field values: %.6g to %.6g, mean %.6g\n", f.low, f.high, f.mean);
+    baked.note += printed("gain: %.6g N m per unit; at most %.3g N and %.3g N/m%s\n", f.force_n_m_per_unit,
+                          f.force_n_max, f.stiffness_n_m, stiff ? ", limited by the stiffness" : "");
+    baked.note += printed("hand: 1 mm is %.6g m of the model; the box is %.0f mm wide\n",
+                          1e-3 / meta.world_per_model, 1e3 * input.size_m);
+    report(progress, 0.9, "writing the field");
+    write_meta(out, meta, baked.note);
+    write_field_meta(out, f);
+    write_grid(out, padded(grid));
+    return baked;
+}
+
+}  // namespace tact

@@ -1,0 +1,38 @@
+// Puts a potential field into a scene: the grid, and the gain at which its gradient is a force that a hand can hold.
+//
+// Force     F = -gain * grad(phi). The gain gives force_n_max at the greatest gradient inside the box (central differences),
+//           or less, where the force would otherwise be stiffer than stiffness_n_m_max anywhere in the box.
+// Place     the box's longest edge is size_m wide in the hand's world, and its middle is the middle of the hand's space
+// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
+// Repeats   the same input gives the same sections.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ipc/base/progress.hpp"
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/field/field.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+
+namespace tact {
+
+struct FieldInput {
+    std::string title, unit;
+    DensityGrid grid;               // values in `unit`
+    std::vector<std::string> note;  // lines "key: value"
+    double size_m = 0.15;
+    double force_n_max = 2.0;
+    double stiffness_n_m_max = 800.0;
+    double probe_radius_m = 0.002;  // of the hand's world
+};
+
+struct BakedField {
+    SceneMeta meta{};
+    FieldMeta field{};
+    std::string note;
+};
+
+[[nodiscard]] BakedField bake_field(const FieldInput& input, SceneWriter& out, const Progress& progress = {});
+
+}  // namespace tact
