@@ -1,6 +1,7 @@
 #include "prep/field/bake_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -61,20 +62,46 @@ Slopes slopes_of(const DensityGrid& grid, const Progress& progress) {
     return most;
 }
 
-// The values of the faces, repeated on kFieldPad layers all round.
+// Continued on kFieldPad layers all round by odd reflection about the faces, v(-i) = 2 v(0) - v(i), axis by axis: the gradient has no
+// kink at a face.
 DensityGrid padded(const DensityGrid& grid) {
     DensityGrid out;
     out.spacing_m = grid.spacing_m;
     out.origin_m = grid.origin_m - static_cast<double>(kFieldPad) * grid.spacing_m;
     for (std::size_t a = 0; a < 3; ++a) out.size[a] = grid.size[a] + 2 * kFieldPad;
-    out.values.reserve(out.count());
-    const auto inside = [&](std::uint32_t i, std::size_t axis) {
-        return std::min(i < kFieldPad ? 0U : i - kFieldPad, grid.size[axis] - 1);
+    out.values.assign(out.count(), 0.0F);
+    const auto index = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        return (std::size_t{z} * out.size[1] + y) * out.size[0] + x;
     };
-    for (std::uint32_t z = 0; z < out.size[2]; ++z)
-        for (std::uint32_t y = 0; y < out.size[1]; ++y)
-            for (std::uint32_t x = 0; x < out.size[0]; ++x)
-                out.values.push_back(grid.at(inside(x, 0), inside(y, 1), inside(z, 2)));
+    for (std::uint32_t z = 0; z < grid.size[2]; ++z)
+        for (std::uint32_t y = 0; y < grid.size[1]; ++y)
+            for (std::uint32_t x = 0; x < grid.size[0]; ++x)
+                out.values[index(x + kFieldPad, y + kFieldPad, z + kFieldPad)] = grid.at(x, y, z);
+    // An axis after the other, over what the axes before have filled.
+    for (std::size_t a = 0; a < 3; ++a) {
+        std::array<std::uint32_t, 3> low{kFieldPad, kFieldPad, kFieldPad}, high{};
+        for (std::size_t b = 0; b < 3; ++b) high[b] = kFieldPad + grid.size[b];
+        for (std::size_t b = 0; b < a; ++b) low[b] = 0, high[b] = out.size[b];
+        low[a] = 0, high[a] = 1;
+        const auto fill = [&](std::array<std::uint32_t, 3> at, std::uint32_t face, int side) {
+            for (std::uint32_t i = 1; i <= kFieldPad; ++i) {
+                std::array<std::uint32_t, 3> outer = at, edge = at, inner = at;
+                const std::uint32_t within = std::min(i, grid.size[a] - 1);
+                outer[a] = side < 0 ? face - i : face + i;
+                edge[a] = face;
+                inner[a] = side < 0 ? face + within : face - within;
+                out.values[index(outer[0], outer[1], outer[2])] =
+                    2.0F * out.values[index(edge[0], edge[1], edge[2])] -
+                    out.values[index(inner[0], inner[1], inner[2])];
+            }
+        };
+        for (std::uint32_t z = low[2]; z < high[2]; ++z)
+            for (std::uint32_t y = low[1]; y < high[1]; ++y)
+                for (std::uint32_t x = low[0]; x < high[0]; ++x) {
+                    fill({x, y, z}, kFieldPad, -1);
+                    fill({x, y, z}, kFieldPad + grid.size[a] - 1, 1);
+                }
+    }
     return out;
 }
 

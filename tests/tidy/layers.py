@@ -35,6 +35,7 @@ BELOW = {
     # Force models do not know each other.
     "rt/force/docking": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/drilling": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/field": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/surface": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],

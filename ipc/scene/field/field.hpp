@@ -1,7 +1,7 @@
 // A potential field as a scene holds it: the values on a grid (sections GRID, ipc/scene/density) and this description, FPOT.
 //
-// The grid is the file's, continued on all sides by kFieldPad layers that repeat the values of its faces, so that the spline's
-// gradient is the file's up to the box.
+// The grid is the file's, continued on all sides by kFieldPad layers (odd reflection about its faces), so that the spline's gradient
+// is the file's up to the faces of the box.
 // Frame    model, metres
 // Force    F_world = -force_n_m_per_unit * grad(phi), grad in model axes and per model metre, phi in the file's unit
 #pragma once
