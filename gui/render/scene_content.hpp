@@ -1,7 +1,6 @@
 // Everything of a baked scene that is drawn or measured, read at once.
 //
-// Thread   load_scene() on the loader thread (it may take a second for large meshes); immutable afterwards.
-// Fails by StartupError naming the file, as the readers of ipc/assets do.
+// Thread   made by load_scene() on the loader thread; immutable afterwards.
 #pragma once
 
 #include <filesystem>
@@ -58,7 +57,5 @@ struct SceneContent {
     double radius_m = 0.0;                 // of a ball about it that holds everything at home
     Vec3 box_min_model_m = Vec3::Zero(), box_max_model_m = Vec3::Zero();  // of the map
 };
-
-std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path);
 
 }  // namespace tact

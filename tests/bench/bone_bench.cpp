@@ -14,10 +14,10 @@
 #include <functional>
 #include <set>
 
-#include "gui/app/png.hpp"
-#include "gui/app/window.hpp"
-#include "gui/render/bone_view.hpp"
+#include "gui/drilling/bone_view.hpp"
 #include "gui/render/camera.hpp"
+#include "gui/window/png.hpp"
+#include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 

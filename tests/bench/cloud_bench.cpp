@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "gui/app/png.hpp"
-#include "gui/app/window.hpp"
+#include "gui/drilling/particle_cloud.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/render/particle_cloud.hpp"
-#include "gui/render/scene_view.hpp"
+#include "gui/window/png.hpp"
+#include "gui/window/scene_view.hpp"
+#include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <random>
 
-#include "gui/app/window.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/render/scene_view.hpp"
+#include "gui/window/scene_view.hpp"
+#include "gui/window/window.hpp"
 
 namespace tact {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "gui/render/bone_view.hpp"
+#include "gui/drilling/bone_view.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/elements.hpp"
 #include "ipc/base/units.hpp"

@@ -12,8 +12,8 @@
 #include <set>
 #include <string>
 
-#include "gui/stage/calibration.hpp"
-#include "gui/stage/test_picture.hpp"
+#include "gui/stereo/calibration.hpp"
+#include "gui/stereo/test_picture.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
-#include "gui/stage/calibration.hpp"
+#include "gui/stereo/calibration.hpp"
 #include "hal/sim/sim_device.hpp"
 #include "hal/sim/sim_tracker.hpp"
 #include "ipc/shm/link.hpp"

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
+#include "gui/drilling/particle_cloud.hpp"
+#include "gui/drilling/particle_pace.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/render/particle_cloud.hpp"
-#include "gui/render/particle_pace.hpp"
-#include "gui/render/scene_view.hpp"
+#include "gui/window/scene_view.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
 

@@ -5,7 +5,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "gui/panels/dashboard.hpp"
+#include "gui/window/layout.hpp"
 
 namespace tact::test {
 
@@ -87,7 +87,7 @@ public:
     }
 
     Theme theme;
-    DashboardState state;
+    PanelState state;
 
 private:
     float width_, height_;

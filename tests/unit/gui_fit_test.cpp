@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "gui/app/fit_worker.hpp"
+#include "gui/docking/fit_worker.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "gui/app/fit_history.hpp"
+#include "gui/docking/fit_history.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gui/app/browser_controller.hpp"
+#include "gui/window/browser_controller.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 

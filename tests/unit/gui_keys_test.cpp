@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "gui/panels/keys.hpp"
+#include "gui/window/keys.hpp"
 
 namespace tact {
 namespace {

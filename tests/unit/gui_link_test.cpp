@@ -6,13 +6,13 @@
 #include <limits>
 #include <set>
 
-#include "gui/app/body_list.hpp"
-#include "gui/app/command_sender.hpp"
-#include "gui/app/controller.hpp"
-#include "gui/app/mesh_level.hpp"
-#include "gui/app/pose_predictor.hpp"
-#include "gui/app/region_checks.hpp"
-#include "gui/panels/status_text.hpp"
+#include "gui/dashboard/status_text.hpp"
+#include "gui/docking/body_list.hpp"
+#include "gui/link/command_sender.hpp"
+#include "gui/link/controller.hpp"
+#include "gui/link/pose_predictor.hpp"
+#include "gui/link/region_checks.hpp"
+#include "gui/render/mesh_level.hpp"
 
 namespace tact {
 namespace {

@@ -5,11 +5,11 @@
 #include <random>
 #include <set>
 
-#include "gui/render/atom_shapes.hpp"
-#include "gui/render/detail_mesh.hpp"
-#include "gui/render/touch_marks.hpp"
+#include "gui/docking/atom_shapes.hpp"
 #include "gui/render/tube.hpp"
 #include "gui/render/viridis.hpp"
+#include "gui/surface/detail_mesh.hpp"
+#include "gui/surface/touch_marks.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"

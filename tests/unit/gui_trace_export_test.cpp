@@ -1,5 +1,5 @@
 // The traces as a file: whole or not at all, and what became of it is said.
-#include "gui/app/trace_export.hpp"
+#include "gui/dashboard/trace_export.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include "gui/render/arrow.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/mesh_pace.hpp"
-#include "gui/render/scene_view.hpp"
 #include "gui/render/tube.hpp"
+#include "gui/window/scene_view.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {

@@ -1,0 +1,87 @@
+// Drilling: the tools, what they took, the force, and how far the burr is from each structure to keep away from.
+#include <algorithm>
+#include <cmath>
+
+#include "gui/dashboard/widgets.hpp"
+#include "gui/drilling/drilling_panel.hpp"
+
+namespace tact {
+namespace {
+
+std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
+
+void tools(const Theme& theme, const DrillingState& d) {
+    static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
+    const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
+    std::string does =
+        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stands";
+    if (d.burr.water) does += ", water";
+    row(theme, "Burr", size, does);
+    if (d.suction_tube.there)
+        row(theme, "SuctionTube", mm_text(d.suction_tube.diameter_m),
+            d.suction_tube.suction ? "suction on" : "suction off");
+}
+
+void metrics(const Theme& theme, const DrillingState& d) {
+    row(theme, "Bone taken", fixed(1e9 * d.removed_m3, 1) + " mm³",
+        format("in %.0f s of drilling", d.drilling_s));
+    row(theme, "Force felt", fixed(d.force_n, 2) + " N", force_status(d.force_n, d.excess_s));
+    row(theme, "Strokes", grouped(d.strokes),
+        d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
+                      : std::string());
+}
+
+void structure(const Theme& theme, const DrillingState& d, const DrillingState::Structure& s) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float edge = theme.px(8.0F), h = ImGui::GetTextLineHeight();
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x, at.y + 0.5F * (h - edge)}, {at.x + edge, at.y + 0.5F * (h + edge)}, s.colour, theme.px(2.0F));
+    ImGui::SetCursorScreenPos({at.x + edge + theme.px(5.0F), at.y});
+    const StatusText v = distance_status(s.burr_m, s.closing_m_s, d.burr.rpm > 0.0);
+    const bool calm = v.grade == Grade::good;
+    text_coloured(calm ? colour::kDim : colour::kText, s.name);
+    ImGui::SameLine(theme.px(122.0F));
+    text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
+    if (calm) return;
+    ImGui::SameLine(0.0F, theme.px(8.0F));
+    text_coloured(grade_colour(v.grade), v.words);
+}
+
+void tip(const DrillingState& d) {
+    if (!ImGui::IsItemHovered()) return;
+    std::string text =
+        "From the burr's surface to each structure to keep away from; below zero the burr is in it.";
+    if (d.suction_tube.there)
+        for (const auto& s : d.structures)
+            if (s.suction_tube_m < 2e-3)
+                text += "\nsuction_tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
+    ImGui::SetTooltip("%s", text.c_str());
+}
+
+}  // namespace
+
+void draw_drilling(const Theme& theme, const DrillingState& d, const PixelRect& card) {
+    begin_card(theme, "Drilling", card, true);
+    if (!d.known) {
+        text_small(theme, colour::kDim, "no tool yet: it comes with the controller");
+    } else {
+        if (d.injuries > 0) {
+            ImGui::SameLine();
+            badge(theme, format("%llu injured", static_cast<unsigned long long>(d.injuries)), colour::kBad);
+        }
+        tools(theme, d);
+        metrics(theme, d);
+        if (d.structures.empty()) {
+            text_small(theme, colour::kDim,
+                       d.labelled ? "No labelled structure is one to keep away from (tact drill --critical)."
+                                  : "No structure is labelled, so nothing warns (tact drill --labels).");
+        } else {
+            text_small(theme, colour::kDim, "From the burr's surface to");
+            tip(d);
+            for (const DrillingState::Structure& s : d.structures) structure(theme, d, s);
+        }
+    }
+    end_card();
+}
+
+}  // namespace tact

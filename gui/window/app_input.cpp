@@ -1,0 +1,124 @@
+#include <imgui.h>
+#include <spdlog/spdlog.h>
+
+#include "gui/docking/contour_rows.hpp"
+#include "gui/window/app_parts.hpp"
+
+namespace tact {
+
+void GuiApp::handle_input() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.WantCaptureMouse && !calibration_.open()) {
+        const float height =
+            layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_), state_.strip == 1)
+                .view.height;
+        if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
+        if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
+        if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
+            nudge_contour(state_.contours, content_->scale, static_cast<double>(io.MouseWheel));
+        else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
+            camera_.zoom(io.MouseWheel);
+    }
+    KeySituation& now = state_.situation;
+    now.calibrating = calibration_.open();
+    now.browser = state_.browser.open;
+    now.bodies = content_ && state_.scene.placed() && !now.calibrating;
+    now.bone = content_ && state_.scene.bone && !now.calibrating;
+    now.stereo = stage_ != nullptr && !now.calibrating;
+    now.controller = controller_.attached();
+    for (const KeyStroke& stroke : window_.take_keys()) {
+        if (io.WantTextInput) continue;
+        const KeyFound found = find_key(stroke, now);
+        if (found.row == nullptr) continue;
+        spdlog::debug("key {}: {}", found.row->keys, found.row->what);
+        act(found.row->act, static_cast<std::size_t>(found.place));
+    }
+}
+
+void GuiApp::act(KeyAct what, std::size_t place) {
+    const auto active = list_.active();
+    const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
+    const auto fit = [&](FitAct request) { state_.fitting.requests.push_back({request, held, {}}); };
+    const auto command = [&](CommandKind kind, std::uint32_t body = 0) {
+        state_.requests.push_back({kind, 0.0, {}, body});
+    };
+    const RunState run =
+        controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;
+    switch (what) {
+        case KeyAct::home:
+            return home_view();
+        case KeyAct::look_at_burr:
+            return look_at_burr();
+        case KeyAct::style:
+            state_.toggles.style = (state_.toggles.style + 1) % 3;
+            return;
+        case KeyAct::swap_eyes:
+            return stage_->swap_eyes();
+        case KeyAct::raise_contour:
+            return nudge_contour(state_.contours, content_->scale, 1.0);
+        case KeyAct::lower_contour:
+            return nudge_contour(state_.contours, content_->scale, -1.0);
+        case KeyAct::take_body:
+            if (place < list_.bodies().size() && controller_.attached())
+                command(CommandKind::select_body, list_.bodies()[place].id);
+            return;
+        case KeyAct::let_go:
+            if (controller_.attached()) command(CommandKind::select_body, kNoBody);
+            return;
+        case KeyAct::undo:
+            return fit(FitAct::undo);
+        case KeyAct::redo:
+            return fit(FitAct::redo);
+        case KeyAct::refine:
+            if (held != 0) fit(FitAct::refine);
+            return;
+        case KeyAct::accept:
+            return fit(FitAct::accept);
+        case KeyAct::revert:
+            return fit(FitAct::revert);
+        case KeyAct::arm:  // as the button: only from where it can be followed
+            if (run == RunState::ready) command(CommandKind::arm);
+            return;
+        case KeyAct::disarm:  // whatever is known: no force is always safe, and the controller answers
+            return command(CommandKind::disarm);
+        case KeyAct::picture:
+            picture_wanted_ = true;
+            return;
+        case KeyAct::mark:
+            return command(CommandKind::mark);
+        case KeyAct::help:
+            state_.situation.sheet = !state_.situation.sheet;
+            return;
+        case KeyAct::close_sheet:
+            state_.situation.sheet = false;
+            return;
+        case KeyAct::open_browser:
+            state_.browser.open = true;
+            return;
+        case KeyAct::close_browser:
+            state_.browser.open = false;
+            return;
+        case KeyAct::calibrate:
+            if (!calibration_.open()) open_calibration(false);
+            return;
+        case KeyAct::measure:
+            return calibration_.act(CalibrationAct::take);
+        case KeyAct::skip_point:
+            return calibration_.act(CalibrationAct::skip);
+        case KeyAct::redo_point:
+            return calibration_.act(CalibrationAct::redo_last);
+        case KeyAct::next_step:
+            return calibration_.act(CalibrationAct::next);
+        case KeyAct::leave_calibration:
+            return calibration_.act(CalibrationAct::leave);
+        case KeyAct::save_calibration:
+            return calibration_.act(CalibrationAct::save);
+        case KeyAct::swap_calibrated_eyes:
+            return calibration_.swap_eyes();
+        case KeyAct::none:
+        case KeyAct::count:
+            return;
+    }
+}
+
+}  // namespace tact

@@ -1,0 +1,13 @@
+// From what was read to what the panels show.
+#pragma once
+
+#include "gui/dashboard/dashboard_state.hpp"
+#include "gui/render/scene_content.hpp"
+#include "ipc/topics/event.hpp"
+
+namespace tact {
+
+[[nodiscard]] SceneState describe(const SceneContent& content);
+[[nodiscard]] EventLine describe(const EventTopic& event);
+
+}  // namespace tact
