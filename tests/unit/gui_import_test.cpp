@@ -45,7 +45,7 @@ protected:
 };
 
 TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
-    const auto scene_switch = folder_ / "hand-over";
+    const auto scene_switch = folder_ / "scene_switch";
     std::filesystem::create_directory(scene_switch);
     BrowserController desk(scene_switch);
     desk.drop({folder_ / "tetra.obj"}, state_);

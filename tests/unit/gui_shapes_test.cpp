@@ -233,7 +233,7 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) 
     EXPECT_GT(near / nears, far / fars + 40.0);
     request.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
     EXPECT_GT(settled(request).triangles, seen.triangles);
-    // The same wish, the same cut, wherever it was before.
+    // The same request, the same cut, wherever it was before.
     request.form = {};
     EXPECT_EQ(settled(request).triangles, seen.triangles);
 }
