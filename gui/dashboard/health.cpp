@@ -115,8 +115,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     ImGui::BeginGroup();
     text_small(theme, colour::kDim, "force rate, goal " + rate_text(h.goal_hz), false);
     ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y + theme.small->FontSize});
-    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.words,
-               false);
+    text_small(theme, grade_colour(rate.grade), rate.words, false);
     ImGui::EndGroup();
     ImGui::SetCursorScreenPos(below);
     rate_bar(theme, h, grade_colour(rate.grade));
@@ -132,18 +131,18 @@ void timing(const Theme& theme, const DashboardState& state) {
 // A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
 // step's work it still does anew.
 void free_running(const Theme& theme, const HealthTopic& h) {
-    row(theme, "Step anew", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_mean)),
+    row(theme, "Recomputed", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_mean)),
         recomputed_status(h.recomputed_fraction_mean));
     row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_least)),
         "in the last 0.1 s");
-    row(theme, "Rested", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
+    row(theme, "Idle", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
 }
 
 // How long the loop is from the encoders to the motors, and what that allows.
 void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
-    row(theme, "Delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        format("stable to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+    row(theme, "Loop delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
+        format("stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {
@@ -189,7 +188,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         ImGui::PopTextWrapPos();
     } else if (!known) {
         badge(theme, "ATTACHED", colour::kWatch, theme.large);
-        text_coloured(colour::kWatch, "attached; its health is not published yet");
+        text_coloured(colour::kWatch, "attached; no health data yet");
     }
     if (known && state.attached) hero(theme, state);
     // Under what is read first: a device with much to say must not push them out.
@@ -216,7 +215,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         text_small(theme, colour::kDim, schedule_text(h.schedule_flags) + (clean ? "; memory clean" : ""));
         if (h.bad_input + state.refused_records > 0)
             text_small(theme, colour::kWatch,
-                       format("records refused: %llu by the controller, %llu here",
+                       format("records rejected: %llu by the controller, %llu by this window",
                               static_cast<unsigned long long>(h.bad_input),
                               static_cast<unsigned long long>(state.refused_records)));
     }

@@ -53,7 +53,7 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
         words[i] = name[i] + format(" %.2f ", static_cast<double>(p.level)) +
                    level_reason_text(static_cast<LevelReason>(p.reason));
     }
-    spec.title = "Knobs";
+    spec.title = "Detail levels";
     spec.unit = "of 1";
     spec.lines = std::span(level).first(paths);
     spec.words = std::span<const std::string>(words).first(paths);
@@ -67,11 +67,11 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
         if (const KnobChange* const c = h.knobs.in_force(i, hover.t_s); c != nullptr) {
             text += knob_change_text(*c) + ", " + ago_text(std::max(spec.now_s - c->end_s, 0.0));
         } else {
-            text += h.knobs.forgotten() > 0 ? "its change is forgotten" : "as it started";
+            text += h.knobs.forgotten() > 0 ? "change no longer listed" : "since start";
         }
     }
     if (h.knobs.forgotten() > 0)
-        text += format("\n%s older changes are forgotten", grouped(h.knobs.forgotten()).c_str());
+        text += format("\n%s older changes are not listed", grouped(h.knobs.forgotten()).c_str());
     ImGui::SetTooltip("%s", text.c_str());
 }
 
@@ -80,7 +80,7 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
 void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card) {
     begin_card(theme, "Over time", card);
     ImGui::SameLine(0.0F, theme.px(16.0F));
-    static constexpr std::array<const char*, 2> kStrips{"Load and knobs", "Traces"};
+    static constexpr std::array<const char*, 2> kStrips{"Load and detail", "Traces"};
     choose(theme, kStrips, state.strip);
     if (state.strip == 1) {
         draw_traces(theme, state);

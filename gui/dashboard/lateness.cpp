@@ -58,7 +58,7 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
               recent ? format("last %.0f s", l.recent_s()) : "whole run");
     if (l.empty() || f.cycles == 0) {
         const std::string none =
-            state.have_health && period_ns == 0 ? "runs freely: never late" : "nothing measured yet";
+            state.have_health && period_ns == 0 ? "free running: no lateness" : "no data yet";
         label({at.x + std::max(0.5F * (size.x - width_of(none)), 0.0F), at.y + 0.5F * size.y}, colour::kDim,
               none);
         return;
@@ -139,8 +139,8 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         if (l.recent_metrics().cycles > 0)
             text += "\n" + words(format("last %.0f s", l.recent_s()).c_str(), l.recent_metrics());
         text +=
-            "\nColoured: what is chosen; grey behind it: the whole run. Dashed: one period."
-            "\nGreen: less late than a tenth of the period; amber: than half of it; red: later.";
+            "\nColour: selected span. Grey: whole run. Dashed line: one period."
+            "\nGreen: below a tenth of the period. Amber: below half. Red: above.";
         ImGui::SetTooltip("%s", text.c_str());
     }
 }

@@ -229,7 +229,7 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     draw->PopClipRect();
     draw->PopClipRect();
     if (!any) {
-        const std::string none = "nothing measured yet";
+        const std::string none = "no data yet";
         label({0.5F * (f.low.x + f.high.x - width_of(none)), 0.5F * (f.low.y + f.high.y) - 0.5F * line},
               colour::kDim, none);
     }

@@ -45,8 +45,8 @@ StatusText rate_status(double rate_hz, double goal_hz) {
     if (!(goal_hz > 0.0) || !std::isfinite(rate_hz)) return {Grade::unknown, "no goal set"};
     const double missing = 1.0 - rate_hz / goal_hz;
     char text[48];
-    if (missing <= 0.05) return {Grade::good, "holds its goal"};
-    std::snprintf(text, sizeof text, "%.0f %% below its goal", 100.0 * missing);
+    if (missing <= 0.05) return {Grade::good, "on target"};
+    std::snprintf(text, sizeof text, "%.0f %% below target", 100.0 * missing);
     return {missing <= 0.15 ? Grade::watch : Grade::bad, text};
 }
 
@@ -54,13 +54,13 @@ StatusText lateness_status(std::int64_t p99_ns, std::int64_t period_ns) {
     const double period = period_ns > 0 ? static_cast<double>(period_ns) : 1e6;
     const double part = static_cast<double>(p99_ns) / period;
     if (part < 0.1) return {Grade::good, "on time"};
-    if (part < 0.5) return {Grade::watch, "late at times"};
-    return {Grade::bad, "late often"};
+    if (part < 0.5) return {Grade::watch, "sometimes late"};
+    return {Grade::bad, "often late"};
 }
 
 StatusText recomputed_status(float mean) {
-    if (mean >= 0.95F) return {Grade::good, "of each step"};
-    return {mean >= 0.5F ? Grade::watch : Grade::bad, "the rest is older sums"};
+    if (mean >= 0.95F) return {Grade::good, "of each step recomputed"};
+    return {mean >= 0.5F ? Grade::watch : Grade::bad, "the rest reuses older sums"};
 }
 
 StatusText bus_status(const BusCounts& counts) {
@@ -85,24 +85,24 @@ StatusText state_status(RunState state, RunReason reason) {
     Grade grade = Grade::watch;
     switch (state) {
         case RunState::off:
-            words = "the device is not open";
+            words = "device not open";
             break;
         case RunState::ready:
-            words = "waits to be armed, no force";
+            words = "Disarmed. Press Arm.";
             break;
         case RunState::armed:
-            words = "waits for a hand, no force";
+            words = "Armed. No force until hand on the device.";
             break;
         case RunState::active:
             grade = Grade::good;
-            words = "force is on";
+            words = "Force on";
             break;
         case RunState::fault:
             grade = Grade::bad;
-            words = "no force until reset";
+            words = "No force until Reset.";
             break;
         default:
-            return {Grade::unknown, "a state this program does not know"};
+            return {Grade::unknown, "unknown state"};
     }
     const std::string why = run_reason_text(reason);
     if (!why.empty()) words += ": " + why;
@@ -115,32 +115,31 @@ namespace {
 const char* fix_of(RunReason reason) {
     switch (reason) {
         case RunReason::emergency_stop:
-            return "See that the arm is clear, then turn the button free.";
+            return "Check that the arm is clear, then release the button.";
         case RunReason::stop_channels:
-            return "Press the button once more and turn it free. Where it stays so, its wiring has to be "
-                   "looked at.";
+            return "Press the button once more and release it. If this persists, check its wiring.";
         case RunReason::dead_man:
-            return "Hold the switch.";
+            return "Hold the dead-man switch.";
         case RunReason::amplifier_readback:
-            return "Look at the amplifier's switch, fuse and cable.";
+            return "Check the amplifier's switch, fuse and cable.";
         case RunReason::lines_lost:
-            return "Plug the adapter of the safety lines in; tact probe tells what is seen.";
+            return "Connect the adapter of the safety lines; tact probe lists the adapters.";
         case RunReason::device_lost:
         case RunReason::sample_stale:
-            return "Look at the device's cable and power; tact probe tells what is seen.";
+            return "Check the device's cable and power; tact probe lists the devices.";
         case RunReason::device_fault:
-            return "Look at the device's own lights; switch it off and on.";
+            return "Check the lights of the device; switch it off and on.";
         case RunReason::overruns:
         case RunReason::too_late:
         case RunReason::supervisor:
-            return "Something takes the processor from the servo; tact doctor names it.";
+            return "Another program delays the servo; tact doctor names it.";
         case RunReason::force_not_finite:
         case RunReason::model_failed:
-            return "The scene's model broke down. Where it does so again, keep a recording: tact record.";
+            return "The force model failed. If this happens again, record it: tact record.";
         case RunReason::gui_silent:
-            return "The picture stood still for too long. Leave it less to draw.";
+            return "The display froze. Reduce the rendering detail.";
         default:
-            return "See the events for what happened.";
+            return "The event list has the cause.";
     }
 }
 
@@ -153,14 +152,14 @@ StopNotice stop_notice(const HealthTopic& h) {
     if (!stopped && state != RunState::fault) return {};
     const auto reason = static_cast<RunReason>(stopped ? h.lines_reason : h.reason);
     StopNotice notice{Grade::bad, run_reason_text(reason), fix_of(reason)};
-    if (notice.why.empty()) notice.why = "the force is stopped";
+    if (notice.why.empty()) notice.why = "force stopped";
     notice.fix += state == RunState::fault ? " Then press Reset, and Arm." : " Then press Arm.";
     return notice;
 }
 
 StatusText memory_status(const HealthTopic& health) {
     if (health.allocations + health.locks + health.page_faults == 0)
-        return {Grade::good, "no allocation, lock, fault"};
+        return {Grade::good, "no allocations, locks or page faults"};
     std::string words;
     const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
     if (health.allocations > 0) add(count_words(health.allocations, "allocation", "allocations"));
@@ -172,13 +171,13 @@ StatusText memory_status(const HealthTopic& health) {
 StatusText distance_status(double distance_m, double closing_m_s, bool turns) {
     constexpr double kRedM = 1e-3, kAmberM = 2e-3, kAheadS = 1.0;
     if (!std::isfinite(distance_m)) return {Grade::unknown, "unknown"};
-    if (distance_m < 0.0) return {Grade::bad, "in it"};
-    if (distance_m < kRedM) return {Grade::bad, "too near"};
+    if (distance_m < 0.0) return {Grade::bad, "inside"};
+    if (distance_m < kRedM) return {Grade::bad, "too close"};
     if (turns && closing_m_s > 0.0) {
         const double ahead_s = (distance_m - kRedM) / closing_m_s;
         if (ahead_s < kAheadS) {
             char text[48];
-            std::snprintf(text, sizeof text, "at 1 mm in %.1f s", ahead_s);
+            std::snprintf(text, sizeof text, "1 mm in %.1f s", ahead_s);
             return {Grade::watch, text};
         }
     }
@@ -191,12 +190,12 @@ StatusText force_status(double force_n, double excess_s) {
     char text[48];
     std::snprintf(text, sizeof text, "above 2 N for %.1f s", excess_s);
     if (force_n > kExcessN) return {Grade::watch, text};
-    return {Grade::good, excess_s >= 0.05 ? text : "never above 2 N"};
+    return {Grade::good, excess_s >= 0.05 ? text : "always below 2 N"};
 }
 
 // The numbers are those of DeviceState in the device interface, which this process does not see.
 const char* device_state_text(std::uint8_t device_state) noexcept {
-    static constexpr const char* kTexts[] = {"closed", "ready", "powered", "its watchdog tripped", "fault"};
+    static constexpr const char* kTexts[] = {"closed", "ready", "powered", "watchdog tripped", "fault"};
     return device_state < 5 ? kTexts[device_state] : "unknown";
 }
 
@@ -212,14 +211,14 @@ Grade device_grade(std::uint8_t device_state) noexcept {
 
 StatusText device_status(const DeviceHand& device, const BusCounts& bus, DeviceNotice notice) {
     if (device.there == 0) return {Grade::unknown, "none"};
-    static constexpr const char* kReads[] = {"", "its position is old", "lost", "fault"};
+    static constexpr const char* kReads[] = {"", "position outdated", "lost", "fault"};
     if (device.read > 3) return {Grade::unknown, "unknown"};
     if (device.read >= 2) return {Grade::bad, kReads[device.read]};
     const Grade state = device_grade(device.state);
     if (state == Grade::bad) return {Grade::bad, device_state_text(device.state)};
-    if (notice_grade(notice) == Grade::bad) return {Grade::bad, "see what it says above"};
+    if (notice_grade(notice) == Grade::bad) return {Grade::bad, "see the notice above"};
     if (device.read == 1) return {Grade::watch, kReads[1]};
-    if (notice != DeviceNotice::none) return {Grade::watch, asks(notice) ? "asks for a hand" : "see above"};
+    if (notice != DeviceNotice::none) return {Grade::watch, asks(notice) ? "needs attention" : "see above"};
     if (!bus.clean()) return bus_status(bus);
     return {state, device_state_text(device.state)};
 }
@@ -236,16 +235,16 @@ StatusText motor_status(const DeviceHand& device) {
         const Grade g = grade(share);
         std::snprintf(text, sizeof text, "%s, motor %d of %.0f °C",
                       g == Grade::good    ? "cool"
-                      : g == Grade::watch ? "warm, weakens"
+                      : g == Grade::watch ? "warm, force reduced"
                                           : "hot",
                       device.motor + 1, static_cast<double>(device.winding_c_max));
         return {g, text};
     }
-    if (!(device.force_n_continuous > 0.0F)) return {Grade::unknown, "no heat is counted"};
+    if (!(device.force_n_continuous > 0.0F)) return {Grade::unknown, "heat not modelled"};
     const Grade g = grade(static_cast<double>(device.heat));
     if (g == Grade::good) return {g, "cool"};
-    if (g == Grade::watch) return {g, "warm, weakens"};
-    std::snprintf(text, sizeof text, "hot, %.1f N are left", static_cast<double>(device.force_n_continuous));
+    if (g == Grade::watch) return {g, "warm, force reduced"};
+    std::snprintf(text, sizeof text, "hot, limit %.1f N", static_cast<double>(device.force_n_continuous));
     return {g, text};
 }
 
@@ -253,8 +252,8 @@ StatusText motor_status(const DeviceHand& device) {
 StatusText tracker_status(const TrackerTopic& t) {
     constexpr std::uint8_t kLinkUp = 1, kFrozen = 1, kFresh = 2;
     if (t.link != kLinkUp) return {Grade::bad, head_link_text(t.link)};
-    if (t.state == kFrozen) return {Grade::watch, "frozen, the view stands"};
-    if (t.state != kFresh) return {Grade::bad, "lost, the view stands"};
+    if (t.state == kFrozen) return {Grade::watch, "frozen, view held"};
+    if (t.state != kFresh) return {Grade::bad, "lost, view held"};
     return {Grade::good, "fresh"};
 }
 
@@ -271,10 +270,10 @@ std::string tracker_counts_text(const TrackerTopic& t) {
 }
 
 StatusText display_status(double fps, double goal_hz) {
-    if (!(fps > 0.0)) return {Grade::unknown, "nothing drawn yet"};
+    if (!(fps > 0.0)) return {Grade::unknown, "no frame yet"};
     const bool goal = goal_hz > 0.0;
     const double share = fps / (goal ? goal_hz : 20.0);
-    if (share >= (goal ? 0.9 : 1.0)) return {Grade::good, goal ? "holds its goal" : "fluent"};
+    if (share >= (goal ? 0.9 : 1.0)) return {Grade::good, goal ? "on target" : "smooth"};
     char text[48];
     std::snprintf(text, sizeof text, "below %s%.0f", goal ? "goal of " : "", goal ? goal_hz : 20.0);
     return {share >= 0.6 ? Grade::watch : Grade::bad, text};

@@ -22,7 +22,7 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
             state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s: %s atoms. Click: take it into the hand, or let go.", b.name.c_str(),
+            ImGui::SetTooltip("%s: %s atoms. Click to hold or release.", b.name.c_str(),
                               grouped(b.atoms).c_str());
         ImGui::SameLine(right - theme.px(106.0F));
         bool fixed = b.fixed, shown = !b.hidden;
@@ -60,15 +60,14 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     };
     if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAct::undo);
     if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAct::redo);
-    if (button("Accept", f.can_undo, "from here on, Revert leads here (Enter)")) request(FitAct::accept);
+    if (button("Accept", f.can_undo, "accept the present places; Revert returns to them (Enter)"))
+        request(FitAct::accept);
     if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAct::revert);
-    if (button("Refine", held != nullptr && !f.refining, "steepest ascent of the fit from here (R)"))
+    if (button("Refine", held != nullptr && !f.refining, "refine the held body from its present place (R)"))
         request(FitAct::refine);
-    if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax,
-               "another one of the body in the hand"))
+    if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax, "copy the held body"))
         request(FitAct::copy);
-    if (button("Remove", held != nullptr && f.bodies.size() > 1,
-               "takes the body in the hand out of the scene"))
+    if (button("Remove", held != nullptr && f.bodies.size() > 1, "remove the held body from the scene"))
         requests.push_back({CommandKind::remove_body, 0.0, {}, id});
     if (button("Save", !f.saving, "PDB or mmCIF, matrix and CSV of every body, in a new folder"))
         request(FitAct::save);
@@ -77,7 +76,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
         request(FitAct::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(3.0F * width + 2.0F * gap);
-    if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "go back to ...")) {
+    if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "return to ...")) {
         for (const std::string& name : f.snapshots)
             if (ImGui::Selectable(name.c_str())) request(FitAct::restore, name);
         ImGui::EndCombo();
@@ -92,15 +91,15 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
         if (ImGui::Checkbox(name, &on)) state.requests.push_back({kind, on ? 1.0 : 0.0, {}});
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
     };
-    box("Clash", kDockingClash, CommandKind::set_clash, "bodies push each other apart");
+    box("Clash", kDockingClash, CommandKind::set_clash, "bodies repel each other");
     ImGui::SameLine(theme.px(84.0F));
     box("Subtract", kDockingSubtraction, CommandKind::set_subtraction,
-        "the density that the other bodies explain is not felt");
+        "subtract the density that the other bodies explain");
     ImGui::SameLine(theme.px(178.0F));
     box("Laplacian", kDockingLaplacian, CommandKind::set_laplacian,
-        "feel the map's Laplacian: shape counts more than density");
+        "force from the Laplacian of the map: shape counts more than density");
     ImGui::EndDisabled();
-    if (f.building) text_small(theme, colour::kWatch, "the controller prepares the density ...");
+    if (f.building) text_small(theme, colour::kWatch, "preparing the density ...");
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ void draw_contours_tab(const Theme& theme, ContourRowState& state) {
     ImGui::EndDisabled();
     const auto moving = std::any_of(state.row.begin(), state.row.end(),
                                     [](const ContourRow& c) { return c.shown && !c.final; });
-    if (moving) text_small(theme, colour::kDim, "coarse while it moves; the full surface follows");
+    if (moving) text_small(theme, colour::kDim, "coarse while dragging; the full surface follows");
 }
 
 }  // namespace tact

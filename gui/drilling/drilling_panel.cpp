@@ -14,18 +14,18 @@ void tools(const Theme& theme, const DrillingState& d) {
     static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
     const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
     std::string does =
-        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stands";
+        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stopped";
     if (d.burr.water) does += ", water";
     row(theme, "Burr", size, does);
     if (d.suction_tube.there)
-        row(theme, "SuctionTube", mm_text(d.suction_tube.diameter_m),
+        row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),
             d.suction_tube.suction ? "suction on" : "suction off");
 }
 
 void metrics(const Theme& theme, const DrillingState& d) {
-    row(theme, "Bone taken", fixed(1e9 * d.removed_m3, 1) + " mm³",
+    row(theme, "Bone removed", fixed(1e9 * d.removed_m3, 1) + " mm³",
         format("in %.0f s of drilling", d.drilling_s));
-    row(theme, "Force felt", fixed(d.force_n, 2) + " N", force_status(d.force_n, d.excess_s));
+    row(theme, "Force", fixed(d.force_n, 2) + " N", force_status(d.force_n, d.excess_s));
     row(theme, "Strokes", grouped(d.strokes),
         d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
                       : std::string());
@@ -49,8 +49,7 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
 
 void tip(const DrillingState& d) {
     if (!ImGui::IsItemHovered()) return;
-    std::string text =
-        "From the burr's surface to each structure to keep away from; below zero the burr is in it.";
+    std::string text = "Distance from the burr surface to each critical structure; negative inside it.";
     if (d.suction_tube.there)
         for (const auto& s : d.structures)
             if (s.suction_tube_m < 2e-3)
@@ -63,7 +62,7 @@ void tip(const DrillingState& d) {
 void draw_drilling(const Theme& theme, const DrillingState& d, const PixelRect& card) {
     begin_card(theme, "Drilling", card, true);
     if (!d.known) {
-        text_small(theme, colour::kDim, "no tool yet: it comes with the controller");
+        text_small(theme, colour::kDim, "no tool: waiting for the controller");
     } else {
         if (d.injuries > 0) {
             ImGui::SameLine();
@@ -73,10 +72,10 @@ void draw_drilling(const Theme& theme, const DrillingState& d, const PixelRect& 
         metrics(theme, d);
         if (d.structures.empty()) {
             text_small(theme, colour::kDim,
-                       d.labelled ? "No labelled structure is one to keep away from (tact drill --critical)."
-                                  : "No structure is labelled, so nothing warns (tact drill --labels).");
+                       d.labelled ? "No labelled structure is critical (tact drill --critical)."
+                                  : "No labels, so no warnings (tact drill --labels).");
         } else {
-            text_small(theme, colour::kDim, "From the burr's surface to");
+            text_small(theme, colour::kDim, "Distance from the burr to");
             tip(d);
             for (const DrillingState::Structure& s : d.structures) structure(theme, d, s);
         }

@@ -87,10 +87,11 @@ void detail_rows(const Theme& theme, const DetailState& d) {
             d.turn_predicted_s > 0.0 ? "of 4 ms, " + duration_text(d.turn_predicted_s) + " to build"
                                      : std::string("of 4 ms"));
         text_small(theme, d.full ? colour::kGood : colour::kWatch,
-                   d.full ? "What is felt is the full mesh: no error by refinement."
-                          : "Not in full detail here yet: the tree over the full mesh answers.");
+                   d.full ? "Full mesh in use (no refinement error)."
+                          : "Not refined here yet: the full mesh is searched by its tree.");
     } else {
-        text_small(theme, colour::kDim, "Shown, not felt: the controller keeps none (--mode chr does).");
+        text_small(theme, colour::kDim,
+                   "Display only: the controller uses the full mesh (--mode chr refines it).");
     }
 }
 

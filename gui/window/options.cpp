@@ -91,7 +91,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
             [&options](const std::string& text) { options.contours.push_back(read_contour_option(text)); });
     app.add_flag("!--no-depth-cue", options.depth_cue, "do not fade what lies far behind");
     app.add_flag("--near-burr", options.near_burr,
-                 "look at the burr from near once it is in bone, as key F does");
+                 "close view of the burr once it is in bone, as key F does");
     app.add_option("--particles", options.particles,
                    "keep this many particles over bone, to measure what they cost")
         ->check(CLI::Range(0, 100000));

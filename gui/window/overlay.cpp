@@ -90,10 +90,10 @@ void legend(const Pen& pen, const PanelState& state, const PixelRect& v) {
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
         if (state.toggles.force && state.attached && state.scene.surface)
-            line(colour::kNormal, "places that hold it, with what they push");
+            line(colour::kNormal, "contact points and forces");
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
-                                             state.second_at_wall ? ", at the workspace's wall" : ""));
+                                             state.second_at_wall ? ", at the workspace boundary" : ""));
         if (!state.stage.empty())
             pen.text(pen.theme.small, {x, y}, state.head_lost ? colour::kWatch : colour::kDim, state.stage);
     }

@@ -194,7 +194,7 @@ def buttons(operator):
     refused = operator.press("Reset", "while it is pressed nothing resets it", lambda s: "command reset fault: refused" in operator.said())
     bad += expect("Reset while the stop is pressed leaves the fault", refused["state"] == "fault")
     os.kill(operator.controller(), signal.SIGUSR2)
-    released = operator.wait("the stop is let go", lambda s: s["lines"]["state"] == "wait to be re-armed")
+    released = operator.wait("the stop is let go", lambda s: s["lines"]["state"] == "waiting for re-arming")
     bad += expect("the stop let go leaves the fault", released["state"] == "fault")
     operator.press("Reset", "the button resets", off)
     operator.press("Arm", "the button arms after a stop", on)

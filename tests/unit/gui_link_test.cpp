@@ -506,7 +506,7 @@ TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
 }
 
 TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and_look_ahead) {
-    EXPECT_EQ(distance_status(-1e-4, 0.0, false).words, "in it");
+    EXPECT_EQ(distance_status(-1e-4, 0.0, false).words, "inside");
     EXPECT_EQ(distance_status(-1e-4, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(0.99e-3, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(1.01e-3, 0.0, false).grade, Grade::watch);
@@ -522,7 +522,7 @@ TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and
 }
 
 TEST(StatusTexts, of_the_force_on_a_burr_say_how_long_it_was_too_much) {
-    EXPECT_EQ(force_status(1.0, 0.0).words, "never above 2 N");
+    EXPECT_EQ(force_status(1.0, 0.0).words, "always below 2 N");
     EXPECT_EQ(force_status(1.0, 3.21).words, "above 2 N for 3.2 s");
     EXPECT_EQ(force_status(1.0, 3.21).grade, Grade::good);
     EXPECT_EQ(force_status(2.1, 3.21).grade, Grade::watch);

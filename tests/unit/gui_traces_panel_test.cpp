@@ -47,7 +47,7 @@ TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
     const float before = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, false).plots.height;
     open();
     EXPECT_GT(layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true).plots.height, 1.4F * before);
-    desk_.click(kCard, "Load and knobs");
+    desk_.click(kCard, "Load and detail");
     EXPECT_EQ(desk_.state.strip, 0);
 }
 
