@@ -141,8 +141,8 @@ void free_running(const Theme& theme, const HealthTopic& h) {
 // How long the loop is from the encoders to the motors, and what that allows.
 void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
-    row(theme, "Loop delay p99", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        format("stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+    row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
+        format("p99; stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {
