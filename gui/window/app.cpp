@@ -11,6 +11,7 @@
 
 #include "gui/window/app_parts.hpp"
 #include "gui/window/show_controller.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {
