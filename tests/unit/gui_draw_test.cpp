@@ -5,437 +5,437 @@
 #include <optional>
 #include <set>
 
-include "gui/window/load_scene.hpp"
+#include "gui/docking/docking_layer.hpp"
+#include "gui/render/scene_view.hpp"
 #include "gui/render/screen.hpp"
 #include "gui/stereo/eye_pictures.hpp"
-#include "gui/window/scene_view.hpp"
+#include "gui/window/load_scene.hpp"
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
 #include "tests/unit/gui_fake.hpp"
 #include "tests/unit/gui_wait.hpp"
 
-    namespace tact {
-    namespace {
+namespace tact {
+namespace {
 
-    constexpr int kWidth = 160, kHeight = 120;
-    using Distance = std::function<double(const Eigen::Vector3d& eye_a)>;
+constexpr int kWidth = 160, kHeight = 120;
+using Distance = std::function<double(const Eigen::Vector3d& eye_a)>;
 
-    // One X server and one context for all cases.
-    class GuiDraw : public Canvas<kWidth, kHeight> {
-    protected:
-        void SetUp() override {
-            Canvas::SetUp();
-            if (IsSkipped()) return;
-            glViewport(0, 0, kWidth, kHeight);
-            glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
-            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-            glEnable(GL_DEPTH_TEST);
-            glDisable(GL_BLEND);
-            glDisable(GL_CULL_FACE);
-            camera_.frame(20.0F);
-        }
-        void TearDown() override { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}); }
+// One X server and one context for all cases.
+class GuiDraw : public Canvas<kWidth, kHeight> {
+protected:
+    void SetUp() override {
+        Canvas::SetUp();
+        if (IsSkipped()) return;
+        glViewport(0, 0, kWidth, kHeight);
+        glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        glEnable(GL_DEPTH_TEST);
+        glDisable(GL_BLEND);
+        glDisable(GL_CULL_FACE);
+        camera_.frame(20.0F);
+    }
+    void TearDown() override { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}); }
 
-        static std::vector<float> depths() {
-            std::vector<float> depth(std::size_t{kWidth} * kHeight);
-            glReadPixels(0, 0, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
-            return depth;
-        }
-        Eigen::Matrix4f projection() const {
-            return camera_.projection(static_cast<float>(kWidth) / static_cast<float>(kHeight));
-        }
-        // Walks along the ray of every pixel until the distance to the shape is nothing: slow, and it has no
-        // formula in common with the shaders.
-        void expect_shape(const Distance& distance) const {
-            const Eigen::Matrix4d p = projection().cast<double>();
-            const std::vector<float> depth = depths();
-            int hits = 0, wrong = 0;
-            for (int y = 0; y < kHeight; ++y)
-                for (int x = 0; x < kWidth; ++x) {
-                    const Eigen::Vector3d ray =
-                        Eigen::Vector3d((2.0 * (x + 0.5) / kWidth - 1.0) / p(0, 0),
-                                        (2.0 * (y + 0.5) / kHeight - 1.0) / p(1, 1), -1.0)
-                            .normalized();
-                    double t = 0.0, nearest = 1e9;
-                    for (int step = 0; step < 400 && t < 1000.0 && nearest > 1e-4; ++step) {
-                        nearest = std::min(nearest, distance(t * ray));
-                        t += distance(t * ray);
-                    }
-                    const auto seen = static_cast<double>(depth[static_cast<std::size_t>(y * kWidth + x)]);
-                    const bool hit = nearest <= 1e-4;
-                    hits += hit ? 1 : 0;
-                    if (hit != (seen < 1.0)) {
-                        // Single precision may differ about a pixel that the outline all but misses.
-                        if (nearest > 1e-2) ++wrong;
-                        continue;
-                    }
-                    if (!hit) continue;
-                    const double z_a = p(2, 3) / (2.0 * seen - 1.0 + p(2, 2));  // distance along the view
-                    // At a grazing ray the depth is as steep as can be: judged by the distance to the shape.
-                    EXPECT_NEAR(distance(ray * (z_a / -ray.z())), 0.0, 0.02) << "pixel " << x << ", " << y;
+    static std::vector<float> depths() {
+        std::vector<float> depth(std::size_t{kWidth} * kHeight);
+        glReadPixels(0, 0, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+        return depth;
+    }
+    Eigen::Matrix4f projection() const {
+        return camera_.projection(static_cast<float>(kWidth) / static_cast<float>(kHeight));
+    }
+    // Walks along the ray of every pixel until the distance to the shape is nothing: slow, and it has no
+    // formula in common with the shaders.
+    void expect_shape(const Distance& distance) const {
+        const Eigen::Matrix4d p = projection().cast<double>();
+        const std::vector<float> depth = depths();
+        int hits = 0, wrong = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const Eigen::Vector3d ray = Eigen::Vector3d((2.0 * (x + 0.5) / kWidth - 1.0) / p(0, 0),
+                                                            (2.0 * (y + 0.5) / kHeight - 1.0) / p(1, 1), -1.0)
+                                                .normalized();
+                double t = 0.0, nearest = 1e9;
+                for (int step = 0; step < 400 && t < 1000.0 && nearest > 1e-4; ++step) {
+                    nearest = std::min(nearest, distance(t * ray));
+                    t += distance(t * ray);
                 }
-            EXPECT_GT(hits, 20);
-            EXPECT_LE(wrong, hits / 50) << "of " << hits;
-        }
-        ImpostorView impostor_view(const Eigen::Matrix4f& eye) const { return {eye, projection(), haze_}; }
-
-        Camera camera_;
-        Haze haze_;
-    };
-
-    Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
-        return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
-    }
-
-    TEST_F(GuiDraw, a_sphere_covers_its_outline_and_has_its_depth_in_every_pixel) {
-        ImpostorPrograms programs;
-        const Eigen::Matrix4f eye = camera_.view();
-        for (const Sphere& sphere :
-             {Sphere{{0.0F, 0.0F, 0.0F}, 6.0F, {}}, Sphere{{14.0F, -9.0F, 10.0F}, 3.0F, {}},
-              Sphere{{0.0F, 15.0F, 30.0F}, 8.0F, {}}}) {
-            glClear(GL_DEPTH_BUFFER_BIT);
-            ImpostorShapes shapes;
-            shapes.fill(std::array{sphere});
-            programs.use_spheres(impostor_view(eye));
-            shapes.draw();
-            const Eigen::Vector3d c = in_eye(eye, sphere.centre_a);
-            expect_shape([&](const Eigen::Vector3d& p) {
-                return (p - c).norm() - static_cast<double>(sphere.radius_a);
-            });
-        }
-    }
-
-    TEST_F(GuiDraw, a_stick_covers_its_outline_and_has_its_depth_in_every_pixel) {
-        ImpostorPrograms programs;
-        const Eigen::Matrix4f eye = camera_.view();
-        const Eigen::Vector3f towards =
-            camera_.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 12.0F);
-        for (const Stick& stick :
-             {Stick{{-8.0F, 3.0F, 0.0F}, 2.0F, {9.0F, -2.0F, 5.0F}, {}, {}},
-              Stick{{0.0F, 0.0F, 0.0F}, 3.0F, {towards.x(), towards.y(), towards.z()}, {}, {}},
-              Stick{{10.0F, 10.0F, 0.0F}, 1.0F, {10.0F, 10.5F, 0.0F}, {}, {}},
-              Stick{{4.0F, 4.0F, 4.0F}, 3.0F, {4.0F, 4.0F, 4.0F}, {}, {}}}) {
-            glClear(GL_DEPTH_BUFFER_BIT);
-            ImpostorShapes shapes;
-            shapes.fill(std::array{stick});
-            programs.use_sticks(impostor_view(eye));
-            shapes.draw();
-            const Eigen::Vector3d a = in_eye(eye, stick.from_a), b = in_eye(eye, stick.to_a);
-            expect_shape([&](const Eigen::Vector3d& p) {
-                const double length2 = (b - a).squaredNorm();
-                const double t = length2 > 0.0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
-                return (p - a - t * (b - a)).norm() - static_cast<double>(stick.radius_a);
-            });
-        }
-    }
-
-    TEST_F(GuiDraw, what_reaches_the_eye_is_left_out_and_does_no_harm) {
-        ImpostorPrograms programs;
-        const Eigen::Matrix4f eye = Eigen::Matrix4f::Identity();
-        ImpostorShapes spheres, sticks;
-        spheres.fill(
-            std::array{Sphere{{0.0F, 0.0F, -1.0F}, 2.0F, {}}, Sphere{{0.0F, 0.0F, 50.0F}, 2.0F, {}}});
-        sticks.fill(std::array{Stick{{0.0F, 0.0F, 1.0F}, 1.0F, {0.0F, 0.0F, -90.0F}, {}, {}}});
-        programs.use_spheres(impostor_view(eye));
-        spheres.draw();
-        programs.use_sticks(impostor_view(eye));
-        sticks.draw();
-        for (const float d : depths()) ASSERT_EQ(d, 1.0F);
-    }
-
-    TEST_F(GuiDraw, haze_ends_in_the_background_and_is_nothing_before_it_begins) {
-        ImpostorPrograms programs;
-        haze_.strength = 1.0F;
-        haze_.top = Eigen::Vector3f(0.2F, 0.4F, 0.6F);
-        haze_.bottom = haze_.top;
-        const AtomColours red{{255, 0, 0, 255}, {255, 0, 0, 255}};
-        ImpostorShapes shapes;
-        shapes.fill(std::array{Sphere{{0.0F, 0.0F, 0.0F}, 8.0F, red}});
-        const auto middle = [&](float begin_a, float end_a) {
-            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-            haze_.begin_a = begin_a;
-            haze_.end_a = end_a;
-            programs.use_spheres(impostor_view(camera_.view()));
-            shapes.draw();
-            const Image image = read_pixels(kWidth, kHeight);
-            const std::size_t at = std::size_t{3} * (kHeight / 2 * kWidth + kWidth / 2);
-            return Rgb8{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
-        };
-        const float d = camera_.distance_a();
-        const Rgb8 clear = middle(d + 10.0F, d + 20.0F), gone = middle(d - 30.0F, d - 20.0F);
-        EXPECT_GT(clear[0], clear[1] + 50);
-        for (int i = 0; i < 3; ++i) EXPECT_NEAR(gone[i], 255.0F * haze_.top[i], 1.5F);
-    }
-
-    // The middle of what one channel shows within an area, in pixels from its lower left corner; none: (-1, -1).
-    Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelArea& area) {
-        Eigen::Vector2d sum(0.0, 0.0);
-        double count = 0.0;
-        for (int y = 0; y < area.height_px; ++y)
-            for (int x = 0; x < area.width_px; ++x) {
-                const std::size_t row = image.height_px - 1 - static_cast<std::size_t>(area.y_px + y);
-                if (image.rgb[3 * (row * image.width_px + static_cast<std::size_t>(area.x_px + x)) +
-                              channel] < 8)
+                const auto seen = static_cast<double>(depth[static_cast<std::size_t>(y * kWidth + x)]);
+                const bool hit = nearest <= 1e-4;
+                hits += hit ? 1 : 0;
+                if (hit != (seen < 1.0)) {
+                    // Single precision may differ about a pixel that the outline all but misses.
+                    if (nearest > 1e-2) ++wrong;
                     continue;
-                sum += Eigen::Vector2d(x + 0.5, y + 0.5);
-                count += 1.0;
-            }
-        return count > 0.0 ? Eigen::Vector2d(sum / count) : Eigen::Vector2d(-1.0, -1.0);
-    }
-
-    TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_every_mode) {
-        constexpr int kOutputWidth = 900, kOutputHeight = 600;
-        constexpr float kRadiusA = 0.7F;
-        ImpostorPrograms programs;
-        EyePictures pictures;
-        SeededRandom random(21);
-        const auto within = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
-        const ScreenPlace screen = ScreenPlace::of_size(0.45, 0.30);
-        const ScenePlace scene{2e-3, quat_from_rotation_vector(Vec3(0.3, -0.2, 0.1)),
-                               Vec3(0.01, -0.02, 0.03)};
-        constexpr StereoMode kModes[] = {StereoMode::two_windows, StereoMode::side_by_side,
-                                         StereoMode::top_bottom, StereoMode::anaglyph};
-        for (int head = 0; head < 20; ++head) {
-            const StereoMode mode = kModes[head % 4];
-            const Pose pose{Vec3(within(0.25), within(0.2), 0.6 + within(0.2)),
-                            quat_from_rotation_vector(Vec3(within(0.4), within(0.4), within(0.2)))};
-            const auto eyes = eyes_of(pose, {});
-            const Vec3 place_a(within(30.0), within(20.0), within(25.0));
-            pictures.resize(mode, kOutputWidth, kOutputHeight);
-            for (std::size_t eye = 0; eye < 2; ++eye) {
-                pictures.begin(eye, Eigen::Vector3f::Zero());
-                const EyeView view = through_screen(screen, scene, eyes[eye], 60.0, Vec3::Zero());
-                ImpostorShapes shapes;
-                const AtomColours white{{255, 255, 255, 255}, {255, 255, 255, 255}};
-                shapes.fill(
-                    std::array{Sphere{{static_cast<float>(place_a.x()), static_cast<float>(place_a.y()),
-                                       static_cast<float>(place_a.z())},
-                                      kRadiusA,
-                                      white}});
-                programs.use_spheres({view.eye_from_scene, view.projection, haze_});
-                shapes.draw();
-            }
-            const bool each = mode == StereoMode::two_windows;
-            const std::vector<Image> shown = pictures.read(each);
-            ASSERT_EQ(shown.size(), each ? 2U : 1U);
-            for (std::size_t eye = 0; eye < 2; ++eye) {
-                const PixelArea area = area_of_eye(mode, eye, kOutputWidth, kOutputHeight);
-                // Where the line from the eye to the place meets the glass, which lies in z = 0.
-                const Vec3 p = scene.to_screen_m(place_a);
-                const Vec3 glass = eyes[eye] + eyes[eye].z() / (eyes[eye].z() - p.z()) * (p - eyes[eye]);
-                const Eigen::Vector2d wanted((glass.x() / 0.45 + 0.5) * area.width_px,
-                                             (glass.y() / 0.30 + 0.5) * area.height_px);
-                const Eigen::Vector2d seen = middle_of(shown[each ? eye : 0], eye == 0 ? 0 : 1, area);
-                EXPECT_LT((seen - wanted).norm(), 0.5)
-                    << stereo_mode_text(mode) << ", head " << head << ", eye " << eye;
-            }
-        }
-    }
-
-    // Pixels that differ from the background.
-    std::size_t drawn(const Image& image) {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < image.rgb.size(); i += 3)
-            count += (image.rgb[i] | image.rgb[i + 1] | image.rgb[i + 2]) != 0 ? 1U : 0U;
-        return count;
-    }
-
-    class GuiDrawScene : public GuiDraw {
-    protected:
-        void SetUp() override {
-            GuiDraw::SetUp();
-            if (IsSkipped()) return;
-            const std::string path = folder_ + "/scene.tact";
-            if (!std::filesystem::exists(path)) fake::write_helix_scene(path, 16);
-            content_ = load_scene(path);
-            programs_.emplace();
-            view_.emplace(content_, *programs_);
-            camera_.frame(view_->radius_a());
-            options_.surface = options_.codebook = options_.graph = options_.force = false;
-            home_ = {content_->bodies[0].home(), 0, 1};
-        }
-        void TearDown() override {
-            view_.reset();
-            programs_.reset();
-            GuiDraw::TearDown();
-        }
-        Image picture(std::span<const DrawnBody> bodies) {
-            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-            ViewFrame frame{};
-            frame.width_px = kWidth;
-            frame.height_px = kHeight;
-            frame.bodies = bodies;
-            frame.active = 1000;
-            frame.second_hand = second_hand_;
-            view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
-                        options_, frame);
-            return read_pixels(kWidth, kHeight);
-        }
-        std::shared_ptr<const SceneContent> content_;
-        std::optional<Programs> programs_;
-        std::optional<SceneView> view_;
-        ViewOptions options_;
-        DrawnBody home_;
-        std::optional<DrawnHand> second_hand_;
-    };
-
-    TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
-        std::set<std::string> pictures;
-        for (const auto style :
-             {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
-            for (const auto colouring : {Colouring::chain, Colouring::body}) {
-                view_->molecules().set_look({style, colouring});
-                const Image image = picture(std::array{home_});
-                EXPECT_GT(drawn(image), 100U);
-                pictures.insert({image.rgb.begin(), image.rgb.end()});
-            }
-        EXPECT_EQ(pictures.size(), 8U);
-    }
-
-    TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not_at_all) {
-        view_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
-        const std::size_t one = drawn(picture(std::array{home_}));
-        DrawnBody copy = home_;
-        copy.id = 2;
-        copy.T_model_body.p_m += Vec3(0.0, 0.0, 14e-10);
-        EXPECT_GT(drawn(picture(std::array{home_, copy})), one + 50);
-        copy.hidden = true;
-        EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
-        copy.hidden = false;
-        copy.structure = 77;
-        EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
-    }
-
-    TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_wall_it_touches) {
-        EXPECT_EQ(drawn(picture({})), 0U);
-        const auto in_half = [](const Image& image, bool right) {
-            std::size_t count = 0;
-            for (int y = 0; y < kHeight; ++y)
-                for (int x = right ? kWidth / 2 : 0; x < (right ? kWidth : kWidth / 2); ++x) {
-                    const std::size_t at = std::size_t{3} * static_cast<std::size_t>(y * kWidth + x);
-                    count += (image.rgb[at] | image.rgb[at + 1] | image.rgb[at + 2]) != 0 ? 1U : 0U;
                 }
-            return count;
-        };
-        DrawnHand hand;
-        hand.T_model_hand.p_m = content_->centre_model_m + Vec3(0.5 * content_->radius_m, 0.0, 0.0);
-        second_hand_ = hand;
-        const Image right = picture({});
-        EXPECT_GT(in_half(right, true), 60U);
-        EXPECT_EQ(in_half(right, false), 0U);
-        second_hand_->T_model_hand.p_m.x() -= 1.2 * content_->radius_m;
-        EXPECT_GT(in_half(picture({}), false), 30U);
-        second_hand_ = hand;
-
-        // It turns with the tool.
-        second_hand_->T_model_hand.q = quat_from_rotation_vector({0.0, 0.0, 2.0});
-        EXPECT_NE(picture({}).rgb, right.rgb);
-        second_hand_ = hand;
-
-        const auto force = [&](const Vec3& force_n, bool at_wall) {
-            second_hand_->force_world_n = force_n;
-            second_hand_->at_wall = at_wall;
-            return drawn(picture({}));
-        };
-        const std::size_t alone = drawn(right);
-        const std::size_t pushed = force({-0.7, 0.0, 0.0}, false);
-        EXPECT_GT(pushed, alone + 20);
-        EXPECT_GT(force({-0.7, 0.0, 0.0}, true), pushed + 10);
-        EXPECT_EQ(force(Vec3::Zero(), true), alone);  // no force says where the wall is
-        EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
+                if (!hit) continue;
+                const double z_a = p(2, 3) / (2.0 * seen - 1.0 + p(2, 2));  // distance along the view
+                // At a grazing ray the depth is as steep as can be: judged by the distance to the shape.
+                EXPECT_NEAR(distance(ray * (z_a / -ray.z())), 0.0, 0.02) << "pixel " << x << ", " << y;
+            }
+        EXPECT_GT(hits, 20);
+        EXPECT_LE(wrong, hits / 50) << "of " << hits;
     }
+    ImpostorView impostor_view(const Eigen::Matrix4f& eye) const { return {eye, projection(), haze_}; }
 
-    TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
-        DrawnBody copy = home_;
-        copy.id = 2;
-        view_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
-        const Image tube = picture(std::array{home_});
-        view_->molecules().set_look(2, {MoleculeStyle::spheres, Colouring::chain});
-        EXPECT_EQ(picture(std::array{home_}).rgb, tube.rgb);
-        EXPECT_NE(picture(std::array{copy}).rgb, tube.rgb);
-        view_->molecules().set_shapes_max(content_->bodies[0].size() - 1);
-        EXPECT_EQ(picture(std::array{copy}).rgb, tube.rgb);
-        EXPECT_EQ(view_->molecules().left_out(), 1U);
+    Camera camera_;
+    Haze haze_;
+};
+
+Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
+    return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
+}
+
+TEST_F(GuiDraw, a_sphere_covers_its_outline_and_has_its_depth_in_every_pixel) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = camera_.view();
+    for (const Sphere& sphere :
+         {Sphere{{0.0F, 0.0F, 0.0F}, 6.0F, {}}, Sphere{{14.0F, -9.0F, 10.0F}, 3.0F, {}},
+          Sphere{{0.0F, 15.0F, 30.0F}, 8.0F, {}}}) {
+        glClear(GL_DEPTH_BUFFER_BIT);
+        ImpostorShapes shapes;
+        shapes.fill(std::array{sphere});
+        programs.use_spheres(impostor_view(eye));
+        shapes.draw();
+        const Eigen::Vector3d c = in_eye(eye, sphere.centre_a);
+        expect_shape(
+            [&](const Eigen::Vector3d& p) { return (p - c).norm() - static_cast<double>(sphere.radius_a); });
     }
+}
 
-    TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame) {
-        const std::string path = folder_ + "/fine.tact";
-        fake::write_helix_scene(path, 64);
-        content_ = load_scene(path);
-        view_.emplace(content_, *programs_);
-        const std::uint32_t most = view_->vertices_max();
-        ASSERT_GT(most, 4 * MeshCut::kStepsMin);
-        view_->approach_vertices(most, 0.0);
-        view_->upload();
-        for (const std::uint32_t wanted : {most / 8, most, most / 3, most - 1, view_->vertices_min()}) {
-            view_->approach_vertices(wanted, 0.0);
-            EXPECT_EQ(view_->vertices(), wanted);
-            view_->upload();
+TEST_F(GuiDraw, a_stick_covers_its_outline_and_has_its_depth_in_every_pixel) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = camera_.view();
+    const Eigen::Vector3f towards = camera_.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 12.0F);
+    for (const Stick& stick :
+         {Stick{{-8.0F, 3.0F, 0.0F}, 2.0F, {9.0F, -2.0F, 5.0F}, {}, {}},
+          Stick{{0.0F, 0.0F, 0.0F}, 3.0F, {towards.x(), towards.y(), towards.z()}, {}, {}},
+          Stick{{10.0F, 10.0F, 0.0F}, 1.0F, {10.0F, 10.5F, 0.0F}, {}, {}},
+          Stick{{4.0F, 4.0F, 4.0F}, 3.0F, {4.0F, 4.0F, 4.0F}, {}, {}}}) {
+        glClear(GL_DEPTH_BUFFER_BIT);
+        ImpostorShapes shapes;
+        shapes.fill(std::array{stick});
+        programs.use_sticks(impostor_view(eye));
+        shapes.draw();
+        const Eigen::Vector3d a = in_eye(eye, stick.from_a), b = in_eye(eye, stick.to_a);
+        expect_shape([&](const Eigen::Vector3d& p) {
+            const double length2 = (b - a).squaredNorm();
+            const double t = length2 > 0.0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
+            return (p - a - t * (b - a)).norm() - static_cast<double>(stick.radius_a);
+        });
+    }
+}
+
+TEST_F(GuiDraw, what_reaches_the_eye_is_left_out_and_does_no_harm) {
+    ImpostorPrograms programs;
+    const Eigen::Matrix4f eye = Eigen::Matrix4f::Identity();
+    ImpostorShapes spheres, sticks;
+    spheres.fill(std::array{Sphere{{0.0F, 0.0F, -1.0F}, 2.0F, {}}, Sphere{{0.0F, 0.0F, 50.0F}, 2.0F, {}}});
+    sticks.fill(std::array{Stick{{0.0F, 0.0F, 1.0F}, 1.0F, {0.0F, 0.0F, -90.0F}, {}, {}}});
+    programs.use_spheres(impostor_view(eye));
+    spheres.draw();
+    programs.use_sticks(impostor_view(eye));
+    sticks.draw();
+    for (const float d : depths()) ASSERT_EQ(d, 1.0F);
+}
+
+TEST_F(GuiDraw, haze_ends_in_the_background_and_is_nothing_before_it_begins) {
+    ImpostorPrograms programs;
+    haze_.strength = 1.0F;
+    haze_.top = Eigen::Vector3f(0.2F, 0.4F, 0.6F);
+    haze_.bottom = haze_.top;
+    const AtomColours red{{255, 0, 0, 255}, {255, 0, 0, 255}};
+    ImpostorShapes shapes;
+    shapes.fill(std::array{Sphere{{0.0F, 0.0F, 0.0F}, 8.0F, red}});
+    const auto middle = [&](float begin_a, float end_a) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        haze_.begin_a = begin_a;
+        haze_.end_a = end_a;
+        programs.use_spheres(impostor_view(camera_.view()));
+        shapes.draw();
+        const Image image = read_pixels(kWidth, kHeight);
+        const std::size_t at = std::size_t{3} * (kHeight / 2 * kWidth + kWidth / 2);
+        return Rgb8{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+    };
+    const float d = camera_.distance_a();
+    const Rgb8 clear = middle(d + 10.0F, d + 20.0F), gone = middle(d - 30.0F, d - 20.0F);
+    EXPECT_GT(clear[0], clear[1] + 50);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(gone[i], 255.0F * haze_.top[i], 1.5F);
+}
+
+// The middle of what one channel shows within an area, in pixels from its lower left corner; none: (-1, -1).
+Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelArea& area) {
+    Eigen::Vector2d sum(0.0, 0.0);
+    double count = 0.0;
+    for (int y = 0; y < area.height_px; ++y)
+        for (int x = 0; x < area.width_px; ++x) {
+            const std::size_t row = image.height_px - 1 - static_cast<std::size_t>(area.y_px + y);
+            if (image.rgb[3 * (row * image.width_px + static_cast<std::size_t>(area.x_px + x)) + channel] < 8)
+                continue;
+            sum += Eigen::Vector2d(x + 0.5, y + 0.5);
+            count += 1.0;
+        }
+    return count > 0.0 ? Eigen::Vector2d(sum / count) : Eigen::Vector2d(-1.0, -1.0);
+}
+
+TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_every_mode) {
+    constexpr int kOutputWidth = 900, kOutputHeight = 600;
+    constexpr float kRadiusA = 0.7F;
+    ImpostorPrograms programs;
+    EyePictures pictures;
+    SeededRandom random(21);
+    const auto within = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
+    const ScreenPlace screen = ScreenPlace::of_size(0.45, 0.30);
+    const ScenePlace scene{2e-3, quat_from_rotation_vector(Vec3(0.3, -0.2, 0.1)), Vec3(0.01, -0.02, 0.03)};
+    constexpr StereoMode kModes[] = {StereoMode::two_windows, StereoMode::side_by_side,
+                                     StereoMode::top_bottom, StereoMode::anaglyph};
+    for (int head = 0; head < 20; ++head) {
+        const StereoMode mode = kModes[head % 4];
+        const Pose pose{Vec3(within(0.25), within(0.2), 0.6 + within(0.2)),
+                        quat_from_rotation_vector(Vec3(within(0.4), within(0.4), within(0.2)))};
+        const auto eyes = eyes_of(pose, {});
+        const Vec3 place_a(within(30.0), within(20.0), within(25.0));
+        pictures.resize(mode, kOutputWidth, kOutputHeight);
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            pictures.begin(eye, Eigen::Vector3f::Zero());
+            const EyeView view = through_screen(screen, scene, eyes[eye], 60.0, Vec3::Zero());
+            ImpostorShapes shapes;
+            const AtomColours white{{255, 255, 255, 255}, {255, 255, 255, 255}};
+            shapes.fill(std::array{Sphere{{static_cast<float>(place_a.x()), static_cast<float>(place_a.y()),
+                                           static_cast<float>(place_a.z())},
+                                          kRadiusA,
+                                          white}});
+            programs.use_spheres({view.eye_from_scene, view.projection, haze_});
+            shapes.draw();
+        }
+        const bool each = mode == StereoMode::two_windows;
+        const std::vector<Image> shown = pictures.read(each);
+        ASSERT_EQ(shown.size(), each ? 2U : 1U);
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            const PixelArea area = area_of_eye(mode, eye, kOutputWidth, kOutputHeight);
+            // Where the line from the eye to the place meets the glass, which lies in z = 0.
+            const Vec3 p = scene.to_screen_m(place_a);
+            const Vec3 glass = eyes[eye] + eyes[eye].z() / (eyes[eye].z() - p.z()) * (p - eyes[eye]);
+            const Eigen::Vector2d wanted((glass.x() / 0.45 + 0.5) * area.width_px,
+                                         (glass.y() / 0.30 + 0.5) * area.height_px);
+            const Eigen::Vector2d seen = middle_of(shown[each ? eye : 0], eye == 0 ? 0 : 1, area);
+            EXPECT_LT((seen - wanted).norm(), 0.5)
+                << stereo_mode_text(mode) << ", head " << head << ", eye " << eye;
         }
     }
+}
 
-    TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come) {
-        const auto refine = [this](double level, const std::function<bool()>&) {
-            return std::make_shared<const ProgressiveMesh>(
-                make_progressive(isosurface(content_->grid, level)));
-        };
+// Pixels that differ from the background.
+std::size_t drawn(const Image& image) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+        count += (image.rgb[i] | image.rgb[i + 1] | image.rgb[i + 2]) != 0 ? 1U : 0U;
+    return count;
+}
+
+class GuiDrawScene : public GuiDraw {
+protected:
+    void SetUp() override {
+        GuiDraw::SetUp();
+        if (IsSkipped()) return;
+        const std::string path = folder_ + "/scene.tact";
+        if (!std::filesystem::exists(path)) fake::write_helix_scene(path, 16);
+        content_ = load_scene(path);
+        programs_.emplace();
+        begin_view();
+        camera_.frame(view_->radius_a());
+        options_.surface = options_.force = false;
+        layer_->frame.codebook = layer_->frame.graph = false;
+        home_ = {docking_of(*content_).bodies[0].home(), 0, 1};
+    }
+    void TearDown() override {
+        view_.reset();
+        layer_.reset();
+        programs_.reset();
+        GuiDraw::TearDown();
+    }
+    void begin_view(const RefineContour& refine = {}) {
         view_.emplace(content_, *programs_, refine);
-        options_.surface = true;
-        const double own = content_->meta.contour;
-        EXPECT_EQ(view_->vertices_max(), content_->mesh->vertices());
-        view_->approach_vertices(view_->vertices_max(), 1e9);
-        view_->upload();
-        options_.style = SurfaceStyle::solid;
-        const Image alone = picture({});
-        std::array<Contour, 3> contours;
-        contours[0].level = own;
-        contours[1].level = 0.6 * own;
-        contours[2].level = 1.4 * own;
-        view_->contours().set(contours);
-        EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
-        EXPECT_EQ(picture({}).rgb, alone.rgb);
-        ASSERT_TRUE(test::wait_for([&] {
-            view_->upload();
-            return view_->contours().state(1).final && view_->contours().state(2).final;
-        }));
-        EXPECT_EQ(view_->contours().state(1).level, 0.6 * own);
-        EXPECT_NE(picture({}).rgb, alone.rgb);  // the outer one hides it
-        const std::uint32_t most = view_->vertices_max();
-        EXPECT_GT(most, content_->mesh->vertices());
-        EXPECT_EQ(view_->vertices(), most);
-        view_->approach_vertices(most / 2, 1e9);
-        EXPECT_NEAR(static_cast<double>(view_->vertices()), 0.5 * most, 3.0);
-        // Hidden ones are not drawn and not counted.
-        contours[1].shown = contours[2].shown = false;
-        view_->contours().set(contours);
-        view_->approach_vertices(view_->vertices_max(), 1e9);
-        view_->upload();
-        EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
-        EXPECT_EQ(picture({}).rgb, alone.rgb);
+        layer_.emplace(content_, *programs_);
+        view_->set_layer(&*layer_);
     }
+    Image picture(std::span<const DrawnBody> bodies) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        ViewFrame frame{};
+        frame.width_px = kWidth;
+        frame.height_px = kHeight;
+        layer_->frame.bodies = bodies;
+        frame.hand = second_hand_;
+        view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
+                    options_, frame);
+        return read_pixels(kWidth, kHeight);
+    }
+    std::shared_ptr<const SceneContent> content_;
+    std::optional<Programs> programs_;
+    std::optional<SceneView> view_;
+    std::optional<DockingLayer> layer_;
+    ViewOptions options_;
+    DrawnBody home_;
+    std::optional<DrawnHand> second_hand_;
+};
 
-    TEST_F(GuiDrawScene, a_moved_contour_is_seen_at_every_style_and_opacity) {
-        options_.surface = true;
-        std::set<std::string> pictures;
-        Contour contour;
-        contour.level = 0.8 * content_->meta.contour;
-        view_->contours().set(std::array{contour});
-        ASSERT_TRUE(test::wait_for([&] {
-            view_->upload();
-            return view_->contours().state(0).level == contour.level;
-        }));
-        for (const auto style : {SurfaceStyle::glass, SurfaceStyle::solid, SurfaceStyle::wire})
-            for (const float opacity : {0.4F, 1.0F}) {
-                contour.style = style;
-                contour.opacity = opacity;
-                view_->contours().set(std::array{contour});
-                const Image image = picture({});
-                EXPECT_GT(drawn(image), 200U);
-                pictures.insert({image.rgb.begin(), image.rgb.end()});
+TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
+    std::set<std::string> pictures;
+    for (const auto style :
+         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
+        for (const auto colouring : {Colouring::chain, Colouring::body}) {
+            layer_->molecules().set_look({style, colouring});
+            const Image image = picture(std::array{home_});
+            EXPECT_GT(drawn(image), 100U);
+            pictures.insert({image.rgb.begin(), image.rgb.end()});
+        }
+    EXPECT_EQ(pictures.size(), 8U);
+}
+
+TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not_at_all) {
+    layer_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
+    const std::size_t one = drawn(picture(std::array{home_}));
+    DrawnBody copy = home_;
+    copy.id = 2;
+    copy.T_model_body.p_m += Vec3(0.0, 0.0, 14e-10);
+    EXPECT_GT(drawn(picture(std::array{home_, copy})), one + 50);
+    copy.hidden = true;
+    EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
+    copy.hidden = false;
+    copy.structure = 77;
+    EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
+}
+
+TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_wall_it_touches) {
+    EXPECT_EQ(drawn(picture({})), 0U);
+    const auto in_half = [](const Image& image, bool right) {
+        std::size_t count = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = right ? kWidth / 2 : 0; x < (right ? kWidth : kWidth / 2); ++x) {
+                const std::size_t at = std::size_t{3} * static_cast<std::size_t>(y * kWidth + x);
+                count += (image.rgb[at] | image.rgb[at + 1] | image.rgb[at + 2]) != 0 ? 1U : 0U;
             }
-        EXPECT_EQ(pictures.size(), 6U);
-    }
+        return count;
+    };
+    DrawnHand hand;
+    hand.T_model_hand.p_m = content_->centre_model_m + Vec3(0.5 * content_->radius_m, 0.0, 0.0);
+    second_hand_ = hand;
+    const Image right = picture({});
+    EXPECT_GT(in_half(right, true), 60U);
+    EXPECT_EQ(in_half(right, false), 0U);
+    second_hand_->T_model_hand.p_m.x() -= 1.2 * content_->radius_m;
+    EXPECT_GT(in_half(picture({}), false), 30U);
+    second_hand_ = hand;
 
-    }  // namespace
+    // It turns with the tool.
+    second_hand_->T_model_hand.q = quat_from_rotation_vector({0.0, 0.0, 2.0});
+    EXPECT_NE(picture({}).rgb, right.rgb);
+    second_hand_ = hand;
+
+    const auto force = [&](const Vec3& force_n, bool at_wall) {
+        second_hand_->force_world_n = force_n;
+        second_hand_->at_wall = at_wall;
+        return drawn(picture({}));
+    };
+    const std::size_t alone = drawn(right);
+    const std::size_t pushed = force({-0.7, 0.0, 0.0}, false);
+    EXPECT_GT(pushed, alone + 20);
+    EXPECT_GT(force({-0.7, 0.0, 0.0}, true), pushed + 10);
+    EXPECT_EQ(force(Vec3::Zero(), true), alone);  // no force says where the wall is
+    EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
+}
+
+TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
+    DrawnBody copy = home_;
+    copy.id = 2;
+    layer_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
+    const Image tube = picture(std::array{home_});
+    layer_->molecules().set_look(2, {MoleculeStyle::spheres, Colouring::chain});
+    EXPECT_EQ(picture(std::array{home_}).rgb, tube.rgb);
+    EXPECT_NE(picture(std::array{copy}).rgb, tube.rgb);
+    layer_->molecules().set_shapes_max(docking_of(*content_).bodies[0].size() - 1);
+    EXPECT_EQ(picture(std::array{copy}).rgb, tube.rgb);
+    EXPECT_EQ(layer_->molecules().left_out(), 1U);
+}
+
+TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame) {
+    const std::string path = folder_ + "/fine.tact";
+    fake::write_helix_scene(path, 64);
+    content_ = load_scene(path);
+    begin_view();
+    const std::uint32_t most = view_->vertices_max();
+    ASSERT_GT(most, 4 * MeshCut::kStepsMin);
+    view_->approach_vertices(most, 0.0);
+    view_->upload();
+    for (const std::uint32_t wanted : {most / 8, most, most / 3, most - 1, view_->vertices_min()}) {
+        view_->approach_vertices(wanted, 0.0);
+        EXPECT_EQ(view_->vertices(), wanted);
+        view_->upload();
+    }
+}
+
+TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come) {
+    const auto refine = [this](double level, const std::function<bool()>&) {
+        return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
+    };
+    begin_view(refine);
+    options_.surface = true;
+    const double own = content_->meta.contour;
+    EXPECT_EQ(view_->vertices_max(), content_->mesh->vertices());
+    view_->approach_vertices(view_->vertices_max(), 1e9);
+    view_->upload();
+    options_.style = SurfaceStyle::solid;
+    const Image alone = picture({});
+    std::array<Contour, 3> contours;
+    contours[0].level = own;
+    contours[1].level = 0.6 * own;
+    contours[2].level = 1.4 * own;
+    view_->contours().set(contours);
+    EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
+    EXPECT_EQ(picture({}).rgb, alone.rgb);
+    ASSERT_TRUE(test::wait_for([&] {
+        view_->upload();
+        return view_->contours().state(1).final && view_->contours().state(2).final;
+    }));
+    EXPECT_EQ(view_->contours().state(1).level, 0.6 * own);
+    EXPECT_NE(picture({}).rgb, alone.rgb);  // the outer one hides it
+    const std::uint32_t most = view_->vertices_max();
+    EXPECT_GT(most, content_->mesh->vertices());
+    EXPECT_EQ(view_->vertices(), most);
+    view_->approach_vertices(most / 2, 1e9);
+    EXPECT_NEAR(static_cast<double>(view_->vertices()), 0.5 * most, 3.0);
+    // Hidden ones are not drawn and not counted.
+    contours[1].shown = contours[2].shown = false;
+    view_->contours().set(contours);
+    view_->approach_vertices(view_->vertices_max(), 1e9);
+    view_->upload();
+    EXPECT_EQ(view_->vertices(), content_->mesh->vertices());
+    EXPECT_EQ(picture({}).rgb, alone.rgb);
+}
+
+TEST_F(GuiDrawScene, a_moved_contour_is_seen_at_every_style_and_opacity) {
+    options_.surface = true;
+    std::set<std::string> pictures;
+    Contour contour;
+    contour.level = 0.8 * content_->meta.contour;
+    view_->contours().set(std::array{contour});
+    ASSERT_TRUE(test::wait_for([&] {
+        view_->upload();
+        return view_->contours().state(0).level == contour.level;
+    }));
+    for (const auto style : {SurfaceStyle::glass, SurfaceStyle::solid, SurfaceStyle::wire})
+        for (const float opacity : {0.4F, 1.0F}) {
+            contour.style = style;
+            contour.opacity = opacity;
+            view_->contours().set(std::array{contour});
+            const Image image = picture({});
+            EXPECT_GT(drawn(image), 200U);
+            pictures.insert({image.rgb.begin(), image.rgb.end()});
+        }
+    EXPECT_EQ(pictures.size(), 6U);
+}
+
+}  // namespace
 }  // namespace tact

@@ -6,198 +6,198 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-include "gui/window/load_scene.hpp"
 #include "gui/drilling/drill_controller.hpp"
+#include "gui/window/load_scene.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-    namespace tact {
-    namespace {
+namespace tact {
+namespace {
 
-    constexpr double kVoxelM = 5e-4;
+constexpr double kVoxelM = 5e-4;
 
-    // 16 mm of bone. From x = 10 mm on it is a nerve.
-    void write_ear(const std::filesystem::path& path) {
-        BoneBricks bricks;
-        bricks.size = {32, 32, 32};
-        bricks.voxel_m = kVoxelM;
-        std::vector<std::uint8_t> density(bricks.bytes(), 200), label(bricks.bytes(), 0);
-        for (std::uint32_t z = 0; z < 32; ++z)
-            for (std::uint32_t y = 0; y < 32; ++y)
-                for (std::uint32_t x = 20; x < 32; ++x) label[bricks.voxel(x, y, z)] = 1;
-        DistanceField field;
-        field.label = 1;
-        field.size = {17, 17, 17};
-        field.spacing_m = 1e-3;
-        field.quantum_m = 1e-5;
-        field.error_m = 1e-4;
-        std::vector<std::int16_t> quanta;
-        for (int i = 0; i < 17 * 17 * 17; ++i)
-            quanta.push_back(static_cast<std::int16_t>(1000 - 100 * (i % 17)));
-        field.quanta = quanta;
-        SceneMeta meta{};
-        meta.kind = SceneKind::drilling;
-        meta.world_per_model = 1.0;
-        SceneWriter out;
-        BoneVolumeView volume;
-        volume.bricks = bricks;
-        volume.density = density;
-        write_bone_volume(out, volume);
-        write_distance_field(out, 0, field);
-        BoneLabelsView labels;
-        labels.structure = {{"facial nerve", {255, 221, 64, 255}, true}};
-        labels.label = label;
-        write_bone_labels(out, bricks, labels);
-        write_meta(out, meta, "bone: made by a test\n");
-        out.write(path);
+// 16 mm of bone. From x = 10 mm on it is a nerve.
+void write_ear(const std::filesystem::path& path) {
+    BoneBricks bricks;
+    bricks.size = {32, 32, 32};
+    bricks.voxel_m = kVoxelM;
+    std::vector<std::uint8_t> density(bricks.bytes(), 200), label(bricks.bytes(), 0);
+    for (std::uint32_t z = 0; z < 32; ++z)
+        for (std::uint32_t y = 0; y < 32; ++y)
+            for (std::uint32_t x = 20; x < 32; ++x) label[bricks.voxel(x, y, z)] = 1;
+    DistanceField field;
+    field.label = 1;
+    field.size = {17, 17, 17};
+    field.spacing_m = 1e-3;
+    field.quantum_m = 1e-5;
+    field.error_m = 1e-4;
+    std::vector<std::int16_t> quanta;
+    for (int i = 0; i < 17 * 17 * 17; ++i) quanta.push_back(static_cast<std::int16_t>(1000 - 100 * (i % 17)));
+    field.quanta = quanta;
+    SceneMeta meta{};
+    meta.kind = SceneKind::drilling;
+    meta.world_per_model = 1.0;
+    SceneWriter out;
+    BoneVolumeView volume;
+    volume.bricks = bricks;
+    volume.density = density;
+    write_bone_volume(out, volume);
+    write_distance_field(out, 0, field);
+    BoneLabelsView labels;
+    labels.structure = {{"facial nerve", {255, 221, 64, 255}, true}};
+    labels.label = label;
+    write_bone_labels(out, bricks, labels);
+    write_meta(out, meta, "bone: made by a test\n");
+    out.write(path);
+}
+
+class DrillControllerTest : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "tact-desk-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+        setenv("TACT_RUNTIME_DIR", name.c_str(), 1);
+        write_ear(folder_ / "ear.tact");
+        content_ = load_scene(folder_ / "ear.tact");
+        running_.emplace("desk", (folder_ / "ear.tact").string(), content_->checksum);
+        own_.mark_ready();
+        gui_.emplace("desk", own_.fd());
+        desk_.use(content_);
     }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    class DrillControllerTest : public testing::Test {
-    protected:
-        void SetUp() override {
-            std::string name = (std::filesystem::temp_directory_path() / "tact-desk-XXXXXX").string();
-            ASSERT_NE(mkdtemp(name.data()), nullptr);
-            folder_ = name;
-            setenv("TACT_RUNTIME_DIR", name.c_str(), 1);
-            write_ear(folder_ / "ear.tact");
-            content_ = load_scene(folder_ / "ear.tact");
-            running_.emplace("desk", (folder_ / "ear.tact").string(), content_->checksum);
-            own_.mark_ready();
-            gui_.emplace("desk", own_.fd());
-            desk_.use(content_);
+    void attach() {
+        for (int i = 0; i < 2000 && !gui_->attached(); ++i) {
+            running_->serve(2);
+            if (gui_->poll().arrived) desk_.meet();
         }
-        void TearDown() override { std::filesystem::remove_all(folder_); }
-
-        void attach() {
-            for (int i = 0; i < 2000 && !gui_->attached(); ++i) {
-                running_->serve(2);
-                if (gui_->poll().arrived) desk_.meet();
-            }
-            ASSERT_TRUE(gui_->attached());
+        ASSERT_TRUE(gui_->attached());
+    }
+    // The burr's centre; its radius is 2 mm.
+    void burr(double x_m, bool turns) {
+        ms_ += 20;
+        DrillTopic t{};
+        t.taken_at_ns = 1'000'000LL * ms_;
+        t.level_m3 = std::pow(kVoxelM, 3) / 255.0;
+        t.removed_levels = 2550;
+        DrillHand& h = t.hand[0];
+        h.kind = DrillKind::burr;
+        h.pos_model_m[0] = x_m;
+        h.pos_model_m[1] = h.pos_model_m[2] = 8e-3;
+        h.quat_model_tool_xyzw[3] = 1.0;
+        h.radius_m = h.tip_radius_m = 2e-3F;
+        h.length_m = 4e-3F;
+        h.burr_rad_s = turns ? 6283.1853F : 0.0F;
+        h.irrigation = turns ? 1.0F : 0.0F;
+        t.hand[1] = h;
+        t.hand[1].kind = DrillKind::suction_tube;
+        t.hand[1].pos_model_m[0] = 4e-3;
+        t.hand[1].burr_rad_s = t.hand[1].irrigation = 0.0F;
+        t.hand[1].suction = 1.0F;
+        running_->region().drill.publish(t);
+        for (int i = 20; i > 0; --i) {
+            TraceTopic c{};
+            c.taken_at_ns = 1'000'000LL * (ms_ - i);
+            c.pos_world_m[0] = static_cast<float>(x_m);
+            c.pos_world_m[1] = c.pos_world_m[2] = 8e-3F;
+            c.status = turns ? kTraceBurrTurns : 0U;
+            running_->region().trace.push(c);
         }
-        // The burr's centre; its radius is 2 mm.
-        void burr(double x_m, bool turns) {
-            ms_ += 20;
-            DrillTopic t{};
-            t.taken_at_ns = 1'000'000LL * ms_;
-            t.level_m3 = std::pow(kVoxelM, 3) / 255.0;
-            t.removed_levels = 2550;
-            DrillHand& h = t.hand[0];
-            h.kind = DrillKind::burr;
-            h.pos_model_m[0] = x_m;
-            h.pos_model_m[1] = h.pos_model_m[2] = 8e-3;
-            h.quat_model_tool_xyzw[3] = 1.0;
-            h.radius_m = h.tip_radius_m = 2e-3F;
-            h.length_m = 4e-3F;
-            h.burr_rad_s = turns ? 6283.1853F : 0.0F;
-            h.irrigation = turns ? 1.0F : 0.0F;
-            t.hand[1] = h;
-            t.hand[1].kind = DrillKind::suction_tube;
-            t.hand[1].pos_model_m[0] = 4e-3;
-            t.hand[1].burr_rad_s = t.hand[1].irrigation = 0.0F;
-            t.hand[1].suction = 1.0F;
-            running_->region().drill.publish(t);
-            for (int i = 20; i > 0; --i) {
-                TraceTopic c{};
-                c.taken_at_ns = 1'000'000LL * (ms_ - i);
-                c.pos_world_m[0] = static_cast<float>(x_m);
-                c.pos_world_m[1] = c.pos_world_m[2] = 8e-3F;
-                c.status = turns ? kTraceBurrTurns : 0U;
-                running_->region().trace.push(c);
-            }
-            frame({});
-        }
-        void frame(std::span<const BrickChange> changes) {
-            static_cast<void>(gui_->read());
-            desk_.follow(*gui_, changes, state_);
-        }
-        [[nodiscard]] long said(const std::string& text) const {
-            return std::count_if(state_.events.begin(), state_.events.end(),
-                                 [&](const EventLine& e) { return e.text == text; });
-        }
-
-        std::filesystem::path folder_;
-        std::shared_ptr<const SceneContent> content_;
-        std::optional<fake::Controller> running_;
-        OwnedRegion<GuiRegion> own_;
-        std::optional<Controller> gui_;
-        DrillController desk_;
-        DashboardState state_;
-        int ms_ = 0;
-    };
-
-    TEST_F(DrillControllerTest, shows_tools_and_distances_in_the_hands_space) {
         frame({});
-        EXPECT_FALSE(state_.drilling.known);
-        EXPECT_TRUE(state_.drilling.labelled);
-        attach();
-        burr(5e-3, true);
-        const DrillingState& d = state_.drilling;
-        ASSERT_TRUE(d.known);
-        EXPECT_NEAR(d.burr.diameter_m, 4e-3, 1e-8);
-        EXPECT_NEAR(d.burr.rpm, 60000.0, 0.1);
-        EXPECT_TRUE(d.burr.water && !d.burr.suction);
-        EXPECT_TRUE(d.suction_tube.there && d.suction_tube.suction && !d.suction_tube.water);
-        EXPECT_NEAR(d.removed_m3, 10.0 * std::pow(kVoxelM, 3), 1e-15);
-        ASSERT_EQ(d.structures.size(), 1U);
-        EXPECT_EQ(d.structures[0].name, "facial nerve");
-        EXPECT_NEAR(d.structures[0].burr_m, 3e-3, 2e-5);
-        EXPECT_NEAR(d.structures[0].suction_tube_m, 4e-3, 2e-5);
-        EXPECT_TRUE(state_.events.empty());
+    }
+    void frame(std::span<const BrickChange> changes) {
+        static_cast<void>(gui_->read());
+        desk_.follow(*gui_, changes, state_, drilling_);
+    }
+    [[nodiscard]] long said(const std::string& text) const {
+        return std::count_if(state_.events.begin(), state_.events.end(),
+                             [&](const EventLine& e) { return e.text == text; });
     }
 
-    TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after_it_was_away) {
-        attach();
-        burr(6.2e-3, false);  // 1.8 mm, and it stands
-        EXPECT_TRUE(state_.events.empty());
-        burr(5e-3, true);
-        for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
-        EXPECT_EQ(said("burr 1.8 mm from the facial nerve"), 1);
-        EXPECT_EQ(state_.events.front().grade, Grade::watch);
-        for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
-        EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 1);
-        EXPECT_EQ(state_.events.front().grade, Grade::bad);
-        burr(6.9e-3, true);  // 1.1 mm: not yet away
-        burr(7.1e-3, true);
-        EXPECT_EQ(state_.events.size(), 2U);
-        burr(6.5e-3, true);
-        burr(7.1e-3, true);
-        EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 2);
-        burr(8.5e-3, true);  // still red
-        EXPECT_EQ(state_.events.size(), 3U);
-    }
+    std::filesystem::path folder_;
+    std::shared_ptr<const SceneContent> content_;
+    std::optional<fake::Controller> running_;
+    OwnedRegion<GuiRegion> own_;
+    std::optional<Controller> gui_;
+    DrillController desk_;
+    DashboardState state_;
+    DrillingState drilling_;
+    int ms_ = 0;
+};
 
-    TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
-        attach();
-        burr(6e-3, true);
-        std::vector<std::uint8_t> before(BoneBricks::kVoxels, 200), after = before;
-        after[5] = 100;  // of the third brick: the nerve
-        const BrickChange change{2, before, after, true};
-        frame({&change, 1});
-        EXPECT_EQ(said("facial nerve cut"), 1);
-        EXPECT_EQ(state_.drilling.injuries, 1U);
-        const auto file = folder_ / "report.json";
-        desk_.save("", std::nullopt);
-        EXPECT_FALSE(std::filesystem::exists(file));
-        desk_.save(file.string(), BurrVisibility{4.0, 3.0});
-        std::ifstream in(file);
-        const auto report = nlohmann::json::parse(in);
-        EXPECT_EQ(report["injuries"], 1);
-        EXPECT_EQ(report["burr_visible_share"], 0.75);
-        EXPECT_EQ(report["structures"][0]["injuries"], 1);
-        EXPECT_GT(report["drilling_s"].get<double>(), 0.015);
-    }
+TEST_F(DrillControllerTest, shows_tools_and_distances_in_the_hands_space) {
+    frame({});
+    EXPECT_FALSE(drilling_.known);
+    EXPECT_TRUE(drilling_.labelled);
+    attach();
+    burr(5e-3, true);
+    const DrillingState& d = drilling_;
+    ASSERT_TRUE(d.known);
+    EXPECT_NEAR(d.burr.diameter_m, 4e-3, 1e-8);
+    EXPECT_NEAR(d.burr.rpm, 60000.0, 0.1);
+    EXPECT_TRUE(d.burr.water && !d.burr.suction);
+    EXPECT_TRUE(d.suction_tube.there && d.suction_tube.suction && !d.suction_tube.water);
+    EXPECT_NEAR(d.removed_m3, 10.0 * std::pow(kVoxelM, 3), 1e-15);
+    ASSERT_EQ(d.structures.size(), 1U);
+    EXPECT_EQ(d.structures[0].name, "facial nerve");
+    EXPECT_NEAR(d.structures[0].burr_m, 3e-3, 2e-5);
+    EXPECT_NEAR(d.structures[0].suction_tube_m, 4e-3, 2e-5);
+    EXPECT_TRUE(state_.events.empty());
+}
 
-    TEST_F(DrillControllerTest, cycles_that_nobody_saw_are_counted) {
-        attach();
-        burr(5e-3, true);
-        TraceTopic c{};
-        for (int i = 0; i < 20000; ++i) running_->region().trace.push(c);  // more than the ring holds
-        frame({});
-        const auto file = folder_ / "report.json";
-        desk_.save(file.string(), std::nullopt);
-        std::ifstream in(file);
-        EXPECT_GT(nlohmann::json::parse(in)["unseen_cycles"].get<int>(), 3000);
-    }
+TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after_it_was_away) {
+    attach();
+    burr(6.2e-3, false);  // 1.8 mm, and it stands
+    EXPECT_TRUE(state_.events.empty());
+    burr(5e-3, true);
+    for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
+    EXPECT_EQ(said("burr 1.8 mm from the facial nerve"), 1);
+    EXPECT_EQ(state_.events.front().grade, Grade::watch);
+    for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
+    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 1);
+    EXPECT_EQ(state_.events.front().grade, Grade::bad);
+    burr(6.9e-3, true);  // 1.1 mm: not yet away
+    burr(7.1e-3, true);
+    EXPECT_EQ(state_.events.size(), 2U);
+    burr(6.5e-3, true);
+    burr(7.1e-3, true);
+    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 2);
+    burr(8.5e-3, true);  // still red
+    EXPECT_EQ(state_.events.size(), 3U);
+}
 
-    }  // namespace
+TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
+    attach();
+    burr(6e-3, true);
+    std::vector<std::uint8_t> before(BoneBricks::kVoxels, 200), after = before;
+    after[5] = 100;  // of the third brick: the nerve
+    const BrickChange change{2, before, after, true};
+    frame({&change, 1});
+    EXPECT_EQ(said("facial nerve cut"), 1);
+    EXPECT_EQ(drilling_.injuries, 1U);
+    const auto file = folder_ / "report.json";
+    desk_.save("", std::nullopt);
+    EXPECT_FALSE(std::filesystem::exists(file));
+    desk_.save(file.string(), BurrVisibility{4.0, 3.0});
+    std::ifstream in(file);
+    const auto report = nlohmann::json::parse(in);
+    EXPECT_EQ(report["injuries"], 1);
+    EXPECT_EQ(report["burr_visible_share"], 0.75);
+    EXPECT_EQ(report["structures"][0]["injuries"], 1);
+    EXPECT_GT(report["drilling_s"].get<double>(), 0.015);
+}
+
+TEST_F(DrillControllerTest, cycles_that_nobody_saw_are_counted) {
+    attach();
+    burr(5e-3, true);
+    TraceTopic c{};
+    for (int i = 0; i < 20000; ++i) running_->region().trace.push(c);  // more than the ring holds
+    frame({});
+    const auto file = folder_ / "report.json";
+    desk_.save(file.string(), std::nullopt);
+    std::ifstream in(file);
+    EXPECT_GT(nlohmann::json::parse(in)["unseen_cycles"].get<int>(), 3000);
+}
+
+}  // namespace
 }  // namespace tact
