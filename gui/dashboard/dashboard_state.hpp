@@ -44,13 +44,9 @@ struct SceneState {
     std::uint32_t vertices_max = 0;
     double mesh_error_m = 0.0;
     std::size_t bodies = 0, atoms = 0;
-    std::array<std::uint32_t, 3> voxels{};                           // of a map, or of bone
-    double voxel_m = 0.0;                                            // edge, of bone
-    std::string warning;                                             // the controller runs another scene, ...
-    bool surface = false;                                            // to touch: no map, no bodies
-    bool bone = false;                                               // to drill: likewise
-    float bone_shown = 1.0F;                                         // share of it that is in graphics memory
-    [[nodiscard]] bool placed() const { return !surface && !bone; }  // there are bodies to place and to fit
+    std::array<std::uint32_t, 3> voxels{};  // of a map, or of bone
+    double voxel_m = 0.0;                   // edge, of bone
+    std::string warning;                    // the controller runs another scene, ...
 };
 
 struct EventLine {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "gui/render/bonds.hpp"
+#include "gui/docking/bonds.hpp"
 #include "ipc/scene/density/structure.hpp"
 
 namespace tact {

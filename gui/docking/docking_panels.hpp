@@ -10,6 +10,7 @@
 
 #include "gui/dashboard/dashboard_state.hpp"
 #include "gui/dashboard/pixel_rect.hpp"
+#include "gui/system/system_panels.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
 
@@ -83,9 +84,19 @@ struct ContourRowState {
     std::size_t dragged = kNone, removed = kNone;
 };
 
-// A card of its own.
-void draw_fit(const Theme& theme, const FitState& fit, const PixelRect& card);
-// Inside the scene's card.
+class DockingPanels : public SystemPanels {
+public:
+    FitState fit;
+    FittingState fitting;
+    ContourRowState contours;
+
+    [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
+    void draw_card(const Theme& theme, const PixelRect& card) const override;  // of the fit
+    void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
+    [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
+};
+
+// The scene card's tabs.
 void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& fitting);
 void draw_contours_tab(const Theme& theme, ContourRowState& contours);
 

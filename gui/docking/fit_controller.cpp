@@ -1,5 +1,7 @@
 #include "gui/docking/fit_controller.hpp"
 
+#include "gui/docking/docking_content.hpp"
+
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -39,7 +41,7 @@ nlohmann::ordered_json poses_json(const BodyList& list, const SceneContent& cont
         const Eigen::Vector4d q = b.newest.q.coeffs();
         bodies.push_back({{"id", b.id},
                           {"structure", b.structure},
-                          {"name", content.bodies[b.structure].name},
+                          {"name", docking_of(content).bodies[b.structure].name},
                           {"pos_model_a", {p.x(), p.y(), p.z()}},
                           {"quat_model_body_xyzw", {q.x(), q.y(), q.z(), q.w()}}});
     }
@@ -69,7 +71,7 @@ void FitController::use(std::shared_ptr<const SceneContent> content) {
     outcome_ = {};
     history_.clear();
     said_.clear();
-    if (content_->grid.values.empty() || content_->bodies.empty()) return;
+    if (!content_ || content_->grid.values.empty() || docking_of(*content_).bodies.empty()) return;
     fit_ = std::make_unique<FitWorker>(content_);
     refine_ = std::make_unique<RefineWorker>(content_);
 }
@@ -165,7 +167,7 @@ void FitController::act(const FitRequest& request, const BodyList& list, std::ve
 
 // Beside the last copy, where it is seen and does not overlap.
 void FitController::copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands) {
-    const Structure& s = content_->bodies[body.structure];
+    const Structure& s = docking_of(*content_).bodies[body.structure];
     float reach_m = 0.0F;
     for (const float x : s.x_m) reach_m = std::max(reach_m, std::abs(x));
     const auto copies = std::count_if(list.bodies().begin(), list.bodies().end(),
@@ -200,7 +202,7 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     const auto active = list.active();
     for (std::size_t i = 0; i < list.bodies().size() && content_; ++i) {
         const ShownBody& b = list.bodies()[i];
-        const Structure& s = content_->bodies[b.structure];
+        const Structure& s = docking_of(*content_).bodies[b.structure];
         BodyState f;
         f.id = b.id;
         f.name = s.name;
@@ -230,7 +232,7 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     const std::uint32_t held = active ? list.bodies()[*active].id : 0;
     if (active && topic != nullptr) {
         const ShownBody& b = list.bodies()[*active];
-        const Pose home = content_->bodies[b.structure].home();
+        const Pose home = docking_of(*content_).bodies[b.structure].home();
         fit.pose_known = true;
         fit.from_file_m = (b.newest.p_m - home.p_m).norm();
         fit.from_file_rad = rotation_vector_rad(b.newest.q).norm();

@@ -21,7 +21,7 @@ namespace tact {
 
 class FitController {
 public:
-    // Another scene: everything begins anew.
+    // Another scene, or none: everything begins anew.
     void use(std::shared_ptr<const SceneContent> content);
     // Once a frame; topic: of the attached controller, or null. Commands that became due are added.
     void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);

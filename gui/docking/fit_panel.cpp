@@ -24,7 +24,8 @@ void metrics(const Theme& theme, const FitMetrics& m) {
 
 }  // namespace
 
-void draw_fit(const Theme& theme, const FitState& f, const PixelRect& card) {
+void DockingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+    const FitState& f = fit;
     begin_card(theme, "Fit", card);
     if (f.known) {
         ImGui::SameLine(0.0F, theme.px(10.0F));

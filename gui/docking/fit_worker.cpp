@@ -1,5 +1,7 @@
 #include "gui/docking/fit_worker.hpp"
 
+#include "gui/docking/docking_content.hpp"
+
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -36,7 +38,7 @@ void FitWorker::request(std::span<const FitBody> bodies) {
         const std::lock_guard lock(mutex_);
         requested_.clear();
         std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(requested_),
-                     [&](const FitBody& b) { return b.structure < content_->bodies.size(); });
+                     [&](const FitBody& b) { return b.structure < docking_of(*content_).bodies.size(); });
     }
     changed_.notify_all();
 }
@@ -78,7 +80,8 @@ FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
         outcome.resolution_assumed = true;
     }
     std::vector<PlacedStructure> placed;
-    for (const FitBody& b : bodies) placed.push_back({&content_->bodies[b.structure], b.T_model_body});
+    for (const FitBody& b : bodies)
+        placed.push_back({&docking_of(*content_).bodies[b.structure], b.T_model_body});
     outcome.body = std::move(bodies);
     try {
         FitOfBodies fit = fit_of_bodies(content_->grid, placed,

@@ -1,19 +1,14 @@
 #include "gui/docking/molecules.hpp"
 
+#include "gui/docking/docking_content.hpp"
+
+#include "gui/render/scene_frame.hpp"
 #include "gui/render/tube.hpp"
-#include "ipc/base/units.hpp"
 
 namespace tact {
 
-Eigen::Matrix4f scene_from_body(const Pose& T_model_body, const Vec3& centre_m) {
-    Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
-    m.topLeftCorner<3, 3>() = T_model_body.q.toRotationMatrix().cast<float>();
-    m.topRightCorner<3, 1>() = ((T_model_body.p_m - centre_m) / kAngstromM).cast<float>();
-    return m;
-}
-
 Molecules::Molecules(std::shared_ptr<const SceneContent> content, Programs& programs)
-    : content_(std::move(content)), programs_(programs), structures_(content_->bodies.size()) {}
+    : content_(std::move(content)), programs_(programs), structures_(docking_of(*content_).bodies.size()) {}
 
 void Molecules::set_look(const MoleculeLook& look) {
     look_ = look;
@@ -29,7 +24,7 @@ MoleculeLook Molecules::look(std::uint32_t id) const {
 
 ImpostorShapes& Molecules::shapes(std::size_t structure, MoleculeStyle style) {
     OfStructure& s = structures_[structure];
-    const Structure& atoms = content_->bodies[structure];
+    const Structure& atoms = docking_of(*content_).bodies[structure];
     ImpostorShapes& wanted = style == MoleculeStyle::spheres  ? s.spheres
                              : style == MoleculeStyle::sticks ? s.sticks
                                                               : s.trace;
@@ -37,7 +32,7 @@ ImpostorShapes& Molecules::shapes(std::size_t structure, MoleculeStyle style) {
     if (style == MoleculeStyle::spheres)
         wanted.fill(spheres_of(atoms));
     else if (style == MoleculeStyle::sticks)
-        wanted.fill(sticks_of(atoms, content_->bonds[structure]));
+        wanted.fill(sticks_of(atoms, docking_of(*content_).bonds[structure]));
     else
         wanted.fill(trace_of(atoms));
     return wanted;
@@ -57,7 +52,7 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
             continue;
         }
         // Told by the atoms before anything is made for them.
-        const std::size_t atoms = content_->bodies[body.structure].size();
+        const std::size_t atoms = docking_of(*content_).bodies[body.structure].size();
         const std::size_t shapes_drawn = l.style == MoleculeStyle::trace ? 0 : atoms;
         if (shapes_drawn > room) {
             ++left_out_;
@@ -79,7 +74,7 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
 void Molecules::draw_tube(std::size_t structure, const ImpostorView& view) {
     TriangleBuffers& tube = structures_[structure].tube;
     if (tube.indices() == 0)
-        tube.fill(build_tubes(content_->bodies[structure], kTubeVertices / structures_.size()),
+        tube.fill(build_tubes(docking_of(*content_).bodies[structure], kTubeVertices / structures_.size()),
                   GL_STATIC_DRAW);
     Paint paint;
     if (view.colouring == Colouring::body)

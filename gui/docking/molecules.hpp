@@ -66,7 +66,4 @@ private:
     std::size_t shapes_max_ = kNoLimit, left_out_ = 0;
 };
 
-// From the body frame in ångström to the scene frame (gui/render/camera.hpp) about this centre.
-[[nodiscard]] Eigen::Matrix4f scene_from_body(const Pose& T_model_body, const Vec3& centre_model_m);
-
 }  // namespace tact

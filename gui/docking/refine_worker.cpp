@@ -1,5 +1,7 @@
 #include "gui/docking/refine_worker.hpp"
 
+#include "gui/docking/docking_content.hpp"
+
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -24,7 +26,7 @@ RefineOutcome RefineWorker::work(const FitBody& body) {
     try {
         const SceneMeta& meta = content_->meta;
         if (!map_) map_ = std::make_unique<DensityMap>(content_->grid, meta.map_background, meta.map_sigma);
-        outcome.result = refine(*map_, content_->bodies.at(body.structure), body.T_model_body, {},
+        outcome.result = refine(*map_, docking_of(*content_).bodies.at(body.structure), body.T_model_body, {},
                                 [this](std::uint32_t, double) { return !cancelled_.load(); });
     } catch (const std::exception& e) {
         outcome.error = e.what();

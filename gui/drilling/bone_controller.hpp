@@ -10,7 +10,6 @@
 
 #include "gui/drilling/bone_follower.hpp"
 #include "gui/link/controller.hpp"
-#include "gui/render/scene_content.hpp"
 
 namespace tact {
 

@@ -33,14 +33,13 @@ std::array<float, 12> quad(const BoneFrame& of, const PixelBox& b) {
 
 }  // namespace
 
-BoneView::BoneView(const SceneContent& content, const BoneVolumeView& now)
-    : field_(content.bone->volume, content.bone->labels, now, content.bone->free_cells),
-      textures_(field_, content.bone->labels.structure),
+BoneView::BoneView(const BoneContent& bone, const Vec3& centre_model_m, const BoneVolumeView& now)
+    : field_(bone.volume, bone.labels, now, bone.free_cells),
+      textures_(field_, bone.labels.structure),
       scene_from_voxels_(Eigen::Matrix4f::Identity()) {
     const BoneBricks& b = now.bricks;
     scene_from_voxels_.topLeftCorner<3, 3>() *= static_cast<float>(b.voxel_m / kAngstromM);
-    scene_from_voxels_.topRightCorner<3, 1>() =
-        ((b.origin_m - content.centre_model_m) / kAngstromM).cast<float>();
+    scene_from_voxels_.topRightCorner<3, 1>() = ((b.origin_m - centre_model_m) / kAngstromM).cast<float>();
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, corners_.get());
     attribute(0, 2, GL_FLOAT, GL_FALSE, 8, 0);

@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "gui/drilling/bone_content.hpp"
 #include "gui/drilling/bone_program.hpp"
 #include "gui/drilling/bone_tiles.hpp"
-#include "gui/render/scene_content.hpp"
 
 namespace tact {
 
@@ -29,8 +29,8 @@ struct BoneFrame {
 
 class BoneView {
 public:
-    // All must outlive it; `now` is the bone as it is drilled.
-    BoneView(const SceneContent& content, const BoneVolumeView& now);
+    // All must outlive it; `now` is the bone as it is drilled. centre_model_m: origin of the scene frame.
+    BoneView(const BoneContent& bone, const Vec3& centre_model_m, const BoneVolumeView& now);
     // Its densities in `now` are others than at the last call, or at the start.
     void changed(std::uint32_t brick);
     // Throws StartupError: no room for it in graphics memory, of which it takes some at each of its first calls.

@@ -40,8 +40,9 @@ void DrillController::use(std::shared_ptr<const SceneContent> content) {
     metrics_.reset();
     watch_.reset();
     content_ = std::move(content);
-    if (!content_->bone) return;
-    const SceneBoneContent& bone = *content_->bone;
+    bone_ = content_ ? content_->of<BoneContent>() : nullptr;
+    if (bone_ == nullptr) return;
+    const BoneContent& bone = *bone_;
     watch_ = std::make_unique<StructureWatch>(bone.distances, content_->meta.world_per_model);
     metrics_ =
         std::make_unique<DrillMetrics>(bone.volume.bricks, bone.labels, bone.distances, content_->meta);
@@ -64,13 +65,12 @@ void DrillController::take_cycles(Controller& controller) {
 void DrillController::take_bricks(std::span<const BrickChange> changes, DashboardState& state) {
     for (const BrickChange& c : changes) {
         const std::uint8_t injured = metrics_->brick(c.brick, c.before, c.after, c.cut_now);
-        if (injured != 0)
-            say(state, content_->bone->labels.structure[injured - 1U].name + " cut", Grade::bad);
+        if (injured != 0) say(state, bone_->labels.structure[injured - 1U].name + " cut", Grade::bad);
     }
 }
 
 void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, DrillingState& state) {
-    const BoneLabelsView& labels = content_->bone->labels;
+    const BoneLabelsView& labels = bone_->labels;
     state.burr = tool_facts(drill.hand[0]);
     state.suction_tube = tool_facts(drill.hand[1]);
     state.removed_m3 = drill.level_m3 * static_cast<double>(drill.removed_levels);
@@ -106,7 +106,7 @@ void DrillController::follow(Controller& controller, std::span<const BrickChange
         state = {};
         return;
     }
-    state.labelled = !content_->bone->labels.structure.empty();
+    state.labelled = !bone_->labels.structure.empty();
     state.known = controller.attached() && controller.have_drill;
     if (state.known) metrics_->tools(controller.drill);
     take_cycles(controller);
@@ -127,7 +127,7 @@ void DrillController::follow(Controller& controller, std::span<const BrickChange
 
 void DrillController::save(const std::string& path, const std::optional<BurrVisibility>& visibility) const {
     if (path.empty() || !metrics_) return;
-    write_drill_report(path, drill_report(metrics_->metrics(), content_->bone->labels, visibility));
+    write_drill_report(path, drill_report(metrics_->metrics(), bone_->labels, visibility));
 }
 
 }  // namespace tact

@@ -11,17 +11,17 @@
 #include <string>
 
 #include "gui/dashboard/dashboard_state.hpp"
+#include "gui/drilling/bone_content.hpp"
 #include "gui/drilling/bone_follower.hpp"
 #include "gui/drilling/drill_report.hpp"
 #include "gui/drilling/drilling_panel.hpp"
 #include "gui/link/controller.hpp"
-#include "gui/render/scene_content.hpp"
 
 namespace tact {
 
 class DrillController {
 public:
-    void use(std::shared_ptr<const SceneContent> content);
+    void use(std::shared_ptr<const SceneContent> content);  // null: none
     // A controller came: its cycles and its tools are others.
     void meet() { missed_ = 0; }
     void follow(Controller& controller, std::span<const BrickChange> changes, DashboardState& dashboard,
@@ -38,6 +38,7 @@ private:
     void say(DashboardState& state, std::string text, Grade grade) const;
 
     std::shared_ptr<const SceneContent> content_;
+    const BoneContent* bone_ = nullptr;  // of it
     std::unique_ptr<StructureWatch> watch_;
     std::unique_ptr<DrillMetrics> metrics_;
     std::vector<Nearness> nearness_;  // of the burr, by field

@@ -60,7 +60,8 @@ void tip(const DrillingState& d) {
 
 }  // namespace
 
-void draw_drilling(const Theme& theme, const DrillingState& d, const PixelRect& card) {
+void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+    const DrillingState& d = drilling;
     begin_card(theme, "Drilling", card, true);
     if (!d.known) {
         text_small(theme, colour::kDim, "no tool yet: it comes with the controller");
@@ -82,6 +83,25 @@ void draw_drilling(const Theme& theme, const DrillingState& d, const PixelRect& 
         }
     }
     end_card();
+}
+
+void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) {
+    const SceneState& s = state.scene;
+    row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
+        format("of %.3g mm", 1e3 * s.voxel_m));
+    row(theme, "File", s.file, "");
+    ImGui::Checkbox("Frame times", &state.toggles.frame_times);
+    ImGui::SameLine(theme.px(130.0F));
+    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
+}
+
+std::string DrillingPanels::drawn_text(const DashboardState& state) const {
+    std::string text;
+    if (bone_shown < 1.0F) text = format("loading bone, %.0f %%   ", 100.0 * static_cast<double>(bone_shown));
+    // Only what changed is drawn again.
+    text += state.load.vertices_drawn <= 1 ? std::string("sharp")
+                                           : format("%s rays", grouped(state.load.vertices_drawn).c_str());
+    return text + format("   %s particles", grouped(state.load.particles).c_str());
 }
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// The card of drilling: plain data that the window fills.
+// The panels of drilling: plain data that the window fills.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -9,6 +9,7 @@
 
 #include "gui/dashboard/pixel_rect.hpp"
 #include "gui/dashboard/theme.hpp"
+#include "gui/system/system_panels.hpp"
 
 namespace tact {
 
@@ -37,6 +38,15 @@ struct DrillingState {
     std::vector<Structure> structures;  // to keep away from, the nearest first
 };
 
-void draw_drilling(const Theme& theme, const DrillingState& drilling, const PixelRect& card);
+class DrillingPanels : public SystemPanels {
+public:
+    DrillingState drilling;
+    float bone_shown = 1.0F;  // share of the bone that is in graphics memory
+
+    [[nodiscard]] CardSize card_size() const override { return {300.0F, 0.37F}; }
+    void draw_card(const Theme& theme, const PixelRect& card) const override;
+    void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
+    [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
+};
 
 }  // namespace tact

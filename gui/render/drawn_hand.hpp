@@ -3,7 +3,7 @@
 // Pen      tip where the hand is, held as a right hand holds it. Of a second hand violet, so that it is neither a body
 //          nor the first hand's force; the only hand's is of steel, and its force has the force's colour
 // Wall     two rings in the plane of the wall that pushes the tip back, and an arrow for the force
-// Frame    scene, ångström. Pure functions; gui/window/scene_view.cpp draws what they give.
+// Frame    scene, ångström. Pure functions; gui/render/scene_view.cpp draws what they give.
 #pragma once
 
 #include "gui/render/tube.hpp"

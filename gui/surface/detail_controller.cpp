@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gui/render/viridis.hpp"
+#include "gui/surface/surface_content.hpp"
 
 namespace tact {
 namespace {
@@ -34,7 +35,8 @@ void DetailController::use(std::shared_ptr<const SceneContent> content, DetailSt
     felt_before_ = false;
     content_ = std::move(content);
     state = {};
-    state.possible = content_->detail != nullptr;
+    const SurfaceContent* const surface = content_->of<SurfaceContent>();
+    state.possible = surface != nullptr && surface->detail != nullptr;
     paint_scale(state);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gui/render/viridis.hpp"
+#include "gui/surface/surface_content.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -17,7 +18,7 @@ RefinementSettings settings_of(const SceneContent& content) {
     s.look_ahead_s = 0.0;
     s.splits_max = s.merges_max = 20'000;
     // The coarsest mesh has to fit, whatever it is.
-    s.nodes_max = std::max(kVerticesMost, content.detail->forest.roots());
+    s.nodes_max = std::max(kVerticesMost, content.of<SurfaceContent>()->detail->forest.roots());
     return s;
 }
 
@@ -27,8 +28,8 @@ constexpr double kFinestShare = 0.05, kCoarsestShare = 0.95;
 }  // namespace
 
 DetailCut::DetailCut(const SceneContent& content)
-    : content_(content), refinement_(content.detail->forest, settings_of(content)) {
-    const VertexForest& forest = content.detail->forest;
+    : content_(content), refinement_(content.of<SurfaceContent>()->detail->forest, settings_of(content)) {
+    const VertexForest& forest = content.of<SurfaceContent>()->detail->forest;
     index_of_.assign(std::size_t{forest.leaves()} + forest.nodes(), kNoVertex);
 }
 

@@ -3,7 +3,7 @@
 // Probe    a ball where the hand holds the tool, as large as the tool or as can just be seen, and a thin line from
 //          there to the proxy: the spring that is felt
 // Normals  an arrow for each plane that holds the proxy, from where it is touched, as long as it pushes
-// Frame    scene, ångström. Pure functions; gui/window/scene_view.cpp draws what they give, over the surface.
+// Frame    scene, ångström. Pure functions; SurfaceLayer draws what they give, over the surface.
 #pragma once
 
 #include <array>

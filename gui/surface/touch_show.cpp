@@ -1,22 +1,31 @@
 #include "gui/surface/touch_show.hpp"
 
 #include "gui/render/arrow.hpp"
+#include "gui/surface/surface_content.hpp"
 
 namespace tact {
+namespace {
+
+const TouchTool* tool_of(const SceneContent& content) {
+    const SurfaceContent* const surface = content.of<SurfaceContent>();
+    return surface != nullptr ? surface->tool.get() : nullptr;
+}
+
+}  // namespace
 
 std::optional<DrawnHand> touching_pen(const Controller& controller, const SceneContent& content) {
-    if (content.meta.kind != SceneKind::surface || !controller.attached() || !controller.have_tool ||
-        !controller.have_bodies || controller.bodies.count == 0)
+    if (!controller.attached() || !controller.have_tool || !controller.have_bodies ||
+        controller.bodies.count == 0)
         return std::nullopt;
     const double *const p = controller.bodies.body[0].pos_model_m, *const f = controller.tool.force_model_n;
     const Vec3 tip(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
     if (!tip.allFinite() || !force.allFinite()) return std::nullopt;
-    return DrawnHand{{tip, Quat::Identity()}, force,       false, content.tool == nullptr, kSteelColour,
+    return DrawnHand{{tip, Quat::Identity()}, force,       false, tool_of(content) == nullptr, kSteelColour,
                      kSteelGripColour,        kForceColour};
 }
 
 std::optional<Pose> touching_tool(const Controller& controller, const SceneContent& content) {
-    if (content.tool == nullptr || !controller.attached() || !controller.have_bodies ||
+    if (tool_of(content) == nullptr || !controller.attached() || !controller.have_bodies ||
         controller.bodies.count == 0)
         return std::nullopt;
     const auto& body = controller.bodies.body[0];

@@ -9,9 +9,9 @@
 #include <chrono>
 #include <utility>
 
-#include "gui/docking/contour_rows.hpp"
 #include "gui/window/app_parts.hpp"
 #include "gui/window/show_controller.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {
@@ -34,6 +34,7 @@ GuiApp::GuiApp(const GuiOptions& options)
       controller_(options.session, region_.fd()),
       commands_(region_->commands),
       window_(options.width_px, options.height_px, options.hidden, options.ui_scale) {
+    for (const SystemRow& row : system_rows()) systems_.push_back(row.make(options_));
     region_.mark_ready();
     state_.session = options.session;
     state_.history.first_ns = first_ns_;
@@ -63,6 +64,8 @@ GuiApp::GuiApp(const GuiOptions& options)
     spdlog::info("drawing with {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
 }
 
+SystemContext GuiApp::context() { return {controller_, commands_, state_, camera_, window_.software()}; }
+
 int GuiApp::run() {
     const Instant begun = Monotonic::now();
     for (bool last = false; !last;) {
@@ -75,8 +78,7 @@ int GuiApp::run() {
         if (!last) clock_.pace(fps_max_);
     }
     keep_window_state();
-    fit_controller_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
-    drilling_.save(controller_, options_.report);
+    for (const auto& system : systems_) system->finish(context());
     write_frame_report(options_.frames, frame_metrics(clock_, passes_));
     if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
     return pictures_.failed() ? 1 : 0;
@@ -95,11 +97,11 @@ void GuiApp::frame(Instant now, bool take_picture) {
     follow_scene();
     if (const auto dropped = window_.take_dropped(); !dropped.empty()) browser_.drop(dropped, state_.browser);
     browser_.follow(state_.browser);
-    drilling_.follow(controller_, state_, state_.drilling);
+    system().follow(context());
     handle_input();
     {
         const PassClock::Scope scope(&passes_, Pass::adapt);
-        if (view_) follow_contours(view_->contours(), content_->scale, state_.contours);
+        system().adapt();
         follow_calibration(now_ns);
         apply_level();
         clock_.end_part(FramePart::adapt);
@@ -108,8 +110,8 @@ void GuiApp::frame(Instant now, bool take_picture) {
     }
     if (content_) {
         const PassClock::Scope scope(&passes_, Pass::motion);
-        drilling_.move(controller_, clock_.frame_s(),
-                       content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>());
+        system().move(clock_.frame_s(),
+                      content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>(), context());
     }
     clock_.end_part(FramePart::particles);
     draw_scene(now_ns);
@@ -128,7 +130,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     }
     passes_.end_frame();
     clock_.end_part(FramePart::swap);
-    if (view_) drilling_.ended(*view_, clock_.work_s());
+    if (view_) system().ended(clock_.work_s());
     publish_load();
     publish_frames();
 }
@@ -138,12 +140,11 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     if (news.left) {
         spdlog::warn("the controller of session {} is gone; waiting for the next", options_.session);
         commands_.forget();
-        drilling_.leave();
+        for (const auto& system : systems_) system->detach();
     }
     if (news.arrived) {
-        drilling_.meet(controller_);
+        for (const auto& system : systems_) system->attach(context());
         spdlog::info("attached to the controller of session {}", options_.session);
-        list_.forget_motion();
         second_hand_.forget();
         commands_.forget();
         forget_rates(state_);
@@ -154,7 +155,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
             start_loading(path);
     }
     const Controller::Fresh fresh = controller_.read();
-    if (fresh.bodies) list_.follow(controller_.bodies);
+    system().read(fresh, context());
     if (fresh.second) second_hand_.follow(controller_.second);
     if (fresh.health) add_health(controller_.health, state_.history);
     add_rates(controller_, fresh, state_);
@@ -167,7 +168,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
 void GuiApp::draw_panels() {
     const PassClock::Scope scope(&passes_, Pass::dashboard);
     const ImGuiIO& io = ImGui::GetIO();
-    draw_dashboard(theme_, state_, io.DisplaySize.x, io.DisplaySize.y);
+    draw_dashboard(theme_, state_, system().panels(), io.DisplaySize.x, io.DisplaySize.y);
     window_.draw_panels();
     for (const Request& request : state_.requests)
         if (!commands_.send({request.kind,
@@ -195,7 +196,7 @@ void GuiApp::publish_load() {
     load.vertices_drawn = drawn ? view_->vertices() : 0;
     load.triangles_drawn = drawn ? view_->triangles() : 0;
     load.vertices_max = view_ ? view_->vertices_max() : 0;
-    if (view_) drilling_.add_to(load, *view_);
+    if (view_) system().add_to(load);
     region_->load.publish(load);
     state_.load = load;
     const bool levels = controller_.have_levels && controller_.attached();

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "gui/link/region_checks.hpp"
-#include "gui/surface/touch_show.hpp"
 #include "gui/window/app_parts.hpp"
 #include "gui/window/grounds.hpp"
 
@@ -12,7 +10,7 @@ namespace tact {
 void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
     const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
-                                     middle_card(state_), state_.strip == 1);
+                                     middle_card(state_, system().panels()), state_.strip == 1);
     const PixelRect& rect = layout.view;
     const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
     ViewFrame view{};
@@ -34,61 +32,31 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     drawn_view_ = {view.x_px, view.y_px, view.width_px, view.height_px};
     if (calibration_.open()) return draw_calibration(view, now_ns);
     if (!view_) return;
-    follow_bodies(now_ns);
-    shown_.clear();
-    for (const ShownBody& b : list_.bodies()) shown_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
-    view.bodies = shown_;
-    view.active = list_.active().value_or(shown_.size());
-    const PathLevel* const force =
-        controller_.have_levels ? find_path(controller_.levels, kDockingPath) : nullptr;
-    view.points_summed = force != nullptr ? force->items : 0;
     if (controller_.attached() && controller_.have_tool) {
         const double* const f = controller_.tool.force_model_n;
         view.force_world_n = Vec3(f[0], f[1], f[2]);
     }
-    if (content_->bone) {
-        drilling_.prepare(controller_, *view_, sharp_, view);
-        if (near_burr_wanted_ && controller_.have_drill && controller_.drill.hand[0].depth > 0.0F) {
-            near_burr_wanted_ = false;
-            look_at_burr();
-        }
-    } else if (controller_.attached()) {
-        view.second_hand = second_hand_.at(now_ns, content_->meta);
-    }
-    state_.second_hand = view.second_hand.has_value();
-    if (const auto pen = touching_pen(controller_, *content_)) view.second_hand = pen;
-    view.T_model_tool = touching_tool(controller_, *content_);
-    if (view_options_.force && content_->meta.kind == SceneKind::surface)
-        view.touch = touch_marks(controller_);
-    follow_detail();
-    state_.second_force_n = view.second_hand ? view.second_hand->force_world_n.norm() : 0.0;
-    state_.second_at_wall = view.second_hand && view.second_hand->at_wall;
+    if (controller_.attached() && system().second_hand_is_pen())
+        view.hand = second_hand_.at(now_ns, content_->meta);
+    state_.second_hand = view.hand.has_value();
+    system().prepare(now_ns, sharp_, view, context());
+    state_.second_force_n = view.hand ? view.hand->force_world_n.norm() : 0.0;
+    state_.second_at_wall = view.hand && view.hand->at_wall;
     state_.force_n = view.force_world_n.norm();
     state_.arrow_a_per_n = static_cast<double>(view_->arrow_a_per_n());
     const SceneToggles& t = state_.toggles;
     view_options_.surface = t.surface;
-    view_options_.detail = t.detail && t.surface;
-    view_options_.backbone = t.backbone;
-    view_options_.codebook = t.codebook;
-    view_options_.graph = t.graph;
     view_options_.force = t.force;
     view_options_.box = t.box;
     view_options_.style = static_cast<SurfaceStyle>(t.style);
     view_options_.depth_cue = t.depth_cue;
     view_options_.smooth_edges = t.smooth_edges;
-    view_->molecules().set_look(
-        {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
     if (stage_)
         draw_stage(view, now_ns);
     else
         view_->draw(camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px)),
                     view_options_, view);
-    drilling_.drawn(*view_, state_);
-    if (const std::size_t left_out = view_->molecules().left_out(); left_out != left_out_) {
-        left_out_ = left_out;
-        if (left_out > 0)
-            spdlog::info("bodies drawn as tubes, as this renderer has no time for their atoms: {}", left_out);
-    }
+    system().drawn(context());
 }
 
 void GuiApp::begin_view(const ViewFrame& view) {
@@ -103,7 +71,7 @@ void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
     view.x_px = view.y_px = 0;
     view.width_px = stage_->eye_width_px();
     view.height_px = stage_->eye_height_px();
-    view.bone_rays /= 2;
+    view.eyes = 2;
     for (std::size_t eye = 0; eye < 2; ++eye) {
         view.eye = eye;
         stage_->begin(eye, view_options_.plain_ground);

@@ -1,7 +1,6 @@
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
-#include "gui/docking/contour_rows.hpp"
 #include "gui/window/app_parts.hpp"
 
 namespace tact {
@@ -9,21 +8,22 @@ namespace tact {
 void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.WantCaptureMouse && !calibration_.open()) {
-        const float height =
-            layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y, middle_card(state_), state_.strip == 1)
-                .view.height;
+        const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y,
+                                        middle_card(state_, system().panels()), state_.strip == 1)
+                                 .view.height;
         if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
-            nudge_contour(state_.contours, content_->scale, static_cast<double>(io.MouseWheel));
+            system().turn_wheel(static_cast<double>(io.MouseWheel));
         else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
             camera_.zoom(io.MouseWheel);
     }
     KeySituation& now = state_.situation;
     now.calibrating = calibration_.open();
     now.browser = state_.browser.open;
-    now.bodies = content_ && state_.scene.placed() && !now.calibrating;
-    now.bone = content_ && state_.scene.bone && !now.calibrating;
+    const KeyWhen of_system = content_ && !now.calibrating ? system_rows()[shown_].keys : KeyWhen::always;
+    now.bodies = of_system == KeyWhen::bodies;
+    now.bone = of_system == KeyWhen::bone;
     now.stereo = stage_ != nullptr && !now.calibrating;
     now.controller = controller_.attached();
     for (const KeyStroke& stroke : window_.take_keys()) {
@@ -36,46 +36,18 @@ void GuiApp::handle_input() {
 }
 
 void GuiApp::act(KeyAct what, std::size_t place) {
-    const auto active = list_.active();
-    const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
-    const auto fit = [&](FitAct request) { state_.fitting.requests.push_back({request, held, {}}); };
-    const auto command = [&](CommandKind kind, std::uint32_t body = 0) {
-        state_.requests.push_back({kind, 0.0, {}, body});
-    };
+    if (content_ && system().act(what, place, context())) return;
+    const auto command = [&](CommandKind kind) { state_.requests.push_back({kind, 0.0, {}, 0}); };
     const RunState run =
         controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;
     switch (what) {
         case KeyAct::home:
             return home_view();
-        case KeyAct::look_at_burr:
-            return look_at_burr();
         case KeyAct::style:
             state_.toggles.style = (state_.toggles.style + 1) % 3;
             return;
         case KeyAct::swap_eyes:
             return stage_->swap_eyes();
-        case KeyAct::raise_contour:
-            return nudge_contour(state_.contours, content_->scale, 1.0);
-        case KeyAct::lower_contour:
-            return nudge_contour(state_.contours, content_->scale, -1.0);
-        case KeyAct::take_body:
-            if (place < list_.bodies().size() && controller_.attached())
-                command(CommandKind::select_body, list_.bodies()[place].id);
-            return;
-        case KeyAct::let_go:
-            if (controller_.attached()) command(CommandKind::select_body, kNoBody);
-            return;
-        case KeyAct::undo:
-            return fit(FitAct::undo);
-        case KeyAct::redo:
-            return fit(FitAct::redo);
-        case KeyAct::refine:
-            if (held != 0) fit(FitAct::refine);
-            return;
-        case KeyAct::accept:
-            return fit(FitAct::accept);
-        case KeyAct::revert:
-            return fit(FitAct::revert);
         case KeyAct::arm:  // as the button: only from where it can be followed
             if (run == RunState::ready) command(CommandKind::arm);
             return;
@@ -115,8 +87,7 @@ void GuiApp::act(KeyAct what, std::size_t place) {
             return calibration_.act(CalibrationAct::save);
         case KeyAct::swap_calibrated_eyes:
             return calibration_.swap_eyes();
-        case KeyAct::none:
-        case KeyAct::count:
+        default:  // of the system, and it is another one
             return;
     }
 }

@@ -13,25 +13,22 @@
 #include <vector>
 
 #include "gui/dashboard/trace_export.hpp"
-#include "gui/docking/body_list.hpp"
-#include "gui/docking/fit_controller.hpp"
 #include "gui/link/command_sender.hpp"
 #include "gui/link/controller.hpp"
 #include "gui/render/camera.hpp"
+#include "gui/render/scene_view.hpp"
 #include "gui/stereo/calibration_controller.hpp"
 #include "gui/stereo/picture_painter.hpp"
 #include "gui/stereo/stage.hpp"
-#include "gui/surface/detail_controller.hpp"
 #include "gui/window/browser_controller.hpp"
-#include "gui/window/drill_show.hpp"
 #include "gui/window/frame_clock.hpp"
 #include "gui/window/frame_report.hpp"
 #include "gui/window/layout.hpp"
 #include "gui/window/options.hpp"
 #include "gui/window/picture_files.hpp"
 #include "gui/window/scene_loader.hpp"
-#include "gui/window/scene_view.hpp"
 #include "gui/window/second_hand.hpp"
+#include "gui/window/systems.hpp"
 #include "gui/window/window.hpp"
 namespace tact {
 
@@ -45,17 +42,15 @@ private:
     void follow_controller(std::int64_t now_ns);
     void start_loading(const std::string& path);
     void follow_scene();
-    void use_scene(DrillStart drill);
+    void use_scene(std::unique_ptr<SceneStart> start);
     void home_view();
     void begin_as_left();
     void keep_window_state() const;
-    void look_at_burr();
-    void show_bone(DrillStart drill);
+    [[nodiscard]] SystemContext context();
+    [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
     void handle_input();
     void act(KeyAct what, std::size_t place);
     void apply_level();
-    void follow_detail();
-    void follow_bodies(std::int64_t now_ns);
     void draw_scene(std::int64_t now_ns);
     void begin_view(const ViewFrame& view);
     void draw_stage(ViewFrame view, std::int64_t now_ns);
@@ -88,24 +83,19 @@ private:
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
+    // One for each of system_rows(); they keep what they drew in the view, so they go before it.
+    std::vector<std::unique_ptr<SceneSystem>> systems_;
+    std::size_t shown_ = 0;        // of system_rows()
     double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
     BrowserController browser_{options_.scene_switch};
-    FitController fit_controller_;
-    DetailController detail_;
-    DrillShow drilling_{window_.software()};
-    float bone_reach_a_ = 0.0F;
-    bool near_burr_wanted_ = options_.near_burr;
     bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene that is shown
-    BodyList list_;
     SecondHand second_hand_;
     RingCursor traces_place_;  // in the trace ring
     TraceExport trace_export_;
-    std::vector<DrawnBody> shown_;
     ViewOptions view_options_;
     Camera camera_;
     SceneLoader loader_;
     std::string next_scene_;  // asked for while another was being read
-    std::size_t left_out_ = 0;
     PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
     PictureFiles::View drawn_view_;
     bool picture_wanted_ = false;

@@ -14,15 +14,7 @@ SceneState describe(const SceneContent& content) {
     state.contour_sigma = (content.meta.contour - content.meta.map_mean) / content.meta.map_sigma;
     state.resolution_m = content.meta.resolution_m;
     state.vertices_max = content.mesh ? content.mesh->vertices() : 0;
-    state.bodies = content.bodies.size();
-    for (const Structure& s : content.bodies) state.atoms += s.size();
     state.voxels = content.grid.size;
-    state.surface = content.meta.kind == SceneKind::surface;
-    state.bone = content.meta.kind == SceneKind::drilling;
-    if (content.bone) {
-        state.voxels = content.bone->volume.bricks.size;
-        state.voxel_m = content.bone->volume.bricks.voxel_m;
-    }
     return state;
 }
 

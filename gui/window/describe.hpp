@@ -7,6 +7,7 @@
 
 namespace tact {
 
+// What every system's scene has; the rest is its system's to tell.
 [[nodiscard]] SceneState describe(const SceneContent& content);
 [[nodiscard]] EventLine describe(const EventTopic& event);
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "gui/dashboard/pixel_rect.hpp"
+#include "gui/system/system_panels.hpp"
 #include "gui/window/panel_state.hpp"
 
 namespace tact {
@@ -20,19 +21,23 @@ struct Layout {
 
     [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
 };
-// The card between the controller's and the scene's: of a fit, of drilling, or none, and its place goes to the scene.
+// The card between the controller's and the scene's: of the scene's system, or none, and its place goes to the scene.
 // While a screen is calibrated, its card takes the whole column.
-enum class MiddleCard : std::uint8_t { none, fit, drilling, calibration };
-[[nodiscard]] MiddleCard middle_card(const PanelState& state);
+struct MiddleCard {
+    SystemPanels::CardSize size;
+    bool calibration = false;
+};
+[[nodiscard]] MiddleCard middle_card(const PanelState& state, const SystemPanels& system);
 // traces: the strip below is as high as they need.
-[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, MiddleCard middle,
+[[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
                                 bool traces = false);
 
 // Draws everything but the 3D view and the cards' ground.
-void draw_dashboard(const Theme& theme, PanelState& state, float width_px, float height_px);
+void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,
+                    float height_px);
 
 // Over the 3D view: legend, scale bar, axes, what is being waited for.
-void draw_overlay(const Theme& theme, PanelState& state, const PixelRect& view);
-void draw_scene(const Theme& theme, PanelState& state, const PixelRect& card);
+void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view);
+void draw_scene(const Theme& theme, DashboardState& state, SystemPanels& system, const PixelRect& card);
 
 }  // namespace tact

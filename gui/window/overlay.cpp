@@ -12,33 +12,12 @@
 namespace tact {
 namespace {
 
-struct Pen {
-    const Theme& theme;
-    ImDrawList* draw;
-
-    [[nodiscard]] float width(ImFont* font, const std::string& text) const {
-        return font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, text.c_str()).x;
-    }
-    void text(ImFont* font, ImVec2 at, ImU32 c, const std::string& text) const {
-        draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, IM_COL32(0, 0, 0, 160), text.c_str());
-        draw->AddText(font, font->FontSize, at, c, text.c_str());
-    }
-};
-
 double round_down(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     return most >= 5.0 * power ? 5.0 * power : most >= 2.0 * power ? 2.0 * power : power;
 }
 
-// The next of 1, 2, 5 times a power of ten.
-double round_up(double least) {
-    const double power = std::pow(10.0, std::floor(std::log10(least) + 1e-9));
-    for (const double times : {1.0, 2.0, 5.0})
-        if (least <= times * power * (1.0 + 1e-6)) return times * power;
-    return 10.0 * power;
-}
-
-void scale_bar(const Pen& pen, const PanelState& state, const PixelRect& v) {
+void scale_bar(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     if (!(state.a_per_px > 0.0) || !state.scene.loaded) return;
     const double a = round_down(static_cast<double>(pen.theme.px(150.0F)) * state.a_per_px);
     const auto length = static_cast<float>(a / state.a_per_px);
@@ -52,7 +31,7 @@ void scale_bar(const Pen& pen, const PanelState& state, const PixelRect& v) {
              colour::kText, text);
 }
 
-void axes(const Pen& pen, const PanelState& state, const PixelRect& v) {
+void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     const float r = pen.theme.px(26.0F);
     const ImVec2 o{v.x + pen.theme.px(44.0F), v.y + v.height - pen.theme.px(46.0F)};
     static constexpr ImU32 kColours[3] = {IM_COL32(240, 112, 96, 255), IM_COL32(96, 200, 120, 255),
@@ -72,7 +51,7 @@ void axes(const Pen& pen, const PanelState& state, const PixelRect& v) {
     }
 }
 
-void legend(const Pen& pen, const PanelState& state, const PixelRect& v) {
+void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& system, const PixelRect& v) {
     const float x = v.x + pen.theme.px(16.0F);
     float y = v.y + pen.theme.px(12.0F), taken = x;  // to the right of it is room for numbers
     if (state.scene.loaded) {
@@ -89,23 +68,16 @@ void legend(const Pen& pen, const PanelState& state, const PixelRect& v) {
         if (state.toggles.force && state.attached)
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
-        if (state.toggles.force && state.attached && state.scene.surface)
-            line(colour::kNormal, "places that hold it, with what they push");
+        std::vector<SystemPanels::LegendLine> lines;
+        system.add_legend(state, lines);
+        for (const SystemPanels::LegendLine& l : lines) line(l.swatch, l.text);
         if (state.second_hand)
             line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
                                              state.second_at_wall ? ", at the workspace's wall" : ""));
         if (!state.stage.empty())
             pen.text(pen.theme.small, {x, y}, state.head_lost ? colour::kWatch : colour::kDim, state.stage);
     }
-    // Of bone, only what changed is seen through again.
-    const bool still = state.scene.bone && state.load.vertices_drawn <= 1;
-    std::string fps = format("%.0f fps   ", state.load.fps);
-    if (state.scene.bone && state.scene.bone_shown < 1.0F)
-        fps += format("loading bone, %.0f %%   ", 100.0 * static_cast<double>(state.scene.bone_shown));
-    fps += still ? std::string("sharp")
-                 : format("%s %s", grouped(state.load.vertices_drawn).c_str(),
-                          state.scene.bone ? "rays" : "vertices");
-    if (state.scene.bone) fps += format("   %s particles", grouped(state.load.particles).c_str());
+    const std::string fps = format("%.0f fps   ", state.load.fps) + system.drawn_text(state);
     float at = v.y + pen.theme.px(12.0F);
     for (const std::string& words : {fps, frame_line(state.frames), std::string("? keys")}) {
         const float left = v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, words);
@@ -115,36 +87,8 @@ void legend(const Pen& pen, const PanelState& state, const PixelRect& v) {
     }
 }
 
-// What the colours of the detail stand for: short edges above.
-void detail_scale(const Pen& pen, const PanelState& state, const PixelRect& v) {
-    const DetailState& d = state.detail;
-    if (!state.toggles.detail || !(d.finest_m > 0.0)) return;
-    const float w = pen.theme.px(12.0F), h = pen.theme.px(132.0F);
-    const float x = v.x + v.width - pen.theme.px(100.0F), y0 = v.y + pen.theme.px(84.0F);
-    pen.text(pen.theme.small, {x, y0 - pen.theme.px(22.0F)}, colour::kText, "edge length");
-    const auto steps = static_cast<float>(d.colours.size());
-    for (std::size_t i = 0; i < d.colours.size(); ++i) {
-        const float top = y0 + h * static_cast<float>(i) / steps;
-        pen.draw->AddRectFilled({x, top}, {x + w, top + h / steps + 1.0F}, d.colours[i]);
-    }
-    // Round lengths between the ends; from one to the next at least as much as a line of text is high.
-    const double octaves = std::log2(d.coarsest_m / d.finest_m);
-    float last = y0 - h;
-    double length = round_up(d.finest_m);
-    while (length <= d.coarsest_m * 1.001) {
-        const float y = y0 + h * static_cast<float>(std::log2(length / d.finest_m) / octaves);
-        if (y >= last + 1.1F * pen.theme.small->FontSize) {
-            last = y;
-            pen.draw->AddRectFilled({x + w, y - 0.5F}, {x + w + pen.theme.px(4.0F), y + 0.5F}, colour::kText);
-            pen.text(pen.theme.small, {x + w + pen.theme.px(8.0F), y - 0.5F * pen.theme.small->FontSize},
-                     colour::kText, length_text(length));
-        }
-        length = round_up(1.001 * length);
-    }
-}
-
 // Over everything, as nothing else matters then.
-void stop_banner(const Pen& pen, const PanelState& state, const PixelRect& v) {
+void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     if (!state.attached || !state.have_health) return;
     const StopNotice notice = stop_notice(state.health);
     if (notice.why.empty()) return;
@@ -164,7 +108,7 @@ void stop_banner(const Pen& pen, const PanelState& state, const PixelRect& v) {
                       notice.fix.c_str(), nullptr, most);
 }
 
-void message(const Pen& pen, const PanelState& state, const PixelRect& v) {
+void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     const std::string text = !state.scene.loaded ? state.scene.status
                              : !state.attached   ? state.link_text
                                                  : "";
@@ -183,7 +127,7 @@ void message(const Pen& pen, const PanelState& state, const PixelRect& v) {
 }
 
 // Those that mean something now.
-void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
+void keys(const OverlayPen& pen, const KeySituation& now, const PixelRect& v) {
     std::vector<const KeyRow*> rows;
     for (const KeyRow& row : key_rows())
         if (applies(row.when, now)) rows.push_back(&row);
@@ -208,14 +152,14 @@ void keys(const Pen& pen, const KeySituation& now, const PixelRect& v) {
 
 }  // namespace
 
-void draw_overlay(const Theme& theme, PanelState& state, const PixelRect& view) {
-    const Pen pen{theme, ImGui::GetBackgroundDrawList()};
+void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view) {
+    const OverlayPen pen{theme, ImGui::GetBackgroundDrawList()};
     pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
     if (!state.calibration.open) {
-        legend(pen, state, view);
+        legend(pen, state, system, view);
         axes(pen, state, view);
         scale_bar(pen, state, view);
-        detail_scale(pen, state, view);
+        system.draw_over_view(pen, state, view);
         if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
         message(pen, state, view);
     }

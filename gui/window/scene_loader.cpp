@@ -1,8 +1,10 @@
 #include "gui/window/scene_loader.hpp"
-#include "gui/window/load_scene.hpp"
 
 #include <chrono>
 #include <exception>
+
+#include "gui/window/load_scene.hpp"
+#include "gui/window/systems.hpp"
 
 namespace tact {
 
@@ -10,7 +12,8 @@ bool SceneLoader::start(const std::string& path) {
     if (running()) return false;
     loading_ = std::async(std::launch::async, [path] {
         Loaded loaded{load_scene(path), {}};
-        loaded.drill = make_drill_start(*loaded.content);
+        const SystemRow& row = system_row(loaded.content->meta.kind);
+        if (row.start != nullptr) loaded.start = row.start(*loaded.content);
         return loaded;
     });
     return true;
@@ -21,7 +24,7 @@ std::optional<SceneLoader::Outcome> SceneLoader::poll() {
         return std::nullopt;
     try {
         Loaded loaded = loading_.get();
-        return Outcome{std::move(loaded.content), std::move(loaded.drill), {}};
+        return Outcome{std::move(loaded.content), std::move(loaded.start), {}};
     } catch (const std::exception& e) {
         return Outcome{nullptr, {}, e.what()};
     }

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "gui/drilling/drill_start.hpp"
 #include "gui/render/scene_content.hpp"
+#include "gui/system/scene_system.hpp"
 
 namespace tact {
 
@@ -18,7 +18,7 @@ class SceneLoader {
 public:
     struct Outcome {
         std::shared_ptr<const SceneContent> content;  // null: it failed
-        DrillStart drill;
+        std::unique_ptr<SceneStart> start;
         std::string error;
     };
     // False, and nothing is begun, while another is being read.
@@ -29,7 +29,7 @@ public:
 private:
     struct Loaded {
         std::shared_ptr<const SceneContent> content;
-        DrillStart drill;
+        std::unique_ptr<SceneStart> start;
     };
     std::future<Loaded> loading_;
 };

@@ -10,7 +10,7 @@
 
 #include "gui/dashboard/theme.hpp"
 #include "gui/render/target.hpp"
-#include "gui/window/keys.hpp"
+#include "gui/system/keys.hpp"
 
 struct GLFWwindow;
 

@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "gui/docking/docking_panels.hpp"
 #include "gui/window/layout.hpp"
 
 namespace tact::test {
@@ -32,7 +33,7 @@ public:
     void frame() {
         ImGui::GetIO().DeltaTime = 1.0F / 60.0F;
         ImGui::NewFrame();
-        draw_dashboard(theme, state, width_, height_);
+        draw_dashboard(theme, state, panels, width_, height_);
         ImGui::Render();
     }
     void move(ImVec2 to) {
@@ -88,6 +89,7 @@ public:
 
     Theme theme;
     PanelState state;
+    DockingPanels panels;
 
 private:
     float width_, height_;

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "gui/window/keys.hpp"
+#include "gui/system/keys.hpp"
 
 namespace tact {
 namespace {

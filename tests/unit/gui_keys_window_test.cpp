@@ -10,7 +10,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
-#include "gui/window/keys.hpp"
+#include "gui/system/keys.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {

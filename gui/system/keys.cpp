@@ -1,4 +1,4 @@
-#include "gui/window/keys.hpp"
+#include "gui/system/keys.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "gui/render/bonds.hpp"
+#include "gui/docking/bonds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,158 @@
+#include "gui/render/scene_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "gui/render/arrow.hpp"
+#include "gui/render/camera.hpp"
+#include "gui/render/scene_frame.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
+// Depth cue: from somewhat before the target to well behind it, in radii of the scene.
+constexpr float kHazeBegin = 0.6F, kHazeEnd = 1.6F, kHazeStrength = 0.8F;
+
+}  // namespace
+
+SceneView::SceneView(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine)
+    : content_(std::move(content)), programs_(programs), contours_(content_, programs, std::move(refine)) {
+    fill_box();
+}
+
+void SceneView::fill_box() {
+    std::vector<float> xyz;
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (std::uint32_t k = 0; k < 8; ++k) {
+        const Vec3 p((k & 1U) != 0 ? content_->box_max_model_m.x() : content_->box_min_model_m.x(),
+                     (k & 2U) != 0 ? content_->box_max_model_m.y() : content_->box_min_model_m.y(),
+                     (k & 4U) != 0 ? content_->box_max_model_m.z() : content_->box_min_model_m.z());
+        const Eigen::Vector3f f = (p - content_->centre_model_m).cast<float>();
+        xyz.insert(xyz.end(), {f.x() * kSceneAPerM, f.y() * kSceneAPerM, f.z() * kSceneAPerM});
+        for (const std::uint32_t bit : {1U, 2U, 4U})
+            if ((k & bit) == 0) edges.push_back({k, k | bit});
+    }
+    glBindVertexArray(box_array_.get());
+    glBindBuffer(GL_ARRAY_BUFFER, box_vertices_.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(xyz.size() * sizeof(float)), xyz.data(),
+                 GL_STATIC_DRAW);
+    attribute(0, 3, GL_FLOAT, GL_FALSE, 12, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, box_edges_.get());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(edges.size() * sizeof(edges[0])),
+                 edges.data(), GL_STATIC_DRAW);
+    box_indices_ = static_cast<GLsizei>(2 * edges.size());
+    glBindVertexArray(0);
+}
+
+float SceneView::radius_a() const { return static_cast<float>(content_->radius_m / kAngstromM); }
+
+float SceneView::arrow_a_per_n() const {
+    return std::max(1.0F, static_cast<float>(round_length(0.9 * static_cast<double>(radius_a()))));
+}
+
+void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame) {
+    LayerPass pass{programs_,   eye.eye_from_scene, eye.projection, haze_of(eye, options),
+                   frame.x_px,  frame.y_px,         frame.width_px, frame.height_px,
+                   frame.eye,   frame.eyes,         radius_a(),     arrow_a_per_n(),
+                   frame.passes};
+    SceneLayer& layer = layer_ != nullptr ? *layer_ : no_layer_;
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    {
+        const PassClock::Scope scope(frame.passes, Pass::structures);
+        layer.draw_structures(pass);
+    }
+    layer.draw_volume(pass);
+    const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
+    const bool replaced = layer.replaces_surface(), surface = options.surface && !replaced;
+    {
+        const PassClock::Scope scope(frame.passes, Pass::surface);
+        if (replaced) layer.draw_surface(pass);
+        if (surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
+    }
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    if (layer.has_marks() || options.box) {
+        const PassClock::Scope scope(frame.passes, Pass::marks);
+        if (layer.has_marks()) layer.draw_marks(pass);
+        if (options.box) draw_box(pass);
+    }
+    if (surface) {
+        const PassClock::Scope scope(frame.passes, Pass::surface);
+        contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
+    }
+    glDisable(GL_BLEND);
+    layer.draw_fluids(pass);
+    draw_in_front(pass, options, frame);
+    glBindVertexArray(0);
+    glUseProgram(0);
+    if (!options.smooth_edges) return;
+    const PassClock::Scope scope(frame.passes, Pass::edges);
+    if (!edges_) edges_ = std::make_unique<EdgeSmoothing>();
+    edges_->smooth(frame.x_px, frame.y_px, frame.width_px, frame.height_px);
+}
+
+// Always seen, also inside the structures: everything else is drawn, so its depth may go.
+void SceneView::draw_in_front(const LayerPass& pass, const ViewOptions& options, const ViewFrame& frame) {
+    const PassClock::Scope scope(frame.passes, Pass::marks);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    if (options.force && frame.force_at_model_m) draw_force(pass, frame);
+    if (frame.hand) draw_hand(pass, *frame.hand);
+    if (layer_ != nullptr) layer_->draw_in_front(pass);
+    glDisable(GL_DEPTH_TEST);
+}
+
+Haze SceneView::haze_of(const EyeView& eye, const ViewOptions& options) const {
+    Haze haze;
+    haze.begin_a = eye.target_a - kHazeBegin * radius_a();
+    haze.end_a = eye.target_a + kHazeEnd * radius_a();
+    if (options.depth_cue) haze.strength = kHazeStrength;
+    if (!options.gradient) haze.top = haze.bottom = options.plain_ground;
+    return haze;
+}
+
+void SceneView::draw_force(const LayerPass& pass, const ViewFrame& frame) {
+    const Eigen::Vector3f from =
+        ((*frame.force_at_model_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    Eigen::Vector3f along = frame.force_world_n.cast<float>() * pass.arrow_a_per_n;
+    const float most = 3.0F * pass.size_a;
+    if (along.norm() > most) along *= most / along.norm();
+    const TubeMesh mesh = build_arrow(from, along, frame.force_thickness * pass.size_a, kForceColour);
+    if (mesh.index.empty()) return;
+    arrow_.fill(mesh, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    arrow_.draw();
+}
+
+void SceneView::draw_hand(const LayerPass& pass, const DrawnHand& hand) {
+    const Eigen::Vector3f tip =
+        ((hand.T_model_hand.p_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    const TubeMesh mesh = build_second_hand(hand, tip, pass.size_a, pass.arrow_a_per_n);
+    if (mesh.index.empty()) return;
+    hand_.fill(mesh, GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    hand_.draw();
+    const TubeMesh wall = build_touched_wall(hand, tip, pass.size_a);
+    if (wall.index.empty()) return;
+    touched_wall_.fill(wall, GL_STREAM_DRAW);
+    const auto share = [](std::uint8_t c) { return static_cast<float>(c) / 255.0F; };
+    const Rgb8& c = kTouchedWallColour;
+    const float rgba[4] = {share(c[0]), share(c[1]), share(c[2]), 1.0F};
+    programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, rgba);
+    touched_wall_.draw();
+}
+
+void SceneView::draw_box(const LayerPass& pass) {
+    programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, kBoxRgba);
+    glBindVertexArray(box_array_.get());
+    glDrawElements(GL_LINES, box_indices_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace tact

@@ -1,0 +1,92 @@
+// The three-dimensional view of a scene: its surfaces, the force, and what the scene's system draws.
+//
+// Frame    poses and forces come in model and world axes (which are parallel) in SI; drawing is in ångström.
+// Thread   frame thread, context current. Draws into the bound frame buffer, inside the given viewport.
+// Cost     follows the vertices of the surface and what the layer draws.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "gui/render/contours.hpp"
+#include "gui/render/drawn_hand.hpp"
+#include "gui/render/edge_smoothing.hpp"
+#include "gui/render/eye_view.hpp"
+#include "gui/render/pass_clock.hpp"
+#include "gui/render/programs.hpp"
+#include "gui/render/scene_content.hpp"
+#include "gui/render/scene_layer.hpp"
+#include "gui/render/triangle_buffers.hpp"
+
+namespace tact {
+
+struct ViewOptions {
+    bool surface = true, force = true, box = false;
+    SurfaceStyle style = SurfaceStyle::glass;
+    bool depth_cue = true;  // what lies far behind fades into the background
+    bool smooth_edges = true;
+    bool gradient = true;  // background; off: plain_ground, cheaper
+    Eigen::Vector3f plain_ground =
+        Eigen::Vector3f::Zero();  // the colour cleared to where there is no gradient
+};
+
+struct ViewFrame {
+    int x_px = 0, y_px = 0, width_px = 1,
+        height_px = 1;  // of the viewport, y from below as OpenGL counts
+    Vec3 force_world_n = Vec3::Zero();
+    std::optional<Vec3> force_at_model_m;  // where the force is felt; none: it is not drawn
+    float force_thickness = 0.02F;         // of its arrow, in radii of the scene
+    std::optional<DrawnHand> hand;
+    std::size_t eye = 0, eyes = 1;  // which, of how many
+    PassClock* passes = nullptr;    // told what each takes
+};
+
+class SceneView {
+public:
+    // `refine` makes the final surface of a contour that was moved (ContourWorker); without it they stay
+    // plain.
+    SceneView(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine = {});
+
+    [[nodiscard]] const SceneContent& content() const { return *content_; }
+    // Of the scene's system; null: none. It must outlive this, or be replaced before it goes.
+    void set_layer(SceneLayer* layer) { layer_ = layer; }
+    // Of all surfaces together; as far as `budget_s` of this frame allows, see Surface.
+    void approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
+        contours_.approach_vertices(wanted, budget_s);
+    }
+    std::size_t upload() { return contours_.upload(); }
+    void draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame);
+    // What a person chose of surfaces.
+    [[nodiscard]] Contours& contours() { return contours_; }
+    [[nodiscard]] Programs& programs() { return programs_; }
+
+    [[nodiscard]] std::uint32_t vertices() const { return contours_.vertices(); }
+    [[nodiscard]] std::uint32_t triangles() const { return contours_.triangles(); }
+    [[nodiscard]] std::uint32_t vertices_min() const { return contours_.vertices_min(); }
+    [[nodiscard]] std::uint32_t vertices_max() const { return contours_.vertices_max(); }
+    [[nodiscard]] double error_m() const { return contours_.error_m(); }
+    [[nodiscard]] float radius_a() const;
+    // What the arrow stands for: its length in ångström for one newton.
+    [[nodiscard]] float arrow_a_per_n() const;
+
+private:
+    [[nodiscard]] Haze haze_of(const EyeView& eye, const ViewOptions& options) const;
+    void fill_box();
+    void draw_in_front(const LayerPass& pass, const ViewOptions& options, const ViewFrame& frame);
+    void draw_force(const LayerPass& pass, const ViewFrame& frame);
+    void draw_hand(const LayerPass& pass, const DrawnHand& hand);
+    void draw_box(const LayerPass& pass);
+
+    std::shared_ptr<const SceneContent> content_;
+    Programs& programs_;
+    Contours contours_;
+    SceneLayer no_layer_;
+    SceneLayer* layer_ = nullptr;
+    TriangleBuffers arrow_, hand_, touched_wall_;
+    GlVertexArray box_array_;
+    GlBuffer box_vertices_, box_edges_;
+    GLsizei box_indices_ = 0;
+    std::unique_ptr<EdgeSmoothing> edges_;  // from the first smooth picture on
+};
+
+}  // namespace tact
