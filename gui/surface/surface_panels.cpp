@@ -37,7 +37,7 @@ void SurfacePanels::draw_in_scene_card(const Theme& theme, DashboardState& state
 
 void SurfacePanels::add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const {
     if (state.toggles.force && state.attached)
-        lines.push_back({colour::kNormal, "places that hold it, with what they push"});
+        lines.push_back({colour::kNormal, "contact points and forces"});
 }
 
 std::string SurfacePanels::drawn_text(const DashboardState& state) const {
