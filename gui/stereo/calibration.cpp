@@ -40,7 +40,7 @@ void Calibration::go(CalibrationStep step) {
     wand_.stop();
     stylus_.stop();
     turning_ = false;
-    said_.clear();
+    message_.clear();
     last_taken_ = kMarks;
     step_ = step;
 }
@@ -68,7 +68,7 @@ Calibration::Lacking Calibration::lacking() const {
 }
 
 void Calibration::take() {
-    said_.clear();
+    message_.clear();
     if (measuring()) {
         wand_.stop();
         stylus_.stop();
