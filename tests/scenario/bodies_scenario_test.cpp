@@ -270,7 +270,7 @@ private:
     ModelBodies bodies_;
 };
 
-// Cycles and turns of the house, until nothing is being built any more.
+// Cycles and turns of the housekeeping thread, until nothing is being built any more.
 void settle(Loop& loop, ModelBuilder& builder) {
     for (int i = 0; i < 60000; ++i) {
         builder.poll();

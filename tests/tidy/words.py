@@ -15,7 +15,7 @@ import tempfile
 BANNED = {
     r"wish(es|ed)?": ("request", "a program requests, it does not wish"),
     r"mend(s|ed|ing)?": ("fix, repair", "known from every issue tracker"),
-    r"felt_\w+|\w+_felt": ("force map, summed", "only a person feels; a map that makes the force is the force map"),
+    r"felt_\w+": ("force map, summed", "only a person feels; a map that makes the force is the force map"),
     r"desk": ("controller (logic of a panel), window state (the file)", "a metaphor that nobody knows"),
     r"verdicts?": ("status, grade", "programs do not judge"),
     r"house": ("housekeeping thread", "known from real-time code"),

@@ -137,9 +137,10 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(std::memcmp(&h.t, &wanted, sizeof wanted), 0);
     EXPECT_EQ(h.pos_world_m[0], 1.0);
     EXPECT_EQ(h.pos_world_m[1], 0.1 / 3.0);
-    const auto mails = Hdf5Table::open(file.get(), kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
+    const auto mailboxes =
+        Hdf5Table::open(file.get(), kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
     MailboxTopic m{};
-    mails.read(0, 1, &m);
+    mailboxes.read(0, 1, &m);
     EXPECT_EQ(m.order.body, 3U);
     EXPECT_EQ(m.order.pos_model_m[2], 1e-10 / 3.0);
     EXPECT_EQ(m.order.quat_model_body_xyzw[3], 1.0);
