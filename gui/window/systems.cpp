@@ -9,6 +9,8 @@
 #include "gui/docking/docking_system.hpp"
 #include "gui/drilling/bone_content.hpp"
 #include "gui/drilling/drilling_system.hpp"
+#include "gui/field/field_content.hpp"
+#include "gui/field/field_system.hpp"
 #include "gui/surface/surface_content.hpp"
 #include "gui/surface/surface_system.hpp"
 
@@ -33,6 +35,11 @@ std::unique_ptr<SceneSystem> make_drilling(const GuiOptions& options) {
         DrillingOptions{options.report, options.particles, options.near_burr});
 }
 
+std::unique_ptr<SceneSystem> make_field(const GuiOptions& options) {
+    static_cast<void>(options);
+    return std::make_unique<FieldSystem>();
+}
+
 std::unique_ptr<SceneStart> start_drilling(const SceneContent& content) {
     return std::make_unique<DrillStart>(content);
 }
@@ -41,6 +48,7 @@ constexpr std::array kRows{
     SystemRow{SceneKind::docking, KeyWhen::bodies, make_docking, read_docking, nullptr, refine_docking},
     SystemRow{SceneKind::surface, KeyWhen::always, make_surface, read_surface_content, nullptr, nullptr},
     SystemRow{SceneKind::drilling, KeyWhen::bone, make_drilling, read_bone_content, start_drilling, nullptr},
+    SystemRow{SceneKind::field, KeyWhen::always, make_field, read_field_content, nullptr, nullptr},
 };
 
 }  // namespace

@@ -7,6 +7,9 @@
 #include <cstring>
 
 #include "ipc/base/error.hpp"
+#include "ipc/scene/density/isosurface.hpp"
+#include "prep/mesh/progressive.hpp"
+#include "prep/mesh/simplify.hpp"
 
 namespace tact {
 namespace {
@@ -105,6 +108,28 @@ DensityGrid padded(const DensityGrid& grid) {
     return out;
 }
 
+// Two surfaces in one mesh; empty where the field has neither.
+TriangleMesh surfaces_of(const DensityGrid& grid, const Progress& progress) {
+    std::vector<float> sorted = grid.values;
+    TriangleMesh both;
+    for (const double part_of_all : {0.1, 0.9}) {
+        const auto at = sorted.begin() +
+                        static_cast<std::ptrdiff_t>(part_of_all * static_cast<double>(sorted.size() - 1));
+        std::nth_element(sorted.begin(), at, sorted.end());
+        const TriangleMesh one = isosurface(grid, static_cast<double>(*at), progress);
+        const auto first = static_cast<std::uint32_t>(both.vertices());
+        both.position_m.insert(both.position_m.end(), one.position_m.begin(), one.position_m.end());
+        for (std::size_t i = 0; i < one.triangle.size(); i += 3) {
+            // Around low values the outside is up.
+            const bool turned = part_of_all < 0.5;
+            both.triangle.push_back(first + one.triangle[i]);
+            both.triangle.push_back(first + one.triangle[i + (turned ? 2 : 1)]);
+            both.triangle.push_back(first + one.triangle[i + (turned ? 1 : 2)]);
+        }
+    }
+    return both;
+}
+
 template <class... Values>
 std::string printed(const char* format, Values... values) {
     char text[256];
@@ -131,7 +156,7 @@ BakedField bake_field(const FieldInput& input, SceneWriter& out, const Progress&
     f.mean = sum / static_cast<double>(grid.values.size());
     for (const float v : grid.values) sum2 += std::pow(static_cast<double>(v) - f.mean, 2);
     f.deviation = std::sqrt(sum2 / static_cast<double>(grid.values.size()));
-    const Slopes most = slopes_of(grid, part(progress, 0.0, 0.8));
+    const Slopes most = slopes_of(grid, part(progress, 0.0, 0.6));
     if (!(f.deviation > 0.0) || !(most.gradient > 0.0))
         throw StartupError("bake a field", "its values are all " + std::to_string(f.mean),
                            "give a potential that changes in space");
@@ -164,7 +189,15 @@ BakedField bake_field(const FieldInput& input, SceneWriter& out, const Progress&
                           f.force_n_max, f.stiffness_n_m, stiff ? ", limited by the stiffness" : "");
     baked.note += printed("hand: 1 mm is %.6g m of the model; the box is %.0f mm wide\n",
                           1e-3 / meta.world_per_model, 1e3 * input.size_m);
-    report(progress, 0.9, "writing the field");
+    TriangleMesh picture = surfaces_of(grid, part(progress, 0.6, 0.7));
+    if (input.vertices_max > 0 && picture.vertices() > input.vertices_max) {
+        SimplifySettings settings;
+        settings.vertices_min = input.vertices_max;
+        picture = simplify(picture, settings, part(progress, 0.7, 0.8)).mesh;
+    }
+    baked.vertices = picture.vertices();
+    if (picture.triangles() > 0) write_mesh(out, 0, make_progressive(picture, {}, part(progress, 0.8, 0.95)));
+    report(progress, 0.95, "writing the field");
     write_meta(out, meta, baked.note);
     write_field_meta(out, f);
     write_grid(out, padded(grid));
