@@ -1,0 +1,10 @@
+// tact-prep field FILE and tact-prep demo field: scenes of a potential field.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tact {
+
+void add_field(CLI::App& app, CLI::App& demo);
+
+}  // namespace tact
