@@ -57,7 +57,7 @@ constexpr Passed kVisual[] = {
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "stereo mode of the window"},
     {"--window-state", "FILE.toml",
      "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
-    {"--stage", "FILE.toml", "where screen, eyes and workspace are, TOML; see gui/stage/README.md"},
+    {"--stage", "FILE.toml", "where screen, eyes and workspace are, TOML; see gui/stereo/README.md"},
     {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
 };
 

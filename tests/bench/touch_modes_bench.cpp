@@ -4,7 +4,7 @@
 //           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. chr is tended every fourth step by the same
 //           thread, or (Live) steps are 1 ms apart and a thread beside it tends every 4 ms, as in tact-rt.
 // Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
-//           surface; tend_us: of one tend(); near: triangles in it, predicted for this fidelity.
+//           surface; tend_us: of one slow_update(); near: triangles in it, predicted for this fidelity.
 // Measured  see rt/force/surface/README.md.
 #include <benchmark/benchmark.h>
 

@@ -270,10 +270,10 @@ private:
     ModelBodies bodies_;
 };
 
-// Cycles and turns of the house, until nothing is being built any more.
+// Cycles and turns of the housekeeping thread, until nothing is being built any more.
 void settle(Loop& loop, ModelBuilder& builder) {
     for (int i = 0; i < 60000; ++i) {
-        builder.attend();
+        builder.poll();
         loop.mailbox_.model.collect().reset();
         loop.cycles(2);
         if (loop.bodies().building == 0) return;
@@ -320,7 +320,7 @@ TEST(BodiesScenario, a_builder_may_end_at_any_time) {
         Loop loop(std::make_unique<BuiltAside>());
         ModelBuilder builder(loop.mailbox_, gettid());
         static_cast<void>(loop.order(CommandKind::set_subtraction, 1.0));
-        for (int i = 0; i < cycles; ++i) builder.attend();
+        for (int i = 0; i < cycles; ++i) builder.poll();
     }
 }
 

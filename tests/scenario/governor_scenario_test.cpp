@@ -1,4 +1,4 @@
-// Stories of the governor in the whole loop: what the visual process says comes in by mail, levels go out.
+// Stories of the governor in the whole loop: what the visual process says comes in by mailbox, levels go out.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/lockstep.hpp"

@@ -96,7 +96,7 @@ public:
     std::uint64_t sequence_ = 0;
 };
 
-// What the house says of a visual process that reported then.
+// What the housekeeping thread says of a visual process that reported then.
 inline HousekeepingReport gui_at(Instant t) {
     HousekeepingReport r{};
     r.gui_heartbeat_ns = to_ns(t);

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "gui/app/site.hpp"
+#include "gui/drilling/site_effects.hpp"
 #include "hal/sim/sim_device.hpp"
 #include "rt/force/drilling/drill_model.hpp"
 #include "tests/scenario/lockstep.hpp"
@@ -33,7 +33,7 @@ struct WatchedDrill {
     MappedBoneRegion mapped;
     BoneVolumeView baked;
     std::optional<BoneFollower> follower;
-    std::optional<Site> site;
+    std::optional<SiteEffects> site;
 
     WatchedDrill() {
         std::copy(block.density.begin(), block.density.end(), region.densities().begin());

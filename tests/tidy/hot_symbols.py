@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/io", "hal/tracker", "ipc/assets", "ipc/shm"]
+FOLDERS = ["rt/servo", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/io", "hal/tracker", "ipc/scene", "ipc/shm"]
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
     r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::(bodies|touch|drill)\(\) const$|::drive\(tact::ToolDrive const&\)$"

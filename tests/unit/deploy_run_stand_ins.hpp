@@ -124,7 +124,7 @@ inline int controller(int argc, char** argv) {
     return 0;
 }
 
-// Leaves its desk file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
+// Leaves its window state file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
 inline int window(int argc, char** argv) {
     log_words("WINDOWS", argc, argv);
     if (const std::string desk = value_of(argc, argv, "--window-state"); !desk.empty())

@@ -13,7 +13,7 @@
 // Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
 //           fade to zero; only then does the new one fade in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
-// Share     step() obeys the budget's share (level_blend.hpp); evaluate() always sums all of a level.
+// Share     step() applies the budget's share (level_blend.hpp); evaluate() always sums all of a level.
 // Frames    wrench in world, bodies in model. SceneMeta maps one to the other.
 // Thread    constructed anywhere (may throw StartupError); then one thread, normally the servo. No
 //           allocation. rebuild() alone may run on another thread at the same time.

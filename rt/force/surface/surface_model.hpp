@@ -14,14 +14,14 @@
 //          the proxy is seated as after a reset, and the force fades in.
 // Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags.
 // Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
-//          of a surface kept fine around the tool by tend() (adaptive_surface.hpp), and where that does not hold
+//          of a surface kept fine around the tool by slow_update() (adaptive_surface.hpp), and where that does not hold
 //          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
 //          radius of full detail, AdaptiveToolSurface::kLeastM to kMostM beyond the tool's.
 // Bodies   one, the proxy, in the hand; orders are refused.
 // Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
 // Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.
 // Frames   tool and wrench in world, the surface in model; SceneMeta maps one to the other.
-// Thread   constructed anywhere (may throw StartupError); then servo, but for tend(). No allocation.
+// Thread   constructed anywhere (may throw StartupError); then servo, but for slow_update(). No allocation.
 #pragma once
 
 #include <array>
