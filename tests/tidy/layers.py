@@ -63,7 +63,7 @@ BELOW = {
 }
 # Third-party header -> folders that wrap it.
 WRAPPED = [
-    (r"libusb", ["hal/phantom", "hal/falcon"]),
+    (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),

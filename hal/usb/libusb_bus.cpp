@@ -1,6 +1,6 @@
-// One libusb context for each time the board is open: Debian's libusb lists devices anew only by udev's
+// One libusb context for each time the device is open: Debian's libusb lists devices anew only by udev's
 // events or with a new context, and there is not always a udev.
-#include "hal/phantom/libusb_bus.hpp"
+#include "hal/usb/libusb_bus.hpp"
 
 #include <libusb.h>
 #include <poll.h>
@@ -10,24 +10,26 @@
 #include <utility>
 
 #include "hal/api/bus_wait.hpp"
-#include "hal/phantom/libusb_find.hpp"
+#include "hal/usb/event_queue.hpp"
+#include "hal/usb/libusb_find.hpp"
 
-namespace tact::phantom {
+namespace tact::usb {
 
 namespace {
 
-constexpr std::size_t kIn = 4;  // transfers that wait for a state
+constexpr std::size_t kIn = 4;  // transfers that wait for a packet
 // One whole packet. A transfer ends with a packet that is shorter than the endpoint's largest, or when its memory
 // is full: with more than this, states of full size would be glued together, eight of them in 512 bytes.
 constexpr std::size_t kInBytes = 64;
-constexpr std::array<unsigned char, kInBytes + 1> kTooLong{};  // stands for a packet that did not fit
+constexpr std::array<std::byte, kInBytes + 1> kTooLong{};  // stands for a packet that did not fit
 constexpr std::size_t kEvents = 64;
-constexpr unsigned kErrorsMax = 20;  // in a row: it is as good as gone
+constexpr unsigned kErrorsMax = 20;      // in a row: it is as good as gone
+constexpr unsigned kControlMaxMs = 500;  // a device answers within a millisecond, or is gone
 constexpr Duration kCloseMax = std::chrono::milliseconds(500);
 
-class LibusbBus final : public UsbBus {
+class LibusbBus final : public Bus {
 public:
-    LibusbBus() = default;
+    explicit LibusbBus(const DeviceKind& kind) : kind_(kind) {}
     ~LibusbBus() override { close(); }
     LibusbBus(const LibusbBus&) = delete;
     LibusbBus& operator=(const LibusbBus&) = delete;
@@ -37,6 +39,7 @@ public:
     std::size_t wait(std::span<BusEvent> events, Duration patience) noexcept override;
     bool send(std::span<const std::byte> packet) noexcept override;
     bool clear_stall() noexcept override;
+    bool control(const VendorRequest& request) noexcept override;
     Instant now() noexcept override { return Monotonic::now(); }
 
 private:
@@ -46,9 +49,12 @@ private:
         bool busy = false;
         std::array<unsigned char, kInBytes> bytes{};
     };
-    [[nodiscard]] BusFinding claim();
+    [[nodiscard]] BusFinding claim(const BusFinding& found);
     void queue(In& in) noexcept;
-    void push(BusEventKind kind, std::span<const unsigned char> bytes = {}) noexcept;
+    void push(BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept;
+    void push_transfer(std::span<const std::byte> bytes) noexcept;
+    void fill(libusb_transfer* transfer, unsigned char address, std::span<unsigned char> bytes,
+              libusb_transfer_cb_fn done, void* of) noexcept;
     void handle_now() noexcept;
     void learn_descriptors() noexcept;
     static void LIBUSB_CALL received(libusb_transfer* transfer) noexcept;
@@ -56,25 +62,26 @@ private:
 
     libusb_context* context_ = nullptr;
     libusb_device_handle* handle_ = nullptr;
-    UsbBoard board_;
+    DeviceKind kind_;
+    FoundDevice device_;
     bool claimed_ = false, closing_ = false, stall_said_ = false, gone_ = false;
     unsigned errors_ = 0;  // in a row
     std::array<In, kIn> in_;
     libusb_transfer* out_ = nullptr;
     bool out_busy_ = false;
     std::array<unsigned char, 64> out_bytes_{};
-    std::array<BusEvent, kEvents> events_{};
-    std::size_t first_ = 0, count_ = 0;
+    EventQueue<kEvents> events_;
     std::array<pollfd, 16> polled_{};
     nfds_t polled_count_ = 0;
 };
 
-BusFinding LibusbBus::claim() {
+BusFinding LibusbBus::claim(const BusFinding& found) {
+    // The kernel's own driver for such a device has it by then.
     static_cast<void>(libusb_set_auto_detach_kernel_driver(handle_, 1));
-    const int error = libusb_claim_interface(handle_, board_.interface);
+    const int error = libusb_claim_interface(handle_, device_.interface);
     if (error == 0) {
         claimed_ = true;
-        return {BusFault::none, board_.serial, {}};
+        return {BusFault::none, found.serial, {}};
     }
     // Arrived before its configuration was set.
     const bool soon = error == LIBUSB_ERROR_NOT_FOUND || error == LIBUSB_ERROR_NO_DEVICE;
@@ -92,15 +99,18 @@ BusFinding LibusbBus::open(const std::string& serial) {
         context_ = nullptr;
         return {BusFault::failed, {}, std::string("starting libusb: ") + libusb_error_name(error)};
     }
-    BusFinding found = find_board(context_, serial, board_, handle_);
-    if (found.fault == BusFault::none) found = claim();
+    BusFinding found = find_device(context_, kind_, serial, device_);
+    if (found.fault == BusFault::none) {
+        handle_ = device_.handle;
+        found = claim(found);
+    }
     if (found.fault != BusFault::none) {
         close();
         return found;
     }
     errors_ = 0;
     gone_ = stall_said_ = false;
-    first_ = count_ = 0;
+    events_.clear();
     out_ = libusb_alloc_transfer(0);
     for (In& in : in_) {
         in.bus = this;
@@ -124,29 +134,31 @@ void LibusbBus::learn_descriptors() noexcept {
     libusb_free_pollfds(list);
 }
 
+void LibusbBus::fill(libusb_transfer* transfer, unsigned char address, std::span<unsigned char> bytes,
+                     libusb_transfer_cb_fn done, void* of) noexcept {
+    const auto fill_transfer = kind_.bulk ? &libusb_fill_bulk_transfer : &libusb_fill_interrupt_transfer;
+    fill_transfer(transfer, handle_, address, bytes.data(), static_cast<int>(bytes.size()), done, of, 0);
+}
+
 void LibusbBus::queue(In& in) noexcept {
     if (in.transfer == nullptr || closing_ || gone_) return;
-    libusb_fill_interrupt_transfer(in.transfer, handle_, board_.in, in.bytes.data(),
-                                   static_cast<int>(in.bytes.size()), &LibusbBus::received, &in, 0);
+    fill(in.transfer, device_.in, in.bytes, &LibusbBus::received, &in);
     in.busy = libusb_submit_transfer(in.transfer) == 0;
     if (!in.busy) push(BusEventKind::gone);
 }
 
-// The newest events stay: an old state is worth nothing.
-void LibusbBus::push(BusEventKind kind, std::span<const unsigned char> bytes) noexcept {
-    if (kind == BusEventKind::gone) {
-        if (gone_) return;
-        gone_ = true;
-    }
-    if (count_ == kEvents) {
-        first_ = (first_ + 1) % kEvents;
-        --count_;
-    }
-    BusEvent& e = events_[(first_ + count_++) % kEvents];
-    e.kind = kind;
-    e.at = Monotonic::now();
-    e.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), 65));
-    std::memcpy(e.bytes.data(), bytes.data(), std::min(bytes.size(), e.bytes.size()));
+void LibusbBus::push(BusEventKind kind, std::span<const std::byte> bytes) noexcept {
+    if (kind == BusEventKind::gone && std::exchange(gone_, true)) return;
+    events_.push(kind, Monotonic::now(), bytes);
+}
+
+void LibusbBus::push_transfer(std::span<const std::byte> bytes) noexcept {
+    if (kind_.unpack == nullptr) return push(BusEventKind::packet, bytes);
+    const Piece piece = kind_.unpack(bytes);
+    if (piece.damaged)
+        push(BusEventKind::receive_failed);
+    else if (!piece.bytes.empty())
+        push(BusEventKind::packet, piece.bytes);
 }
 
 void LIBUSB_CALL LibusbBus::received(libusb_transfer* transfer) noexcept {
@@ -156,12 +168,12 @@ void LIBUSB_CALL LibusbBus::received(libusb_transfer* transfer) noexcept {
     switch (transfer->status) {
         case LIBUSB_TRANSFER_COMPLETED:
             bus.errors_ = 0;
-            bus.push(BusEventKind::packet,
-                     std::span(in.bytes).first(static_cast<std::size_t>(transfer->actual_length)));
+            bus.push_transfer(
+                std::as_bytes(std::span(in.bytes)).first(static_cast<std::size_t>(transfer->actual_length)));
             break;
         case LIBUSB_TRANSFER_OVERFLOW:
             if (++bus.errors_ > kErrorsMax) return bus.push(BusEventKind::gone);
-            bus.push(BusEventKind::packet, kTooLong);
+            bus.push_transfer(kTooLong);
             break;
         case LIBUSB_TRANSFER_CANCELLED:
             return;
@@ -180,9 +192,10 @@ void LIBUSB_CALL LibusbBus::received(libusb_transfer* transfer) noexcept {
 void LIBUSB_CALL LibusbBus::was_sent(libusb_transfer* transfer) noexcept {
     LibusbBus& bus = *static_cast<LibusbBus*>(transfer->user_data);
     bus.out_busy_ = false;
+    const bool whole = transfer->actual_length == transfer->length;
     switch (transfer->status) {
         case LIBUSB_TRANSFER_COMPLETED:
-            return bus.push(BusEventKind::sent);
+            return bus.push(whole ? BusEventKind::sent : BusEventKind::send_failed);
         case LIBUSB_TRANSFER_NO_DEVICE:
             return bus.push(BusEventKind::gone);
         case LIBUSB_TRANSFER_STALL:
@@ -197,8 +210,7 @@ void LIBUSB_CALL LibusbBus::was_sent(libusb_transfer* transfer) noexcept {
 bool LibusbBus::send(std::span<const std::byte> packet) noexcept {
     if (handle_ == nullptr || out_busy_ || gone_ || packet.size() > out_bytes_.size()) return false;
     std::memcpy(out_bytes_.data(), packet.data(), packet.size());
-    libusb_fill_interrupt_transfer(out_, handle_, board_.out, out_bytes_.data(),
-                                   static_cast<int>(packet.size()), &LibusbBus::was_sent, this, 0);
+    fill(out_, device_.out, std::span(out_bytes_).first(packet.size()), &LibusbBus::was_sent, this);
     const int error = libusb_submit_transfer(out_);
     out_busy_ = error == 0;
     if (error == LIBUSB_ERROR_NO_DEVICE || (error != 0 && ++errors_ > kErrorsMax))
@@ -211,12 +223,19 @@ bool LibusbBus::send(std::span<const std::byte> packet) noexcept {
 bool LibusbBus::clear_stall() noexcept {
     if (handle_ == nullptr || gone_) return false;
     stall_said_ = false;
-    if (libusb_clear_halt(handle_, board_.in) != 0 || libusb_clear_halt(handle_, board_.out) != 0)
+    if (libusb_clear_halt(handle_, device_.in) != 0 || libusb_clear_halt(handle_, device_.out) != 0)
         return false;
     for (In& in : in_) {
         if (!in.busy) queue(in);
     }
     return !gone_;
+}
+
+bool LibusbBus::control(const VendorRequest& request) noexcept {
+    constexpr std::uint8_t kVendorOut = 0x40;
+    return handle_ != nullptr && !gone_ &&
+           libusb_control_transfer(handle_, kVendorOut, request.request, request.value, 0, nullptr, 0,
+                                   kControlMaxMs) == 0;
 }
 
 void LibusbBus::handle_now() noexcept {
@@ -230,15 +249,11 @@ std::size_t LibusbBus::wait(std::span<BusEvent> events, Duration patience) noexc
         nap(patience);
         return 0;
     }
-    if (count_ == 0 && !events.empty()) {
+    if (events_.empty() && !events.empty()) {
         wait_for(std::span(polled_).first(polled_count_), patience);
         handle_now();
     }
-    const std::size_t n = std::min(count_, events.size());
-    for (std::size_t i = 0; i < n; ++i) events[i] = events_[(first_ + i) % kEvents];
-    first_ = (first_ + n) % kEvents;
-    count_ -= n;
-    return n;
+    return events_.fetch(events);
 }
 
 void LibusbBus::close() noexcept {
@@ -258,24 +273,18 @@ void LibusbBus::close() noexcept {
     }
     closing_ = false;
     if (busy()) return;  // the kernel still has the memory: it stays, and is tried again with the next open()
-    for (In& in : in_) {
-        libusb_free_transfer(in.transfer);
-        in.transfer = nullptr;
-    }
-    libusb_free_transfer(out_);
-    out_ = nullptr;
+    for (In& in : in_) libusb_free_transfer(std::exchange(in.transfer, nullptr));
+    libusb_free_transfer(std::exchange(out_, nullptr));
     if (handle_ != nullptr) {
-        if (claimed_) static_cast<void>(libusb_release_interface(handle_, board_.interface));
-        libusb_close(handle_);
+        if (claimed_) static_cast<void>(libusb_release_interface(handle_, device_.interface));
+        libusb_close(std::exchange(handle_, nullptr));
     }
-    handle_ = nullptr;
     claimed_ = false;
-    libusb_exit(context_);
-    context_ = nullptr;
+    libusb_exit(std::exchange(context_, nullptr));
 }
 
 }  // namespace
 
-std::unique_ptr<UsbBus> make_libusb_bus() { return std::make_unique<LibusbBus>(); }
+std::unique_ptr<Bus> make_libusb_bus(const DeviceKind& kind) { return std::make_unique<LibusbBus>(kind); }
 
-}  // namespace tact::phantom
+}  // namespace tact::usb
