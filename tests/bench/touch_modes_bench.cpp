@@ -95,7 +95,7 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
                 (void)model->step(tool, {.fidelity = 1.0F});
                 auto& least = servo_us[static_cast<std::size_t>(i)];
                 least = std::min(least, to_us(Monotonic::now() - begin));
-                adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
+                adaptive += model->regime() == TouchRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
                 next += std::chrono::milliseconds(1);
                 if (live) std::this_thread::sleep_until(next);
             }

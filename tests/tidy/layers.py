@@ -32,10 +32,12 @@ BELOW = {
     "ipc/station": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
-    # Force models do not know each other.
-    "rt/force/docking": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/drilling": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/surface": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
+    # Force models do not know each other. Each knows the topic that it publishes, and the commands that it takes.
+    "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/topics/bodies", "ipc/topics/command", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/drilling": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/drill", "ipc/topics/event", "ipc/topics/touch",
+                          "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/surface": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/command", "ipc/topics/touch", "rt/force/force_model",
+                         "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],
     # The cycle knows the contract of a force model and no model.
@@ -79,7 +81,8 @@ WRAPPED = [
                     "ipc/recorder/main", "ipc/station/station_report", "tests"]),
 ]
 # What is named under a folder in these files alone: a table of the systems there.
-NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"])]
+NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
+         ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}

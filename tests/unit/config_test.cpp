@@ -325,8 +325,6 @@ TEST(Config, a_foot_pedal_needs_a_line) {
     EXPECT_TRUE(refused("drilling.suction"));
     config.lines.suction_pedal = "3";
     check_config(config, "here");
-    EXPECT_EQ(settings_from(config, true).drives.burr, Pedal::line);
-    EXPECT_EQ(settings_from(config, true).drives.suction, Pedal::line);
     EXPECT_EQ(lines_settings_from(config).gpio.burr_pedal, "2");
     EXPECT_EQ(lines_settings_from(config).gpio.suction_pedal, "3");
 }

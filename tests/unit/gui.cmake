@@ -8,7 +8,7 @@ if(TACT_GUI)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)
     tact_test(unit/gui_trace_export_test.cpp USES gui_dashboard topics base)
     tact_test(unit/gui_particles_test.cpp USES gui_drilling_site scene base)
-    tact_test(scenario/site_scenario_test.cpp USES gui_drilling_site gui_link topics shm scene hal force servo threads config base)
+    tact_test(scenario/site_scenario_test.cpp USES gui_drilling_site gui_link topics shm scene hal force servo threads config start base)
     tact_test(unit/gui_site_test.cpp USES gui_drilling_site gui_link topics shm scene base
         SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_cloud_test.cpp USES gui_window gui_drilling gui_drilling_site gui_dashboard gui_render launch scene base

@@ -1,18 +1,17 @@
-// What a recording needs of a cycle, so that the same code can do it again: its inputs as they came, and what it gave.
+#include "rt/servo/record.hpp"
+
 #include <algorithm>
 #include <cstring>
 
-#include "rt/servo/servo.hpp"
+#include "rt/servo/topic_fill.hpp"
 
-namespace tact {
+namespace tact::servo {
 namespace {
 
-void keep(double (&to)[3], const Vec3& from) noexcept { std::copy_n(from.data(), 3, to); }
-
-StartDevice introduced(const DeviceInfo& info) noexcept {
+StartDevice introduced(const DeviceInfo& info) {
     StartDevice d{};
     std::memcpy(d.name, info.name.data(), std::min(info.name.size(), sizeof d.name - 1));
-    keep(d.workspace_half_m, info.workspace_half_m);
+    put(d.workspace_half_m, info.workspace_half_m);
     d.force_n_max = info.force_n_max;
     d.force_n_continuous = info.force_n_continuous;
     d.torque_n_m_max = info.torque_n_m_max;
@@ -26,15 +25,15 @@ HandTopic hand_of(const HandCycle& h, std::uint64_t step) noexcept {
     t.step = step;
     t.taken_at_ns = to_ns(h.sample.taken_at);
     t.sequence = h.sample.sequence;
-    keep(t.pos_dev_m, h.sample.T_dev_tool.p_m);
-    std::copy_n(h.sample.T_dev_tool.q.coeffs().data(), 4, t.quat_dev_tool_xyzw);
-    keep(t.velocity_dev_m_s, h.sample.twist_dev.linear_m_s);
-    keep(t.angular_dev_rad_s, h.sample.twist_dev.angular_rad_s);
+    put(t.pos_dev_m, h.sample.T_dev_tool.p_m);
+    put(t.quat_dev_tool_xyzw, h.sample.T_dev_tool.q);
+    put(t.velocity_dev_m_s, h.sample.twist_dev.linear_m_s);
+    put(t.angular_dev_rad_s, h.sample.twist_dev.angular_rad_s);
     t.delay_ns = h.sample.delay.count();
-    keep(t.force_world_n, h.shown_world.force_n);
-    keep(t.torque_world_n_m, h.shown_world.torque_n_m);
-    keep(t.force_model_world_n, h.step.wrench_world.force_n);
-    keep(t.torque_model_world_n_m, h.step.wrench_world.torque_n_m);
+    put(t.force_world_n, h.shown_world.force_n);
+    put(t.torque_world_n_m, h.shown_world.torque_n_m);
+    put(t.force_model_world_n, h.step.wrench_world.force_n);
+    put(t.torque_model_world_n_m, h.step.wrench_world.torque_n_m);
     t.model_error_n = static_cast<float>(h.step.load.error);
     t.items = h.step.load.items;
     t.buttons = h.sample.buttons;
@@ -51,22 +50,20 @@ HandTopic hand_of(const HandCycle& h, std::uint64_t step) noexcept {
 
 }  // namespace
 
-void Servo::introduce(const ServoParts& parts) noexcept {
-    begun_.period_ns = settings_.free_running ? 0 : settings_.period.count();
-    begun_.hands = c_->hands;
-    begun_.flags = (settings_.emulated ? kStartEmulated : 0U) | (lines_ != nullptr ? kStartLines : 0U);
-    keep(begun_.pos_world_dev_m, settings_.T_world_dev.p_m);
-    std::copy_n(settings_.T_world_dev.q.coeffs().data(), 4, begun_.quat_world_dev_xyzw);
-    for (std::size_t i = 0; i < parts.hands.size(); ++i) begun_.device[i] = introduced(parts.hands[i].info);
+StartTopic start_topic(const ServoSettings& settings, std::span<const HandParts> hands, bool lines) {
+    StartTopic t{};
+    t.period_ns = settings.free_running ? 0 : settings.period.count();
+    t.hands = static_cast<std::uint32_t>(hands.size());
+    t.flags = (settings.emulated ? kStartEmulated : 0U) | (lines ? kStartLines : 0U);
+    put(t.pos_world_dev_m, settings.T_world_dev.p_m);
+    put(t.quat_world_dev_xyzw, settings.T_world_dev.q);
+    for (std::size_t i = 0; i < std::min(hands.size(), std::size(t.device)); ++i)
+        t.device[i] = introduced(hands[i].info);
+    return t;
 }
 
-void Servo::record_mailbox(MailboxKind kind, const ServoOrder& order) noexcept {
-    region_.mailbox.push(
-        {.step = c_->step, .kind = static_cast<std::uint32_t>(kind), .reserved = 0, .order = order});
-}
-
-void Servo::publish_cycle(const CycleState& c, bool dry) noexcept {
-    for (std::uint32_t i = 0; i < c.hands; ++i) region_.hand[i].push(hand_of(c.hand[i], c.step));
+void publish_cycle(const CycleState& c, RtRegion& region) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) region.hand[i].push(hand_of(c.hand[i], c.step));
     CycleTopic t{};
     t.step = c.step;
     t.cycle = c.cycle;
@@ -77,7 +74,7 @@ void Servo::publish_cycle(const CycleState& c, bool dry) noexcept {
     t.model_ns = c.model_cost.count();
     t.level = c.budget.fidelity;
     t.work_fraction = c.budget.work_fraction;
-    if (lines_ != nullptr) {
+    if (c.lines.fitted) {
         const LinesSample& l = c.lines.sample;
         t.lines_taken_at_ns = to_ns(l.taken_at);
         t.lines_sequence = l.sequence;
@@ -88,11 +85,11 @@ void Servo::publish_cycle(const CycleState& c, bool dry) noexcept {
         t.lines_outputs = l.outputs;
         t.flags |= kCycleLines;
     }
-    if (dry) t.flags |= kCycleDry;
+    if (c.dry) t.flags |= kCycleDry;
     t.run_state = static_cast<std::uint8_t>(c.run.state);
     t.run_reason = static_cast<std::uint8_t>(c.run.reason);
     t.timestamps = c.timestamps;
-    region_.cycles.push(t);
+    region.cycles.push(t);
 }
 
-}  // namespace tact
+}  // namespace tact::servo
