@@ -198,15 +198,15 @@ TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
         if (missed < kMarksMin && calibration.status().grade == FitGrade::red) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
-        EXPECT_EQ(calibration.glass_words(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
+        EXPECT_EQ(calibration.glass_text(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
         EXPECT_NE(calibration.instruction().find("All points are taken"), std::string::npos);
         calibration.redo(missed);
         EXPECT_EQ(calibration.marks().current, missed);
-        EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
+        EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
         EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
         EXPECT_FALSE(calibration.marks().outlier());
-        EXPECT_EQ(calibration.glass_words(), "ALL POINTS ARE TAKEN");
+        EXPECT_EQ(calibration.glass_text(), "ALL POINTS ARE TAKEN");
     }
 }
 
@@ -318,7 +318,7 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     for (const CalibrationStep step : {CalibrationStep::screen, CalibrationStep::workspace}) {
         calibration.go(step);
         EXPECT_EQ(calibration.lacking(), Lacking::size);
-        EXPECT_EQ(calibration.glass_words(), "FIRST TYPE THE SIZE OF THE PICTURE");
+        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE SIZE OF THE PICTURE");
         EXPECT_NE(calibration.instruction().find("size comes first"), std::string::npos);
         calibration.take();
         EXPECT_FALSE(calibration.measuring());
@@ -326,21 +326,21 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     }
     calibration.set_workspace_by_wand(true);  // which needs no picture
     EXPECT_EQ(calibration.lacking(), Lacking::nothing);
-    EXPECT_EQ(calibration.glass_words(), "STYLUS TO WAND: POINT 1");
+    EXPECT_EQ(calibration.glass_text(), "STYLUS TO WAND: POINT 1");
     EXPECT_EQ(calibration.instruction().find("size comes first"), std::string::npos);
     calibration.set_workspace_by_wand(false);
     calibration.set_picture_size(lab.width_m, lab.height_m);
-    EXPECT_EQ(calibration.glass_words(), "STYLUS: TOUCH MARK 1");
+    EXPECT_EQ(calibration.glass_text(), "STYLUS: TOUCH MARK 1");
     calibration.go(CalibrationStep::screen);
-    EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK 1");
+    EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK 1");
     calibration.take();
-    EXPECT_EQ(calibration.glass_words(), "HOLD STILL: POINT 1");
+    EXPECT_EQ(calibration.glass_text(), "HOLD STILL: POINT 1");
     calibration.take();
     person.seen = person.arm = false;
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
-    EXPECT_EQ(calibration.glass_words(), "THE TRACKER SEES NO SENSOR");
+    EXPECT_EQ(calibration.glass_text(), "THE TRACKER SEES NO SENSOR");
     calibration.go(CalibrationStep::workspace);
-    EXPECT_EQ(calibration.glass_words(), "NOTHING IS HEARD OF THE STYLUS");
+    EXPECT_EQ(calibration.glass_text(), "NOTHING IS HEARD OF THE STYLUS");
 }
 
 TEST(Calibration, the_stylus_button_takes_once_per_press) {
