@@ -60,6 +60,7 @@ def legend(axes, handles=None):
 
 
 def save(figure, folder, name):
+    figure.align_ylabels()
     figure.savefig(os.path.join(folder, name), dpi=DPI)
     plt.close(figure)
     print(f"  {name}")
@@ -163,8 +164,9 @@ def burr_panel(axes, rows, radius, quantity, value, last_too=True):
     for number, (column, label, dashed) in enumerate(ways(rows[0], quantity)):
         if dashed and not last_too:
             continue
+        # Each curve is thinner than the one before it, so that equal ones are all visible.
         axes.plot([r["penetration_mm"] / radius for r in some], [value(r, column) for r in some], color=COLOURS[number],
-                  linestyle="--" if dashed else "-", label=label)
+                  linestyle="--" if dashed else "-", linewidth=3.4 - 0.8 * number, label=label)
     axes.margins(x=0.01)
 
 

@@ -74,7 +74,7 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
                             {}});
     MeshPicture picture{.title = "Figure 3: an open mesh, its border with and without protection",
                         .remark =
-                            "sizes as in the seed, border planes weighted by f = 1000 as there; distances: "
+                            "sizes as in the paper, border planes weighted by f = 1000 as there; distances: "
                             "the furthest, in percent of the "
                             "box's diagonal",
                         .eye = Vec3(0.5, -1.2, 1.1),
@@ -95,7 +95,7 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
     const std::string counts =
         text("%zu to %zu and %zu", rows[0].mesh.vertices(), rows[3].mesh.vertices(), rows[4].mesh.vertices());
     return {{"3", "open mesh, vertices", "1250 to 100 and 8", counts,
-             "a bent sheet of ours; the seed's mesh is not published"},
+             "a bent sheet of ours; the mesh of the paper is not published"},
             {"3", "border, no protection", "zig-zag at 100, lost at 8",
              "off by " + border(1) + " and " + border(2), "furthest, of the mesh's diagonal"},
             {"3", "border, protected (f = 1000)", "kept at 100 and 8",
@@ -116,7 +116,7 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
                         {}});
     MeshPicture picture{.title = "Figure 4: isosurface like that of a chaperonin, at three sizes",
                         .remark =
-                            "two rings of eight, made in code; sizes as in the seed; flat shaded; distances "
+                            "two rings of eight, made in code; sizes as in the paper; flat shaded; distances "
                             "in percent of the box's diagonal",
                         .eye = Vec3(0.5, -1.6, 0.9),
                         .panel_px = 560};
@@ -182,9 +182,9 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
         100.0 * (1.0 - static_cast<double>(some.triangles()) / static_cast<double>(all.triangles()));
     save({.title = "Figure 6: the surface without and with adaptation",
           .remark = "the map of the rate experiment; as it was drawn on average at the goal B of figure 5",
-          .panels = {{&all, text("(a) %zu triangles", all.triangles()), "the seed: 10140", false},
+          .panels = {{&all, text("(a) %zu triangles", all.triangles()), "paper: 10140", false},
                      {&some, text("(b) %zu triangles, %.0f %% fewer", some.triangles(), fewer),
-                      text("the seed: 2776, 72 %% fewer; error %.2f A",
+                      text("paper: 2776, 72 %% fewer; error %.2f A",
                            static_cast<double>(cut.error_m()) / kAngstromM),
                       false}},
           .eye = Vec3(0.6, -1.2, 1.4),
