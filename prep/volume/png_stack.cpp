@@ -1,12 +1,11 @@
 #include "prep/volume/png_stack.hpp"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cstring>
 #include <map>
 
 #include "ipc/base/error.hpp"
+#include "ipc/image/png.hpp"
 
 namespace tact {
 namespace {
@@ -14,18 +13,16 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kStackMax = Scan::kEdgeMax;
 
-struct PngPicture {
-    png_image image{};
-    PngPicture(const fs::path& path, const std::string& attempt) {
-        image.version = PNG_IMAGE_VERSION;
-        if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
-            throw StartupError(attempt, path.filename().string() + ": " + image.message,
-                               "export the pictures again");
+// What libpng reports of the file `name` of a folder becomes a StartupError.
+template <class Use>
+auto use_png(const fs::path& folder, const std::string& name, const std::string& attempt, Use&& use) {
+    try {
+        PngReader picture(folder / name);
+        return use(picture);
+    } catch (const PngError& e) {
+        throw StartupError(attempt, name + ": " + e.what(), "export the pictures again");
     }
-    PngPicture(const PngPicture&) = delete;
-    PngPicture& operator=(const PngPicture&) = delete;
-    ~PngPicture() { png_image_free(&image); }
-};
+}
 
 }  // namespace
 
@@ -72,11 +69,10 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
     PngStack stack;
     ScanAxes axes;
     bool colour = false;
-    {
-        const PngPicture first(folder / names[0], attempt);
-        axes.size = {first.image.width, first.image.height, names.size()};
-        colour = (first.image.format & (PNG_FORMAT_FLAG_COLOR | PNG_FORMAT_FLAG_COLORMAP)) != 0;
-    }
+    use_png(folder, names[0], attempt, [&](const PngReader& first) {
+        axes.size = {first.width_px(), first.height_px(), names.size()};
+        colour = first.colour();
+    });
     for (int a = 0; a < 3; ++a) axes.step_mm[static_cast<std::size_t>(a)][a] = spacing_mm[a];
     std::vector<std::uint32_t> order;
     stack.scan = scan_of(axes, attempt, order);
@@ -87,17 +83,15 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
                        wide = stack.scan.columns,
                        high = stack.scan.rows](std::uint32_t slice, std::span<float> pixels) {
         const std::string& name = names.at(slice);
-        PngPicture picture(folder / name, attempt);
-        if (picture.image.width != wide || picture.image.height != high)
-            throw StartupError(attempt,
-                               name + " is " + std::to_string(picture.image.width) + " x " +
-                                   std::to_string(picture.image.height) + " pixels, others are " +
-                                   std::to_string(wide) + " x " + std::to_string(high),
-                               "give a folder of pictures of one stack");
-        picture.image.format = palette ? PNG_FORMAT_RGBA : PNG_FORMAT_GRAY;
-        std::vector<png_byte> bytes(PNG_IMAGE_SIZE(picture.image));
-        if (png_image_finish_read(&picture.image, nullptr, bytes.data(), 0, nullptr) == 0)
-            throw StartupError(attempt, name + ": " + picture.image.message, "export the pictures again");
+        const auto bytes = use_png(folder, name, attempt, [&](PngReader& picture) {
+            if (picture.width_px() != wide || picture.height_px() != high)
+                throw StartupError(attempt,
+                                   name + " is " + std::to_string(picture.width_px()) + " x " +
+                                       std::to_string(picture.height_px()) + " pixels, others are " +
+                                       std::to_string(wide) + " x " + std::to_string(high),
+                                   "give a folder of pictures of one stack");
+            return picture.read(palette ? PngFormat::rgba : PngFormat::grey);
+        });
         if (!palette) {
             std::copy(bytes.begin(), bytes.end(), pixels.begin());
             return;

@@ -18,6 +18,7 @@ import tempfile
 # Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
 BELOW = {
     "ipc/base": [],
+    "ipc/image": ["ipc/base"],
     "ipc/version": [],
     "ipc/manual": ["ipc/base"],
     "ipc/shm": ["ipc/base"],
@@ -59,7 +60,7 @@ BELOW = {
     "gui/stereo": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling",
                    "gui/stereo"],
-    "prep": ["ipc/base", "ipc/version", "ipc/scene", "ipc/manual"],
+    "prep": ["ipc/base", "ipc/image", "ipc/version", "ipc/scene", "ipc/manual"],
     "deploy": ["ipc", "rt/force", "hal/probe"],
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
@@ -70,8 +71,8 @@ WRAPPED = [
     (r"gemmi/", ["prep", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
-    (r"png\.h|pngconf", ["gui", "prep/volume/png_stack", "tests"]),
-    (r"ft2build\.h|freetype/", ["tests/reproduce/plot_canvas"]),
+    (r"png\.h|pngconf", ["ipc/image"]),
+    (r"nifti", ["prep/volume/nifti"]),
     (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/scene/file", "prep", "tests"]),
     (r"CLI/", ["ipc/manual", "ipc/recorder/main", "rt/main", "rt/start/start_options", "rt/replay", "gui", "prep", "deploy", "tests"]),

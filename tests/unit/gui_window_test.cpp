@@ -1,7 +1,6 @@
 // tact-gui as a process, on an X server of its own: waits, attaches, applies, survives, draws.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <png.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -116,15 +115,15 @@ protected:
     }
     static std::set<std::uint32_t> colours(const std::string& path, std::uint32_t width,
                                            std::uint32_t height) {
-        png_image image{};
-        image.version = PNG_IMAGE_VERSION;
-        if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return {};
-        EXPECT_EQ(image.width, width);
-        EXPECT_EQ(image.height, height);
-        image.format = PNG_FORMAT_RGBA;
-        std::vector<std::uint32_t> pixels(std::size_t{image.width} * image.height);
-        if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return {};
-        return {pixels.begin(), pixels.end()};
+        if (!std::filesystem::exists(path)) return {};
+        PngReader picture(path);
+        EXPECT_EQ(picture.width_px(), width);
+        EXPECT_EQ(picture.height_px(), height);
+        const std::vector<std::uint8_t> rgb = picture.read(PngFormat::rgb);
+        std::set<std::uint32_t> colours;
+        for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
+            colours.insert(static_cast<std::uint32_t>(rgb[i] << 16U | rgb[i + 1] << 8U | rgb[i + 2]));
+        return colours;
     }
 
     // Of a window that has drawn a few frames of what is published meanwhile.

@@ -1,11 +1,11 @@
 // Readers of scans: the same bone out of every format and axis order, and what is wrong is said.
 #include <gtest/gtest.h>
-#include <png.h>
 #include <zlib.h>
 
 #include <algorithm>
 
 #include "ipc/base/error.hpp"
+#include "ipc/image/png.hpp"
 #include "prep/volume/import_bone.hpp"
 #include "prep/volume/png_stack.hpp"
 #include "tests/support/says.hpp"
@@ -421,14 +421,10 @@ TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enou
     EXPECT_TRUE(says(refusal(o), {"none of them lies in the volume"}));
 }
 
-void write_png(const fs::path& path, std::uint32_t wide,
-               const std::vector<std::array<std::uint8_t, 4>>& pixels) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = wide;
-    image.height = static_cast<std::uint32_t>(pixels.size() / wide);
-    image.format = PNG_FORMAT_RGBA;
-    ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr), 0);
+void write_rgba(const fs::path& path, std::uint32_t wide,
+                const std::vector<std::array<std::uint8_t, 4>>& pixels) {
+    write_png(path, wide, static_cast<std::uint32_t>(pixels.size()) / wide,
+              std::span(pixels.data()->data(), 4 * pixels.size()), PngFormat::rgba);
 }
 
 TEST(Pictures, are_ordered_by_number_without_gaps) {
@@ -455,7 +451,7 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     const ScanFolder f;
     const std::array<std::uint8_t, 4> bone{255, 249, 219, 255}, nerve{9, 8, 7, 255}, empty{1, 2, 3, 0};
     for (int k = 0; k < 3; ++k)
-        write_png(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
+        write_rgba(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
     BoneImport o = of(f.path);
     EXPECT_TRUE(says(refusal(o), {"--spacing-mm"}));
     o.spacing_mm = Vec3(0.2, 0.2, 0.2);
@@ -472,7 +468,7 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     EXPECT_TRUE(zero_beyond_size(b.bricks, b.density) && zero_beyond_size(b.bricks, b.label));
     o.bone_colour = {1, 1, 1};
     EXPECT_TRUE(says(refusal(o), {"1,1,1", "--bone-colour"}));
-    write_png(f.path / "p2.png", 2, {bone, bone, bone, bone});
+    write_rgba(f.path / "p2.png", 2, {bone, bone, bone, bone});
     EXPECT_TRUE(says(refusal(o), {"p2.png is 2 x 2", "3 x 2"}));
     f.write("p2.png", "no picture");
     EXPECT_TRUE(says(refusal(o), {"p2.png"}));
