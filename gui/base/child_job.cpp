@@ -76,7 +76,7 @@ void ChildJob::start(const std::string& program, const std::vector<std::string>&
     pid_ = pid;
 }
 
-std::string ChildJob::said() const { return output_fd_ >= 0 ? tail_of(output_fd_) : std::string(); }
+std::string ChildJob::output() const { return output_fd_ >= 0 ? tail_of(output_fd_) : std::string(); }
 
 void ChildJob::cancel() const {
     if (pid_ > 0) kill(pid_, SIGTERM);

@@ -39,7 +39,7 @@ public:
     // The outcome, once, when the program has ended.
     [[nodiscard]] std::optional<ChildOutcome> poll();
     // What it printed up to now, the last kOutputMax bytes.
-    [[nodiscard]] std::string said() const;
+    [[nodiscard]] std::string output() const;
     // Asks it to end (SIGTERM); poll() tells when it has.
     void cancel() const;
 

@@ -59,16 +59,16 @@ void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
 
 // What a device says comes in place of the state's own words: it knows more.
 void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
-    bool said = false;
+    bool message = false;
     for (const std::uint8_t code : h.device_notice) {
         const auto notice = static_cast<DeviceNotice>(code);
         if (notice == DeviceNotice::none) continue;
-        said = true;
+        message = true;
         ImGui::PushTextWrapPos(0.0F);
         text_small(theme, grade_colour(notice_grade(notice)), device_notice_text(notice));
         ImGui::PopTextWrapPos();
     }
-    if (!said) text_small(theme, grade_colour(state.grade), state.words);
+    if (!message) text_small(theme, grade_colour(state.grade), state.text);
 }
 
 // A run that is kept says so: beside the card's title, at its right.
@@ -115,7 +115,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     ImGui::BeginGroup();
     text_small(theme, colour::kDim, "force rate, goal " + rate_text(h.goal_hz), false);
     ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y + theme.small->FontSize});
-    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.words,
+    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.text,
                false);
     ImGui::EndGroup();
     ImGui::SetCursorScreenPos(below);
@@ -205,7 +205,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         delay(theme, h);
         StatusText picture = display_status(
             state.load.fps, state.have_levels ? static_cast<double>(state.levels.display_goal_hz) : 0.0);
-        if (state.frames.late > 0) picture.words += ", " + grouped(state.frames.late) + " late";
+        if (state.frames.late > 0) picture.text += ", " + grouped(state.frames.late) + " late";
         row(theme, "Picture", format("%.0f /s", state.load.fps), picture);
         const StatusText memory = memory_status(h);
         if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);

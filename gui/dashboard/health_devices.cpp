@@ -19,15 +19,15 @@ std::string a_second(const CounterRate& rate) {
 }
 
 std::string aged(const StatusText& status, std::int64_t age_ns) {
-    if (age_ns < 1000) return status.words;  // as an emulated device's: read in its own cycle
-    return status.words + ", " + duration_text(1e-9 * static_cast<double>(age_ns)) + " old";
+    if (age_ns < 1000) return status.text;  // as an emulated device's: read in its own cycle
+    return status.text + ", " + duration_text(1e-9 * static_cast<double>(age_ns)) + " old";
 }
 
 void device_row(const Theme& theme, const DashboardState& state, std::size_t hand, const char* name) {
     const DeviceHand& d = state.devices.hand[hand];
     const BusCounts& bus = state.health.device_bus[hand];
     StatusText v = device_status(d, bus, static_cast<DeviceNotice>(state.health.device_notice[hand]));
-    v.words = aged(v, d.age_ns);
+    v.text = aged(v, d.age_ns);
     row(theme, name, a_second(state.device_rate[hand]), v);
     if (!bus.clean()) below(theme, bus_text(bus));
 }
@@ -50,7 +50,7 @@ void tracker_row(const Theme& theme, const DashboardState& state) {
     if (!state.have_tracker) return row(theme, "Head tracker", "none");
     const TrackerTopic& t = state.tracker;
     StatusText v = tracker_status(t);
-    v.words = aged(v, t.age_ns);
+    v.text = aged(v, t.age_ns);
     row(theme, "Head tracker", a_second(state.tracker_rate), v);
     if (const std::string wrong = tracker_counts_text(t); !wrong.empty()) below(theme, wrong);
 }

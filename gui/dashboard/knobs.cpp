@@ -56,7 +56,7 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
     spec.title = "Knobs";
     spec.unit = "of 1";
     spec.lines = std::span(level).first(paths);
-    spec.words = std::span<const std::string>(words).first(paths);
+    spec.text = std::span<const std::string>(words).first(paths);
     spec.fixed_top = 1.0;
     spec.steps = true;
     const PlotHover hover = draw_plot(theme, spec, size);

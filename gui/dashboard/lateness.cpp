@@ -66,9 +66,9 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
 
     // What they mean in words, and the figures in two lines of two.
     const StatusText status = lateness_status(f.p99_ns, period_ns);
-    const float words_at = size.x - width_of(status.words);
+    const float words_at = size.x - width_of(status.text);
     if (words_at > width_of("Lateness last 60 s "))
-        label({at.x + words_at, at.y}, grade_colour(status.grade), status.words);
+        label({at.x + words_at, at.y}, grade_colour(status.grade), status.text);
     const std::pair<const char*, std::int64_t> metrics[] = {
         {"p50", f.p50_ns}, {"p99", f.p99_ns}, {"p99.9", f.p999_ns}, {"max", f.max_ns}};
     // In two columns where there is room for them.

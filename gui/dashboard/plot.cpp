@@ -153,7 +153,7 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
 
     float gutter = 0.0F;
     for (const double v : axis.mark) gutter = std::max(gutter, width_of(mark_text(v)));
-    const auto rows = static_cast<float>(std::max<std::size_t>(spec.words.size(), 1));
+    const auto rows = static_cast<float>(std::max<std::size_t>(spec.text.size(), 1));
     Frame f{{at.x + gutter + theme.px(5.0F), at.y + (1.1F + rows) * line + theme.px(9.0F)},
             {at.x + size.x - 1.0F, at.y + size.y - line - theme.px(3.0F)},
             axis,
@@ -170,10 +170,10 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
         draw->AddRectFilled({x, y + 0.47F * line}, {x + theme.px(8.0F), y + 0.47F * line + theme.px(3.0F)},
                             c);
     };
-    for (std::size_t i = 0; i < spec.words.size(); ++i) {
+    for (std::size_t i = 0; i < spec.text.size(); ++i) {
         const float y = at.y + (1.08F + static_cast<float>(i)) * line;
         if (i < spec.lines.size()) swatch(at.x, y, spec.lines[i].colour);
-        label({at.x + theme.px(11.0F), y}, colour::kDim, spec.words[i]);
+        label({at.x + theme.px(11.0F), y}, colour::kDim, spec.text[i]);
     }
     const auto legend = [&](const PlotLine& l, bool with_value) {
         const std::string name = l.name;
@@ -185,7 +185,7 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     const bool values = legend_width < size.x + theme.px(9.0F);
     float x = at.x;
     for (const PlotLine& l : spec.lines) {
-        if (!spec.words.empty()) break;
+        if (!spec.text.empty()) break;
         const std::string text = legend(l, values);
         swatch(x, at.y + 1.08F * line, l.colour);
         x += theme.px(11.0F);

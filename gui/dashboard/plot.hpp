@@ -31,7 +31,7 @@ struct PlotSpec {
     double goal = 0.0;       // > 0: a dashed line (shown unit)
     bool steps = false;      // a value holds until the next one
     // In place of the legend's own words, a line for each of `lines`; cut off where there is no room.
-    std::span<const std::string> words = {};
+    std::span<const std::string> text = {};
 };
 
 // Where the mouse is in it, for a caller that has words about that moment.

@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-std::string count_words(std::uint64_t n, const char* one, const char* many) {
+std::string count_text(std::uint64_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
@@ -163,9 +163,9 @@ StatusText memory_status(const HealthTopic& health) {
         return {Grade::good, "no allocation, lock, fault"};
     std::string words;
     const auto add = [&words](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
-    if (health.allocations > 0) add(count_words(health.allocations, "allocation", "allocations"));
-    if (health.locks > 0) add(count_words(health.locks, "lock", "locks"));
-    if (health.page_faults > 0) add(count_words(health.page_faults, "page fault", "page faults"));
+    if (health.allocations > 0) add(count_text(health.allocations, "allocation", "allocations"));
+    if (health.locks > 0) add(count_text(health.locks, "lock", "locks"));
+    if (health.page_faults > 0) add(count_text(health.page_faults, "page fault", "page faults"));
     return {health.allocations + health.locks > 0 ? Grade::bad : Grade::watch, words};
 }
 

@@ -17,7 +17,7 @@ enum class Grade : std::uint8_t { unknown, good, watch, bad };
 
 struct StatusText {
     Grade grade = Grade::unknown;
-    std::string words;
+    std::string text;
 };
 
 [[nodiscard]] std::string ago_text(double seconds);          // "12 s ago", "3 min ago"

@@ -47,24 +47,24 @@ void TraceExport::finish() {
 void TraceExport::follow(TracesState& traces) {
     if (done_.exchange(false, std::memory_order_acquire)) {  // pairs with the store of the thread
         finish();
-        traces.said = said_;
-        traces.said_grade = grade_;
+        traces.message = message_;
+        traces.message_grade = grade_;
         if (grade_ == Grade::good) {
-            spdlog::info("{}", said_);
+            spdlog::info("{}", message_);
         } else {
-            spdlog::error("{}", said_);
+            spdlog::error("{}", message_);
         }
     }
     if (!traces.export_wanted) return;
     traces.export_wanted = false;
     if (thread_.joinable()) {
-        traces.said = "an export is still being written";
-        traces.said_grade = Grade::watch;
+        traces.message = "an export is still being written";
+        traces.message_grade = Grade::watch;
         return;
     }
     start(traces);
-    traces.said = "writing";
-    traces.said_grade = Grade::unknown;
+    traces.message = "writing";
+    traces.message_grade = Grade::unknown;
 }
 
 void TraceExport::start(const TracesState& traces) {
@@ -87,10 +87,10 @@ void TraceExport::start(const TracesState& traces) {
         static_cast<void>(sched_setscheduler(0, SCHED_IDLE, &none));
         try {
             write_whole_file(path, trace_csv(cycles, channels));
-            said_ = "wrote " + std::to_string(cycles.size()) + " cycles to " + path;
+            message_ = "wrote " + std::to_string(cycles.size()) + " cycles to " + path;
             grade_ = Grade::good;
         } catch (const std::exception& e) {
-            said_ = e.what();
+            message_ = e.what();
             grade_ = Grade::bad;
         }
         done_.store(true, std::memory_order_release);  // pairs with follow()

@@ -30,7 +30,7 @@ private:
 
     std::thread thread_;
     std::atomic<bool> done_{false};
-    std::string said_;
+    std::string message_;
     Grade grade_ = Grade::unknown;
 };
 

@@ -131,7 +131,7 @@ Axis lane_axis(const LanePen& pen, const Lane& lane) {
     return range_axis(low, high, std::max(2, static_cast<int>((pen.y1 - pen.y0) / pen.theme.px(26.0F))));
 }
 
-std::string lane_words(const LanePen& pen, TraceChannel channel) {
+std::string lane_text(const LanePen& pen, TraceChannel channel) {
     const TraceChannelInfo& info = trace_channel(channel);
     const auto at = [&](std::int64_t ns) {
         const std::size_t i = std::min(pen.store.find(ns), pen.store.size() - 1);
@@ -171,7 +171,7 @@ void draw_lane(LanePen& pen, const Lane& lane, const TriggerSettings* trigger, f
     pen.label({x, y}, colour::kText, "[" + std::string(lane.unit) + "]");
     x += pen.width("[" + std::string(lane.unit) + "]") + pen.theme.px(10.0F);
     for (std::size_t k = 0; k < lane.channels; ++k) {
-        const std::string words = lane_words(pen, lane.channel[k]);
+        const std::string words = lane_text(pen, lane.channel[k]);
         if (x + pen.width(words) > legend_x1) break;
         pen.draw->AddRectFilled({x, y + 0.47F * pen.line()},
                                 {x + pen.theme.px(8.0F), y + 0.47F * pen.line() + pen.theme.px(3.0F)},

@@ -109,7 +109,7 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
     if (changed) scope.set_trigger(s);
 }
 
-void said_row(const Theme& theme, const TracesState& t) {
+void message_row(const Theme& theme, const TracesState& t) {
     const TraceScope& scope = t.scope;
     const bool good = !scope.held() && (scope.run() == TraceRun::roll || scope.captures() > 0);
     text_small(theme, good ? colour::kGood : colour::kWatch, scope.status(), false);
@@ -131,7 +131,7 @@ void said_row(const Theme& theme, const TracesState& t) {
              "B - A: " + duration_text(dt_s) +
                  (dt_s != 0.0 ? ", " + format("%.4g Hz", 1.0 / std::fabs(dt_s)) : std::string()));
     }
-    if (!t.said.empty()) next(grade_colour(t.said_grade), t.said);
+    if (!t.message.empty()) next(grade_colour(t.message_grade), t.message);
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ void draw_traces(const Theme& theme, DashboardState& state) {
     TracesState& t = state.traces;
     run_row(theme, t);
     if (t.scope.run() != TraceRun::roll) trigger_row(theme, t.scope);
-    said_row(theme, t);
+    message_row(theme, t);
     draw_trace_lanes(theme, state, ImGui::GetContentRegionAvail());
 }
 

@@ -14,8 +14,8 @@ struct TracesState {
     TraceScope scope;
     std::bitset<kTraceChannels> channels = default_channels();
     bool export_wanted = false;  // of what is seen; the application writes it
-    std::string said;            // what became of it
-    Grade said_grade = Grade::unknown;
+    std::string message;         // what became of it
+    Grade message_grade = Grade::unknown;
     int dragged = -1;  // cursor under the mouse's button
 
     [[nodiscard]] static std::bitset<kTraceChannels> default_channels() {

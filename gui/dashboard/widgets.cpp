@@ -72,7 +72,7 @@ void row(const Theme& theme, const char* what, const std::string& value, const S
                                                 12);
     ImGui::SetCursorScreenPos({at.x + 2.0F * r + theme.px(4.0F), at.y});
     ImGui::PushTextWrapPos(0.0F);
-    text_coloured(grade_colour(status.grade), status.words);
+    text_coloured(grade_colour(status.grade), status.text);
     ImGui::PopTextWrapPos();
 }
 

@@ -55,31 +55,31 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
         return pressed;
     };
-    const auto request = [&](FitAct act, const std::string& text = {}) {
-        f.requests.push_back({act, id, text});
+    const auto request = [&](FitAction action, const std::string& text = {}) {
+        f.requests.push_back({action, id, text});
     };
-    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAct::undo);
-    if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAct::redo);
-    if (button("Accept", f.can_undo, "from here on, Revert leads here (Enter)")) request(FitAct::accept);
-    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAct::revert);
+    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAction::undo);
+    if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAction::redo);
+    if (button("Accept", f.can_undo, "from here on, Revert leads here (Enter)")) request(FitAction::accept);
+    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAction::revert);
     if (button("Refine", held != nullptr && !f.refining, "steepest ascent of the fit from here (R)"))
-        request(FitAct::refine);
+        request(FitAction::refine);
     if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax,
                "another one of the body in the hand"))
-        request(FitAct::copy);
+        request(FitAction::copy);
     if (button("Remove", held != nullptr && f.bodies.size() > 1,
                "takes the body in the hand out of the scene"))
         requests.push_back({CommandKind::remove_body, 0.0, {}, id});
     if (button("Save", !f.saving, "PDB or mmCIF, matrix and CSV of every body, in a new folder"))
-        request(FitAct::save);
+        request(FitAction::save);
     ImGui::BeginDisabled(!state.attached);
     if (ImGui::Button("Snapshot", {width, 0.0F}))
-        request(FitAct::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
+        request(FitAction::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(3.0F * width + 2.0F * gap);
     if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "go back to ...")) {
         for (const std::string& name : f.snapshots)
-            if (ImGui::Selectable(name.c_str())) request(FitAct::restore, name);
+            if (ImGui::Selectable(name.c_str())) request(FitAction::restore, name);
         ImGui::EndCombo();
     }
     ImGui::EndDisabled();
@@ -112,7 +112,7 @@ void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& f)
     actions(state, f, state.requests);
     if (f.refining) text_small(theme, colour::kDim, "refining ...");
     if (f.saving) text_small(theme, colour::kDim, "saving ...");
-    if (!f.said.empty()) text_small(theme, grade_colour(f.said_grade), f.said);
+    if (!f.message.empty()) text_small(theme, grade_colour(f.message_grade), f.message);
 }
 
 }  // namespace tact

@@ -17,9 +17,9 @@
 namespace tact {
 
 // What a person asked to be done with the bodies that takes more than one command.
-enum class FitAct : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
+enum class FitAction : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
 struct FitRequest {
-    FitAct act = FitAct::undo;
+    FitAction action = FitAction::undo;
     std::uint32_t body = 0;  // id: copy, refine, revert
     std::string text;        // name of a snapshot
 };
@@ -40,8 +40,8 @@ struct FittingState {
     bool can_undo = false, can_redo = false;
     std::size_t gestures = 0;  // that can be undone
     std::vector<std::string> snapshots;
-    std::string said;  // what the last act did
-    Grade said_grade = Grade::unknown;
+    std::string message;  // what the last action did
+    Grade message_grade = Grade::unknown;
     // Emptied by the window.
     std::vector<FitRequest> requests;
     std::vector<std::pair<std::uint32_t, bool>> hide_requests;  // id, hidden

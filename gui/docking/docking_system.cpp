@@ -57,41 +57,41 @@ void DockingSystem::read(const Controller::Fresh& fresh, const SystemContext& co
     if (fresh.bodies) list_.follow(context.controller.bodies);
 }
 
-bool DockingSystem::act(KeyAct what, std::size_t place, const SystemContext& context) {
+bool DockingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
     const auto active = list_.active();
     const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
-    const auto fit = [&](FitAct request) { panels_.fitting.requests.push_back({request, held, {}}); };
+    const auto fit = [&](FitAction request) { panels_.fitting.requests.push_back({request, held, {}}); };
     const auto select = [&](std::uint32_t body) {
         context.state.requests.push_back({CommandKind::select_body, 0.0, {}, body});
     };
     switch (what) {
-        case KeyAct::raise_contour:
+        case KeyAction::raise_contour:
             turn_wheel(1.0);
             return true;
-        case KeyAct::lower_contour:
+        case KeyAction::lower_contour:
             turn_wheel(-1.0);
             return true;
-        case KeyAct::take_body:
+        case KeyAction::take_body:
             if (place < list_.bodies().size() && context.controller.attached())
                 select(list_.bodies()[place].id);
             return true;
-        case KeyAct::let_go:
+        case KeyAction::let_go:
             if (context.controller.attached()) select(kNoBody);
             return true;
-        case KeyAct::undo:
-            fit(FitAct::undo);
+        case KeyAction::undo:
+            fit(FitAction::undo);
             return true;
-        case KeyAct::redo:
-            fit(FitAct::redo);
+        case KeyAction::redo:
+            fit(FitAction::redo);
             return true;
-        case KeyAct::refine:
-            if (held != 0) fit(FitAct::refine);
+        case KeyAction::refine:
+            if (held != 0) fit(FitAction::refine);
             return true;
-        case KeyAct::accept:
-            fit(FitAct::accept);
+        case KeyAction::accept:
+            fit(FitAction::accept);
             return true;
-        case KeyAct::revert:
-            fit(FitAct::revert);
+        case KeyAction::revert:
+            fit(FitAction::revert);
             return true;
         default:
             return false;
@@ -114,7 +114,7 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
     FittingState& fitting = panels_.fitting;
     std::vector<Command> commands;
     for (const auto& [id, hidden] : fitting.hide_requests) list_.set_hidden(id, hidden);
-    for (const FitRequest& request : fitting.requests) fit_controller_.act(request, list_, commands);
+    for (const FitRequest& request : fitting.requests) fit_controller_.perform(request, list_, commands);
     fitting.hide_requests.clear();
     fitting.requests.clear();
     fit_controller_.follow(list_, topic, commands);

@@ -28,7 +28,7 @@ public:
     void describe(const SceneContent& content, SceneState& scene) const override;
     void attach(const SystemContext& context) override;
     void read(const Controller::Fresh& fresh, const SystemContext& context) override;
-    bool act(KeyAct what, std::size_t place, const SystemContext& context) override;
+    bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
     void turn_wheel(double steps) override;
     void adapt() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;

@@ -70,19 +70,19 @@ void FitController::use(std::shared_ptr<const SceneContent> content) {
     content_ = std::move(content);
     outcome_ = {};
     history_.clear();
-    said_.clear();
+    message_.clear();
     if (!content_ || content_->grid.values.empty() || docking_of(*content_).bodies.empty()) return;
     fit_ = std::make_unique<FitWorker>(content_);
     refine_ = std::make_unique<RefineWorker>(content_);
 }
 
-void FitController::say(Grade grade, std::string text) {
-    said_ = std::move(text);
-    said_grade_ = grade;
+void FitController::report(Grade grade, std::string text) {
+    message_ = std::move(text);
+    message_grade_ = grade;
     if (grade == Grade::good)
-        spdlog::info("{}", said_);
+        spdlog::info("{}", message_);
     else
-        spdlog::warn("{}", said_);
+        spdlog::warn("{}", message_);
 }
 
 void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands) {
@@ -101,22 +101,22 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::
     if (refine_) {
         if (const auto done = refine_->poll()) {
             if (!done->error.empty())
-                say(Grade::bad, done->error);
+                report(Grade::bad, done->error);
             else if (done->result.end == RefineEnd::no_density)
-                say(Grade::watch, "refine: the map is flat here; move the body closer");
+                report(Grade::watch, "refine: the map is flat here; move the body closer");
             else if (topic == nullptr)
-                say(Grade::watch, "refine: no controller is there to move the body");
+                report(Grade::watch, "refine: no controller is there to move the body");
             else if (list.find(done->start.id) != nullptr) {
                 commands.push_back(placement(done->start.id, done->result.T_model_body));
-                say(Grade::good, end_text(*done));
+                report(Grade::good, end_text(*done));
             }
         }
     }
     if (const auto saved = saving_.poll()) {
         if (saved->good())
-            say(Grade::good, "saved in " + saving_to_);
+            report(Grade::good, "saved in " + saving_to_);
         else
-            say(Grade::bad, "saving failed: " + saved->output);
+            report(Grade::bad, "saving failed: " + saved->output);
     }
 }
 
@@ -135,32 +135,32 @@ void FitController::place(std::span<const FitHistory::Move> moves, const BodyLis
         if (list.find(m.id) != nullptr) commands.push_back(placement(m.id, m.T_model_body));
 }
 
-void FitController::act(const FitRequest& request, const BodyList& list, std::vector<Command>& commands) {
+void FitController::perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands) {
     const ShownBody* const body = list.find(request.body);
     const auto go = [&](const FitHistory::Places& moves) { place(moves, list, commands); };
-    switch (request.act) {
-        case FitAct::undo:
+    switch (request.action) {
+        case FitAction::undo:
             return go(history_.undo());
-        case FitAct::redo:
+        case FitAction::redo:
             return go(history_.redo());
-        case FitAct::revert:
+        case FitAction::revert:
             return go(history_.revert());
-        case FitAct::accept:
+        case FitAction::accept:
             history_.accept();
-            return say(Grade::good, "accepted: revert leads here from now on");
-        case FitAct::snapshot:
-            if (!history_.snapshot(request.text)) say(Grade::watch, "no more snapshots can be kept");
+            return report(Grade::good, "accepted: revert leads here from now on");
+        case FitAction::snapshot:
+            if (!history_.snapshot(request.text)) report(Grade::watch, "no more snapshots can be kept");
             return;
-        case FitAct::restore:
+        case FitAction::restore:
             return go(history_.restore(request.text));
-        case FitAct::copy:
+        case FitAction::copy:
             if (body != nullptr) copy(*body, list, commands);
             return;
-        case FitAct::refine:
+        case FitAction::refine:
             if (body != nullptr && refine_ && !refine_->running())
                 refine_->start({body->id, body->structure, body->newest});
             return;
-        case FitAct::save:
+        case FitAction::save:
             return save(list);
     }
 }
@@ -192,7 +192,7 @@ void FitController::save(const BodyList& list) {
         if (!out) throw StartupError("writing " + poses, "it failed", "check the space of the disk");
         saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
     } catch (const std::exception& e) {
-        say(Grade::bad, e.what());
+        report(Grade::bad, e.what());
     }
 }
 
@@ -221,8 +221,8 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     state.can_undo = state.gestures > 0;
     state.can_redo = history_.redoable() > 0;
     state.snapshots = history_.snapshots();
-    state.said = said_;
-    state.said_grade = said_grade_;
+    state.message = message_;
+    state.message_grade = message_grade_;
 
     fit = FitState{};
     if (!fit_) {

@@ -25,14 +25,14 @@ public:
     void use(std::shared_ptr<const SceneContent> content);
     // Once a frame; topic: of the attached controller, or null. Commands that became due are added.
     void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);
-    void act(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
+    void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
     // At the end: a save under way is let end, for so long at the most.
     void finish_saving(Duration patience);
     // For the panels.
     void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit) const;
 
 private:
-    void say(Grade grade, std::string text);
+    void report(Grade grade, std::string text);
     void copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands);
     void save(const BodyList& list);
     void place(std::span<const FitHistory::Move> moves, const BodyList& list, std::vector<Command>& commands);
@@ -44,8 +44,8 @@ private:
     FitHistory history_;
     ChildJob saving_;
     std::string saving_to_;
-    std::string said_;
-    Grade said_grade_ = Grade::unknown;
+    std::string message_;
+    Grade message_grade_ = Grade::unknown;
     std::vector<FitBody> bodies_;
 };
 

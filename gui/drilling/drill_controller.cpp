@@ -21,7 +21,7 @@ std::string near_text(const std::string& name, double distance_m) {
     return text;
 }
 
-ToolDescription tool_facts(const DrillHand& hand) {
+ToolDescription describe_tool(const DrillHand& hand) {
     ToolDescription t;
     t.there = hand.kind != DrillKind::none;
     t.shape = static_cast<int>(hand.shape);
@@ -49,7 +49,7 @@ void DrillController::use(std::shared_ptr<const SceneContent> content) {
     nearness_.assign(bone.distances.size(), Nearness::far);
 }
 
-void DrillController::say(DashboardState& state, std::string text, Grade grade) const {
+void DrillController::report(DashboardState& state, std::string text, Grade grade) const {
     state.events.push_front({state.now_ns, kOwnEvent, 1, std::move(text), grade});
     if (state.events.size() > kEventsKept) state.events.pop_back();
 }
@@ -65,14 +65,14 @@ void DrillController::take_cycles(Controller& controller) {
 void DrillController::take_bricks(std::span<const BrickChange> changes, DashboardState& state) {
     for (const BrickChange& c : changes) {
         const std::uint8_t injured = metrics_->brick(c.brick, c.before, c.after, c.cut_now);
-        if (injured != 0) say(state, bone_->labels.structure[injured - 1U].name + " cut", Grade::bad);
+        if (injured != 0) report(state, bone_->labels.structure[injured - 1U].name + " cut", Grade::bad);
     }
 }
 
 void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, DrillingState& state) {
     const BoneLabelsView& labels = bone_->labels;
-    state.burr = tool_facts(drill.hand[0]);
-    state.suction_tube = tool_facts(drill.hand[1]);
+    state.burr = describe_tool(drill.hand[0]);
+    state.suction_tube = describe_tool(drill.hand[1]);
     state.removed_m3 = drill.level_m3 * static_cast<double>(drill.removed_levels);
     const auto by_burr = watch_->look(drill, 0), by_suction_tube = watch_->look(drill, 1);
     state.structures.clear();
@@ -89,8 +89,8 @@ void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, D
         if (now > nearness_[i]) {
             nearness_[i] = now;
             if (state.burr.rpm > 0.0)
-                say(dashboard, near_text(what.name, away_m),
-                    now == Nearness::red ? Grade::bad : Grade::watch);
+                report(dashboard, near_text(what.name, away_m),
+                       now == Nearness::red ? Grade::bad : Grade::watch);
         } else if (now < nearness_[i]) {
             const double border_m = kDrillNearM[nearness_[i] == Nearness::red ? 0 : 1];
             if (away_m > border_m + kAgainM) nearness_[i] = now;

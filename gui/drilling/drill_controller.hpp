@@ -35,7 +35,7 @@ private:
     void take_cycles(Controller& controller);
     void take_bricks(std::span<const BrickChange> changes, DashboardState& state);
     void show(const DrillTopic& drill, DashboardState& dashboard, DrillingState& state);
-    void say(DashboardState& state, std::string text, Grade grade) const;
+    void report(DashboardState& state, std::string text, Grade grade) const;
 
     std::shared_ptr<const SceneContent> content_;
     const BoneContent* bone_ = nullptr;  // of it

@@ -18,7 +18,7 @@ void tools(const Theme& theme, const DrillingState& d) {
     if (d.burr.water) does += ", water";
     row(theme, "Burr", size, does);
     if (d.suction_tube.there)
-        row(theme, "SuctionTube", mm_text(d.suction_tube.diameter_m),
+        row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),
             d.suction_tube.suction ? "suction on" : "suction off");
 }
 
@@ -44,7 +44,7 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
     text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
     if (calm) return;
     ImGui::SameLine(0.0F, theme.px(8.0F));
-    text_coloured(grade_colour(v.grade), v.words);
+    text_coloured(grade_colour(v.grade), v.text);
 }
 
 void tip(const DrillingState& d) {
@@ -54,7 +54,7 @@ void tip(const DrillingState& d) {
     if (d.suction_tube.there)
         for (const auto& s : d.structures)
             if (s.suction_tube_m < 2e-3)
-                text += "\nsuction_tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
+                text += "\nsuction tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
     ImGui::SetTooltip("%s", text.c_str());
 }
 

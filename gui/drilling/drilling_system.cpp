@@ -69,14 +69,14 @@ void DrillingSystem::follow(const SystemContext& context) {
     controller_.follow(context.controller, bone_.changes(), context.state, panels_.drilling);
 }
 
-bool DrillingSystem::act(KeyAct what, std::size_t place, const SystemContext& context) {
+bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
     static_cast<void>(place);
-    if (what != KeyAct::look_at_burr) return false;
-    look_at_burr(context);
+    if (what != KeyAction::approach_burr) return false;
+    approach_burr(context);
     return true;
 }
 
-void DrillingSystem::look_at_burr(const SystemContext& context) const {
+void DrillingSystem::approach_burr(const SystemContext& context) const {
     const Controller& controller = context.controller;
     if (!content_ || !controller.attached() || !controller.have_drill) return;
     const DrillHand& hand = controller.drill.hand[0];
@@ -135,7 +135,7 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
     }
     if (near_burr_wanted_ && controller.have_drill && controller.drill.hand[0].depth > 0.0F) {
         near_burr_wanted_ = false;
-        look_at_burr(context);
+        approach_burr(context);
     }
 }
 

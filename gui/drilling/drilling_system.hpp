@@ -43,7 +43,7 @@ public:
     void attach(const SystemContext& context) override;
     void detach() override { bone_.leave(); }
     void follow(const SystemContext& context) override;
-    bool act(KeyAct what, std::size_t place, const SystemContext& context) override;
+    bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
     void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) override;
     [[nodiscard]] bool second_hand_is_pen() const override { return false; }
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
@@ -55,7 +55,7 @@ public:
 private:
     [[nodiscard]] std::uint32_t rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context);
     [[nodiscard]] float particles_share(const SystemContext& context) const;
-    void look_at_burr(const SystemContext& context) const;
+    void approach_burr(const SystemContext& context) const;
 
     const DrillingOptions options_;
     DrillingPanels panels_;

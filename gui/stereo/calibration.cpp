@@ -40,7 +40,7 @@ void Calibration::go(CalibrationStep step) {
     wand_.stop();
     stylus_.stop();
     turning_ = false;
-    said_.clear();
+    message_.clear();
     last_taken_ = kMarks;
     step_ = step;
 }
@@ -68,7 +68,7 @@ Calibration::Lacking Calibration::lacking() const {
 }
 
 void Calibration::take() {
-    said_.clear();
+    message_.clear();
     if (measuring()) {
         wand_.stop();
         stylus_.stop();
@@ -111,7 +111,7 @@ void Calibration::follow_mark() {
     using State = RestWindow::State;
     for (const auto& [window, what] : {std::pair{&wand_, "the wand"}, std::pair{&stylus_, "the stylus"}})
         if (window->state() == State::failed) {
-            say(window->words(what));
+            say(window->text(what));
             wand_.stop();
             stylus_.stop();
             return;

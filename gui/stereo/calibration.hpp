@@ -4,7 +4,7 @@
 //
 // Frames   screen: that of the topic `head`. Glass: metres in the picture's plane, x right, y up, from its middle.
 // Thread   frame thread; plain arithmetic, no window and no file
-// Fails by words: said() and the verdict of a step
+// Fails by message() and the status text of a step
 #pragma once
 
 #include <algorithm>
@@ -60,7 +60,7 @@ public:
     };
     struct StatusText {
         FitGrade grade = FitGrade::none;
-        std::string words;
+        std::string text;
     };
 
     explicit Calibration(const StageSettings& start) : draft_(start) {}
@@ -109,12 +109,12 @@ public:
     [[nodiscard]] std::optional<Vec3> stylus_screen_m() const;
 
     [[nodiscard]] std::string instruction() const;
-    [[nodiscard]] std::string glass_words() const;  // the same in capitals, for who stands before the picture
-    [[nodiscard]] std::string live() const;         // what is measured now
-    [[nodiscard]] StatusText status() const;        // of this step
+    [[nodiscard]] std::string glass_text() const;  // the same in capitals, for who stands before the picture
+    [[nodiscard]] std::string live() const;        // what is measured now
+    [[nodiscard]] StatusText status() const;       // of this step
     [[nodiscard]] StatusText status(CalibrationStep step) const;
-    [[nodiscard]] const std::string& said() const { return said_; }  // what became of the last act
-    [[nodiscard]] std::vector<std::string> remarks() const;          // of what was measured, for the file
+    [[nodiscard]] const std::string& message() const { return message_; }  // what became of the last action
+    [[nodiscard]] std::vector<std::string> remarks() const;  // of what was measured, for the file
 
 private:
     [[nodiscard]] Marks& own_marks() { return step_ == CalibrationStep::workspace ? workspace_ : screen_; }
@@ -124,7 +124,7 @@ private:
     void follow_turning();
     void keep_mark();
     void fit();
-    void say(std::string words) { said_ = std::move(words); }
+    void say(std::string words) { message_ = std::move(words); }
 
     // Of a magnetic tracker half a metre off and of an arm's encoders in a hand that holds still.
     static constexpr double kWandSpreadM = 4e-3, kStylusSpreadM = 2e-3;
@@ -146,7 +146,7 @@ private:
     std::int64_t turned_at_ns_ = 0;
     std::vector<Pose> turned_;
     std::optional<PivotFit> pivot_;
-    std::string said_;
+    std::string message_;
 };
 
 [[nodiscard]] const char* calibration_step_title(CalibrationStep step);

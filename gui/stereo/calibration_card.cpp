@@ -75,13 +75,13 @@ void CalibrationController::tell(CalibrationCardState& f) const {
     for (std::size_t i = 0; i < kCalibrationSteps; ++i) {
         const auto step = static_cast<CalibrationStep>(i);
         const Calibration::StatusText v = c.status(step);
-        f.steps[i] = {calibration_step_title(step), v.words, grade_of(v.grade)};
+        f.steps[i] = {calibration_step_title(step), v.text, grade_of(v.grade)};
     }
     const Calibration::StatusText status = c.status();
-    f.status = {grade_of(status.grade), status.words};
+    f.status = {grade_of(status.grade), status.text};
     f.instruction = c.instruction();
     f.live = c.live();
-    f.said = c.said();
+    f.message = c.message();
     f.measuring = c.measuring();
     f.progress = static_cast<float>(c.progress());
     const bool lit = c.lacking() != Calibration::Lacking::size;
@@ -99,9 +99,9 @@ void CalibrationController::tell(CalibrationCardState& f) const {
                   : *left <= kGreenWorstM    ? Grade::good
                   : *left <= kAmberWorstM    ? Grade::watch
                                              : Grade::bad;
-        p.words = !mark.taken ? std::string(p.current ? "now" : "-")
-                  : left      ? format("%.1f mm left, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
-                              : format("taken, spread %.1f mm", 1e3 * mark.spread_m);
+        p.text = !mark.taken ? std::string(p.current ? "now" : "-")
+                 : left      ? format("%.1f mm left, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
+                             : format("taken, spread %.1f mm", 1e3 * mark.spread_m);
     }
     f.file = file_.filename().string();
     f.saved = saved_;

@@ -59,48 +59,48 @@ void CalibrationController::swap_eyes() {
     calibration_->set_eyes(eyes);
 }
 
-void CalibrationController::act(CalibrationAct what, std::size_t number) {
+void CalibrationController::perform(CalibrationAction what, std::size_t number) {
     Calibration& c = *calibration_;
     const CalibrationStep before = c.step();
     switch (what) {
-        case CalibrationAct::go:
+        case CalibrationAction::go:
             if (number < kCalibrationSteps) c.go(static_cast<CalibrationStep>(number));
             break;
-        case CalibrationAct::next:
+        case CalibrationAction::next:
             c.next();
             break;
-        case CalibrationAct::back:
+        case CalibrationAction::back:
             c.back();
             break;
-        case CalibrationAct::take:
+        case CalibrationAction::take:
             c.take();
             break;
-        case CalibrationAct::skip:
+        case CalibrationAction::skip:
             c.skip();
             break;
-        case CalibrationAct::redo:
+        case CalibrationAction::redo:
             c.redo(number);
             break;
-        case CalibrationAct::redo_last:
+        case CalibrationAction::redo_last:
             c.redo_last();
             break;
-        case CalibrationAct::clear:
+        case CalibrationAction::clear:
             c.clear();
             break;
-        case CalibrationAct::measured_size:
+        case CalibrationAction::measured_size:
             c.use_measured_size();
             break;
-        case CalibrationAct::save:
+        case CalibrationAction::save:
             save();
             break;
-        case CalibrationAct::leave:
+        case CalibrationAction::leave:
             leave_ = true;
             break;
     }
     if (c.step() != before) {
         const Calibration::StatusText status = c.status(before);
-        if (!status.words.empty())
-            spdlog::info("calibration: {}: {}", calibration_step_title(before), status.words);
+        if (!status.text.empty())
+            spdlog::info("calibration: {}: {}", calibration_step_title(before), status.text);
         spdlog::info("calibration: step {}, {}", static_cast<int>(c.step()) + 1,
                      calibration_step_title(c.step()));
     }
@@ -130,11 +130,11 @@ bool CalibrationController::follow(const Controller& controller, std::int64_t no
     const std::string before = stage_text(draft());
     calibration_->follow(input_of(controller, now_ns));
     take_typed(state);
-    for (const auto& [what, number] : state.requests) act(what, number);
+    for (const auto& [what, number] : state.requests) perform(what, number);
     state.requests.clear();
     if (stage_text(draft()) != before) saved_.clear();
-    if (calibration_->said() != logged_) {
-        logged_ = calibration_->said();
+    if (calibration_->message() != logged_) {
+        logged_ = calibration_->message();
         if (!logged_.empty()) spdlog::info("calibration: {}", logged_);
     }
     tell(state);
@@ -172,12 +172,12 @@ std::vector<PictureVertex> CalibrationController::picture(const GlassSize& glass
                  (c.step() == CalibrationStep::workspace && !c.workspace_by_wand());
     const bool lit = c.lacking() != Calibration::Lacking::size;
     for (std::size_t i = 0; i < kMarks; ++i)
-        what.look[i] = lit && i == c.marks().current ? MarkLook::current
-                       : c.marks().outlier() == i    ? MarkLook::outlier
-                       : c.marks().mark[i].taken     ? MarkLook::taken
-                                                     : MarkLook::open;
+        what.look[i] = lit && i == c.marks().current ? MarkStyle::current
+                       : c.marks().outlier() == i    ? MarkStyle::outlier
+                       : c.marks().mark[i].taken     ? MarkStyle::taken
+                                                     : MarkStyle::open;
     what.progress = c.progress();
-    what.words = c.glass_words();
+    what.text = c.glass_text();
     return marks_picture(glass, what);
 }
 

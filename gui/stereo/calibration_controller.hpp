@@ -23,7 +23,7 @@ public:
     [[nodiscard]] bool open() const { return calibration_.has_value(); }
     // From what the stage is now; from the step of the test picture where that alone is wanted.
     void begin(const StageSettings& now, bool check_alone);
-    void act(CalibrationAct what, std::size_t number = 0);
+    void perform(CalibrationAction what, std::size_t number = 0);
     void swap_eyes();
     // True: a person wants to leave.
     bool follow(const Controller& controller, std::int64_t now_ns, CalibrationCardState& state);

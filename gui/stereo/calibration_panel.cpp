@@ -14,12 +14,12 @@ struct Form {
     const Theme& theme;
     CalibrationCardState& state;
 
-    void request(CalibrationAct act, std::size_t number = 0) const {
-        state.requests.emplace_back(act, number);
+    void request(CalibrationAction action, std::size_t number = 0) const {
+        state.requests.emplace_back(action, number);
     }
-    void button(const char* name, float width, CalibrationAct act, bool possible = true) const {
+    void button(const char* name, float width, CalibrationAction action, bool possible = true) const {
         ImGui::BeginDisabled(!possible);
-        if (ImGui::Button(name, {width, 0.0F})) request(act);
+        if (ImGui::Button(name, {width, 0.0F})) request(action);
         ImGui::EndDisabled();
     }
     // Numbers in a row, behind a word.
@@ -91,12 +91,12 @@ void steps(const Form& form) {
         ImGui::PushStyleColor(ImGuiCol_Text, here ? colour::kAccent : colour::kText);
         if (here) ImGui::PushFont(form.theme.bold);
         if (ImGui::Selectable(name.c_str(), false, 0, ImGui::CalcTextSize(name.c_str())))
-            form.request(CalibrationAct::go, i);
+            form.request(CalibrationAction::go, i);
         if (here) ImGui::PopFont();
         ImGui::PopStyleColor();
         ImGui::SameLine(form.theme.px(112.0F));
         ImGui::PushFont(form.theme.small);
-        one_line(f.steps[i].words,
+        one_line(f.steps[i].text,
                  f.steps[i].grade == Grade::unknown ? colour::kDim : grade_colour(f.steps[i].grade));
         ImGui::PopFont();
         ImGui::PopID();
@@ -111,25 +111,25 @@ void points(const Form& form) {
         dot(form.theme, p.grade);
         const ImU32 ink = p.current ? colour::kWatch : p.taken ? colour::kText : colour::kDim;
         ImGui::PushStyleColor(ImGuiCol_Text, ink);
-        if (ImGui::Selectable(format("%zu   %s", i + 1, p.words.c_str()).c_str()))
-            form.request(CalibrationAct::redo, i);
+        if (ImGui::Selectable(format("%zu   %s", i + 1, p.text.c_str()).c_str()))
+            form.request(CalibrationAction::redo, i);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip(p.taken ? "take it again" : "take this one next");
         ImGui::PopStyleColor();
         ImGui::PopID();
     }
     const float gap = form.theme.px(6.0F), width = (ImGui::GetContentRegionAvail().x - 2.0F * gap) / 3.0F;
-    form.button(f.measuring ? "Stop" : "Take  T", width, CalibrationAct::take, f.can_take);
+    form.button(f.measuring ? "Stop" : "Take  T", width, CalibrationAction::take, f.can_take);
     ImGui::SameLine(0.0F, gap);
-    form.button("Skip  N", width, CalibrationAct::skip);
+    form.button("Skip  N", width, CalibrationAction::skip);
     ImGui::SameLine(0.0F, gap);
-    form.button("Forget all", width, CalibrationAct::clear);
+    form.button("Forget all", width, CalibrationAction::clear);
     ImGui::ProgressBar(f.progress, {-1.0F, form.theme.px(6.0F)}, "");
 }
 
 void screen_step(const Form& form) {
     CalibrationCardState& f = form.state;
     points(form);
-    if (f.size_offered) form.button("Take the size by the marks", -1.0F, CalibrationAct::measured_size);
+    if (f.size_offered) form.button("Take the size by the marks", -1.0F, CalibrationAction::measured_size);
     ImGui::Separator();
     text_small(form.theme, colour::kDim, "Or typed, mm: x right, y up, z to the person");
     static constexpr std::array<const char*, 3> kCorners{"Lower left", "Lower right", "Upper left"};
@@ -171,7 +171,7 @@ void of_step(const Form& form) {
             break;
         case 1:
             form.numbers("Tip, mm", f.tip_mm, Typed::tip);
-            form.button(f.measuring ? "Stop" : "Turn about the tip  T", -1.0F, CalibrationAct::take);
+            form.button(f.measuring ? "Stop" : "Turn about the tip  T", -1.0F, CalibrationAction::take);
             ImGui::ProgressBar(f.progress, {-1.0F, form.theme.px(6.0F)}, "");
             break;
         case 2:
@@ -193,12 +193,12 @@ void ending(const Form& form) {
     CalibrationCardState& f = form.state;
     ImGui::Separator();
     const float gap = form.theme.px(6.0F), width = (ImGui::GetContentRegionAvail().x - gap) / 2.0F;
-    form.button("Back", width, CalibrationAct::back, f.step > 0);
+    form.button("Back", width, CalibrationAction::back, f.step > 0);
     ImGui::SameLine(0.0F, gap);
-    form.button("Next  Enter", width, CalibrationAct::next, f.step + 1 < f.steps.size());
-    form.button("Save  Ctrl+S", width, CalibrationAct::save);
+    form.button("Next  Enter", width, CalibrationAction::next, f.step + 1 < f.steps.size());
+    form.button("Save  Ctrl+S", width, CalibrationAction::save);
     ImGui::SameLine(0.0F, gap);
-    form.button("Leave  Esc", width, CalibrationAct::leave);
+    form.button("Leave  Esc", width, CalibrationAction::leave);
     if (!f.saved.empty())
         text_small(form.theme, grade_colour(f.saved_grade), f.saved);
     else
@@ -217,11 +217,11 @@ void draw_calibration(const Theme& theme, CalibrationCardState& f, const PixelRe
     ImGui::TextUnformatted(f.instruction.c_str());
     ImGui::PopTextWrapPos();
     of_step(form);
-    if (!f.status.words.empty() && f.step < 4)
+    if (!f.status.text.empty() && f.step < 4)
         text_small(theme, f.status.grade == Grade::unknown ? colour::kDim : grade_colour(f.status.grade),
-                   f.status.words);
+                   f.status.text);
     if (!f.live.empty()) text_small(theme, colour::kAccent, f.live);
-    if (!f.said.empty()) text_small(theme, colour::kWatch, f.said);
+    if (!f.message.empty()) text_small(theme, colour::kWatch, f.message);
     ending(form);
     end_card();
 }

@@ -12,7 +12,7 @@
 
 namespace tact {
 
-enum class CalibrationAct : std::uint8_t {
+enum class CalibrationAction : std::uint8_t {
     go,  // to the step of the number
     next,
     back,
@@ -28,18 +28,18 @@ enum class CalibrationAct : std::uint8_t {
 
 struct CalibrationCardState {
     struct Step {
-        std::string title, words;
+        std::string title, text;
         Grade grade = Grade::unknown;
     };
     struct Point {
-        std::string words;
+        std::string text;
         Grade grade = Grade::unknown;
         bool current = false, taken = false;
     };
     bool open = false;
     std::vector<Step> steps;
     std::size_t step = 0;
-    std::string instruction, live, said;
+    std::string instruction, live, message;
     StatusText status;
     std::vector<Point> points;
     bool measuring = false, can_take = true, size_offered = false;
@@ -59,7 +59,7 @@ struct CalibrationCardState {
     bool editing = false;
     std::vector<const char*> modes;  // of a stereo picture, without "off"
     // Emptied by the application.
-    std::vector<std::pair<CalibrationAct, std::size_t>> requests;
+    std::vector<std::pair<CalibrationAction, std::size_t>> requests;
 };
 
 // In place of the column's cards while a screen is calibrated.

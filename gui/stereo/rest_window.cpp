@@ -60,7 +60,7 @@ void RestWindow::add(double now_s, std::int64_t taken_at_ns, const Vec3& at_m, b
     if (samples_.size() >= kSamplesMin && now_s - samples_.front().at_s >= kWindowS) state_ = State::done;
 }
 
-std::string RestWindow::words(const std::string& what) const {
+std::string RestWindow::text(const std::string& what) const {
     char text[160];
     switch (state_) {
         case State::idle:

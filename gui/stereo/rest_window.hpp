@@ -41,7 +41,7 @@ public:
     [[nodiscard]] std::size_t samples() const { return samples_.size(); }
     [[nodiscard]] bool silent() const { return silent_; }
     // What is going on, for a person; `what` is measured, as "the wand".
-    [[nodiscard]] std::string words(const std::string& what) const;
+    [[nodiscard]] std::string text(const std::string& what) const;
 
 private:
     struct Sample {

@@ -68,7 +68,7 @@ void Stage::show(GLuint dashboard_frame) {
 
 std::vector<Image> Stage::pictures() { return pictures_.read(two_pictures()); }
 
-std::string stage_words(const Stage& stage) {
+std::string stage_text(const Stage& stage) {
     std::string words = stereo_mode_text(stage.settings().mode);
     switch (stage.head().sight()) {
         case HeadSight::seen:

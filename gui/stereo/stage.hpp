@@ -57,6 +57,6 @@ private:
 };
 
 // How it is shown and what becomes of the head, in words.
-[[nodiscard]] std::string stage_words(const Stage& stage);
+[[nodiscard]] std::string stage_text(const Stage& stage);
 
 }  // namespace tact

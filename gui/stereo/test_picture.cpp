@@ -122,18 +122,18 @@ std::vector<PictureVertex> marks_picture(const GlassSize& glass, const MarksPict
                  letters = letters_mm(glass, 0.045);
     if (!marks.marks) pen.ring(Point::Zero(), 3.0 * radius, radius, kNow, marks.progress);
     for (std::size_t i = 0; marks.marks && i < kMarks; ++i) {
-        const MarkLook look = marks.look[i];
-        const Ink ink = look == MarkLook::current   ? kNow
-                        : look == MarkLook::outlier ? kWrong
-                        : look == MarkLook::taken   ? kTaken
-                                                    : kOpen;
+        const MarkStyle look = marks.look[i];
+        const Ink ink = look == MarkStyle::current   ? kNow
+                        : look == MarkStyle::outlier ? kWrong
+                        : look == MarkStyle::taken   ? kTaken
+                                                     : kOpen;
         const Point at((kMarkPlaces[i][0] - 0.5) * glass.width_mm,
                        (kMarkPlaces[i][1] - 0.5) * glass.height_mm, 0.0);
-        const double arm = look == MarkLook::current ? 1.5 * radius : radius;
+        const double arm = look == MarkStyle::current ? 1.5 * radius : radius;
         pen.line(at - Point(arm, 0.0, 0.0), at + Point(arm, 0.0, 0.0), 0.0, ink);
         pen.line(at - Point(0.0, arm, 0.0), at + Point(0.0, arm, 0.0), 0.0, ink);
         pen.ring(at, 0.5 * radius, 0.0, ink);
-        if (look == MarkLook::current) {
+        if (look == MarkStyle::current) {
             pen.ring(at, radius, 0.0, ink);
             pen.ring(at, 1.2 * radius, 0.3 * radius, ink, marks.progress);
         }
@@ -142,7 +142,7 @@ std::vector<PictureVertex> marks_picture(const GlassSize& glass, const MarksPict
         pen.text_centred(at + Point(side * 2.1 * radius, 1.2 * radius, 0.0), letters, std::to_string(i + 1),
                          ink);
     }
-    pen.text_centred({0.0, 0.24 * glass.height_mm, 0.0}, fitted_mm(glass, letters, marks.words), marks.words,
+    pen.text_centred({0.0, 0.24 * glass.height_mm, 0.0}, fitted_mm(glass, letters, marks.text), marks.text,
                      kLine);
     return pen.take();
 }

@@ -21,12 +21,12 @@ struct GlassSize {
 // The edges that a ruler is laid along; with numbers where the size is known.
 [[nodiscard]] std::vector<PictureVertex> frame_picture(const GlassSize& glass, bool known);
 
-enum class MarkLook : std::uint8_t { open, taken, outlier, current };
+enum class MarkStyle : std::uint8_t { open, taken, outlier, current };
 struct MarksPicture {
     bool marks = true;  // else the words alone, and how far the measuring is
-    std::array<MarkLook, kMarks> look{};
+    std::array<MarkStyle, kMarks> look{};
     double progress = 0.0;  // of the current one
-    std::string words;      // what to do, for who stands before the picture
+    std::string text;       // what to do, for who stands before the picture
 };
 [[nodiscard]] std::vector<PictureVertex> marks_picture(const GlassSize& glass, const MarksPicture& marks);
 

@@ -32,7 +32,7 @@ void DetailController::use(std::shared_ptr<const SceneContent> content, DetailSt
     worker_.reset();
     requested_.reset();
     asked_.reset();
-    felt_before_ = false;
+    of_controller_before_ = false;
     content_ = std::move(content);
     state = {};
     const SurfaceContent* const surface = content_->of<SurfaceContent>();
@@ -45,8 +45,8 @@ std::optional<DetailMesh> DetailController::follow(const TouchTopic* touch, bool
     if (!state.possible) return std::nullopt;
     state.felt = touch != nullptr && touch->detail > 0;
     state.full = state.felt && touch->detail == 2;
-    shown = shown || (state.felt && !felt_before_);
-    felt_before_ = state.felt;
+    shown = shown || (state.felt && !of_controller_before_);
+    of_controller_before_ = state.felt;
     DetailRequest request;
     request.radius_m = kAloneWorldM / std::max(content_->meta.world_per_model, 1e-9);
     if (touch != nullptr)

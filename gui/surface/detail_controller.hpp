@@ -29,7 +29,7 @@ private:
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<DetailWorker> worker_;  // from when it was first shown
     std::optional<DetailRequest> requested_;
-    bool felt_before_ = false;
+    bool of_controller_before_ = false;
     std::optional<FilterForm> asked_;  // of the controller, until it has it
     int frames_asked_ = 0;
 };

@@ -13,41 +13,42 @@ constexpr KeyStroke named_key(KeyCode code) { return {code, '\0', false, false};
 constexpr auto kKeyRows = [] {
     using enum KeyWhen;
     return std::to_array<KeyRow>({
-        {{}, 0, always, KeyAct::none, "left drag", "rotate"},
-        {{}, 0, always, KeyAct::none, "right drag", "pan"},
-        {{}, 0, always, KeyAct::none, "wheel", "zoom"},
-        {{}, 0, bodies, KeyAct::none, "Alt+wheel", "contour level"},
-        {named_key(KeyCode::escape), 0, sheet, KeyAct::close_sheet, "Esc", "close this table"},
-        {named_key(KeyCode::escape), 0, browser, KeyAct::close_browser, "Esc", "close the list of scenes"},
-        {named_key(KeyCode::space), 0, controller, KeyAct::disarm, "Space", "disarm: no force"},
-        {{KeyCode::enter, '\0', true, false}, 0, controller, KeyAct::arm, "Ctrl+Enter", "arm"},
-        {named_key(KeyCode::home), 0, always, KeyAct::home, "Home", "home view"},
-        {typed_key('f'), 0, bone, KeyAct::look_at_burr, "F", "look at the burr from near"},
-        {typed_key('s'), 0, always, KeyAct::style, "S", "surface: glass, solid, wire"},
-        {typed_key('x'), 0, stereo, KeyAct::swap_eyes, "X", "stereo: swap the eyes"},
-        {typed_key('+'), 0, bodies, KeyAct::raise_contour, "+", "contour level up"},
-        {typed_key('-'), 0, bodies, KeyAct::lower_contour, "-", "contour level down"},
-        {typed_key('1'), '9', bodies, KeyAct::take_body, "1 ... 9", "take that body into the hand"},
-        {typed_key('0'), 0, bodies, KeyAct::let_go, "0", "let go of all bodies"},
-        {control_key('z'), 0, bodies, KeyAct::undo, "Ctrl+Z", "undo the last gesture"},
-        {control_key('y'), 0, bodies, KeyAct::redo, "Ctrl+Y", "redo it"},
-        {{KeyCode::character, 'z', true, true}, 0, bodies, KeyAct::redo, "Ctrl+Shift+Z", "likewise"},
-        {typed_key('r'), 0, bodies, KeyAct::refine, "R", "refine the body in the hand"},
-        {named_key(KeyCode::enter), 0, bodies, KeyAct::accept, "Enter", "accept: undo goes back no farther"},
-        {named_key(KeyCode::escape), 0, bodies, KeyAct::revert, "Esc", "back to the last accepted places"},
-        {typed_key('k'), 0, always, KeyAct::calibrate, "K", "calibrate the stereo screen"},
-        {typed_key('t'), 0, calibrating, KeyAct::measure, "T", "take the point, or stop"},
-        {typed_key('n'), 0, calibrating, KeyAct::skip_point, "N", "the next point"},
-        {typed_key('b'), 0, calibrating, KeyAct::redo_point, "B", "back: the last point again"},
-        {named_key(KeyCode::enter), 0, calibrating, KeyAct::next_step, "Enter", "next step"},
-        {control_key('s'), 0, calibrating, KeyAct::save_calibration, "Ctrl+S", "save the calibration"},
-        {typed_key('x'), 0, calibrating, KeyAct::swap_calibrated_eyes, "X", "swap the eyes"},
-        {named_key(KeyCode::escape), 0, calibrating, KeyAct::leave_calibration, "Esc",
+        {{}, 0, always, KeyAction::none, "left drag", "rotate"},
+        {{}, 0, always, KeyAction::none, "right drag", "pan"},
+        {{}, 0, always, KeyAction::none, "wheel", "zoom"},
+        {{}, 0, bodies, KeyAction::none, "Alt+wheel", "contour level"},
+        {named_key(KeyCode::escape), 0, sheet, KeyAction::close_sheet, "Esc", "close this table"},
+        {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
+        {named_key(KeyCode::space), 0, controller, KeyAction::disarm, "Space", "disarm: no force"},
+        {{KeyCode::enter, '\0', true, false}, 0, controller, KeyAction::arm, "Ctrl+Enter", "arm"},
+        {named_key(KeyCode::home), 0, always, KeyAction::home, "Home", "home view"},
+        {typed_key('f'), 0, bone, KeyAction::approach_burr, "F", "look at the burr from near"},
+        {typed_key('s'), 0, always, KeyAction::style, "S", "surface: glass, solid, wire"},
+        {typed_key('x'), 0, stereo, KeyAction::swap_eyes, "X", "stereo: swap the eyes"},
+        {typed_key('+'), 0, bodies, KeyAction::raise_contour, "+", "contour level up"},
+        {typed_key('-'), 0, bodies, KeyAction::lower_contour, "-", "contour level down"},
+        {typed_key('1'), '9', bodies, KeyAction::take_body, "1 ... 9", "take that body into the hand"},
+        {typed_key('0'), 0, bodies, KeyAction::let_go, "0", "let go of all bodies"},
+        {control_key('z'), 0, bodies, KeyAction::undo, "Ctrl+Z", "undo the last gesture"},
+        {control_key('y'), 0, bodies, KeyAction::redo, "Ctrl+Y", "redo it"},
+        {{KeyCode::character, 'z', true, true}, 0, bodies, KeyAction::redo, "Ctrl+Shift+Z", "likewise"},
+        {typed_key('r'), 0, bodies, KeyAction::refine, "R", "refine the body in the hand"},
+        {named_key(KeyCode::enter), 0, bodies, KeyAction::accept, "Enter",
+         "accept: undo goes back no farther"},
+        {named_key(KeyCode::escape), 0, bodies, KeyAction::revert, "Esc", "back to the last accepted places"},
+        {typed_key('k'), 0, always, KeyAction::calibrate, "K", "calibrate the stereo screen"},
+        {typed_key('t'), 0, calibrating, KeyAction::measure, "T", "take the point, or stop"},
+        {typed_key('n'), 0, calibrating, KeyAction::skip_point, "N", "the next point"},
+        {typed_key('b'), 0, calibrating, KeyAction::redo_point, "B", "back: the last point again"},
+        {named_key(KeyCode::enter), 0, calibrating, KeyAction::next_step, "Enter", "next step"},
+        {control_key('s'), 0, calibrating, KeyAction::save_calibration, "Ctrl+S", "save the calibration"},
+        {typed_key('x'), 0, calibrating, KeyAction::swap_calibrated_eyes, "X", "swap the eyes"},
+        {named_key(KeyCode::escape), 0, calibrating, KeyAction::leave_calibration, "Esc",
          "leave the calibration"},
-        {typed_key('o'), 0, always, KeyAct::open_browser, "O", "open another scene"},
-        {typed_key('p'), 0, always, KeyAct::picture, "P", "save a picture"},
-        {typed_key('m'), 0, controller, KeyAct::mark, "M", "mark this moment: a flight recorder saves it"},
-        {typed_key('?'), 0, always, KeyAct::help, "?", "this table"},
+        {typed_key('o'), 0, always, KeyAction::open_browser, "O", "open another scene"},
+        {typed_key('p'), 0, always, KeyAction::picture, "P", "save a picture"},
+        {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment: a flight recorder saves it"},
+        {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
     });
 }();
 
@@ -89,7 +90,7 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
 KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
     KeyFound found;
     for (const KeyRow& row : kKeyRows) {
-        if (row.act == KeyAct::none || !applies(row.when, now)) continue;
+        if (row.action == KeyAction::none || !applies(row.when, now)) continue;
         KeyStroke of_row = row.stroke;
         if (row.stroke.code == KeyCode::character && stroke.character >= row.stroke.character &&
             stroke.character <= last_character(row))
@@ -103,7 +104,7 @@ KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
 
 bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     using enum KeyWhen;
-    if (a.act == KeyAct::none || b.act == KeyAct::none) return false;
+    if (a.action == KeyAction::none || b.action == KeyAction::none) return false;
     if (precedence(a.when) != precedence(b.when)) return false;  // one of them comes first
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both

@@ -21,13 +21,13 @@ struct KeyStroke {
     bool operator==(const KeyStroke&) const = default;
 };
 
-enum class KeyAct : std::uint8_t {
+enum class KeyAction : std::uint8_t {
     none,  // done with the mouse
     close_sheet,
     open_browser,
     close_browser,
     home,
-    look_at_burr,
+    approach_burr,
     style,
     swap_eyes,
     raise_contour,
@@ -72,7 +72,7 @@ struct KeyRow {
     KeyStroke stroke;
     char last;  // of a range of characters from the stroke's own on; 0: that one alone
     KeyWhen when;
-    KeyAct act;
+    KeyAction action;
     const char* keys;  // as a person reads it
     const char* what;
 };

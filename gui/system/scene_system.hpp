@@ -3,7 +3,7 @@
 //
 // The window has one of each for as long as it runs (gui/window/systems.hpp); the one whose scene is shown
 // gets all calls but attach(), detach() and finish(), which all get.
-// Frame    follow(), act(), adapt(), move(), prepare(), the view is drawn, drawn(), ended(), add_to()
+// Frame    follow(), perform(), adapt(), move(), prepare(), the view is drawn, drawn(), ended(), add_to()
 // Thread   frame thread, OpenGL context current, but for SceneStart, which is made on the loader thread
 #pragma once
 
@@ -69,7 +69,7 @@ public:
 
     virtual void follow(const SystemContext& context) { static_cast<void>(context); }
     // False: the key means nothing to it. place: in the key's row (KeyFound).
-    virtual bool act(KeyAct what, std::size_t place, const SystemContext& context) {
+    virtual bool perform(KeyAction what, std::size_t place, const SystemContext& context) {
         static_cast<void>(what), static_cast<void>(place), static_cast<void>(context);
         return false;
     }

@@ -206,8 +206,8 @@ void GuiApp::publish_load() {
 void GuiApp::publish_frames() {
     constexpr auto kEvery = std::chrono::milliseconds(500);
     const Instant now = Monotonic::now();
-    if (now - frames_told_ < kEvery) return;
-    frames_told_ = now;
+    if (now - frames_published_ < kEvery) return;
+    frames_published_ = now;
     FramesTopic topic{};
     topic.taken_at_ns = to_ns(now);
     topic.metrics = state_.frames = frame_metrics(clock_, passes_);

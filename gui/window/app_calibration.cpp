@@ -83,7 +83,7 @@ void GuiApp::draw_calibration(const ViewFrame& view, std::int64_t now_ns) {
     }
     stage_->show(window_.frame_buffer());
     state_.a_per_px = 0.0;  // each eye has a scale of its own
-    state_.stage = std::string("stereo: ") + stage_words(*stage_);
+    state_.stage = std::string("stereo: ") + stage_text(*stage_);
     state_.head_lost = stage_->head().sight() == HeadSight::lost;
 }
 

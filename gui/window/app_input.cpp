@@ -31,61 +31,61 @@ void GuiApp::handle_input() {
         const KeyFound found = find_key(stroke, now);
         if (found.row == nullptr) continue;
         spdlog::debug("key {}: {}", found.row->keys, found.row->what);
-        act(found.row->act, static_cast<std::size_t>(found.place));
+        perform(found.row->action, static_cast<std::size_t>(found.place));
     }
 }
 
-void GuiApp::act(KeyAct what, std::size_t place) {
-    if (content_ && system().act(what, place, context())) return;
+void GuiApp::perform(KeyAction what, std::size_t place) {
+    if (content_ && system().perform(what, place, context())) return;
     const auto command = [&](CommandKind kind) { state_.requests.push_back({kind, 0.0, {}, 0}); };
     const RunState run =
         controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;
     switch (what) {
-        case KeyAct::home:
+        case KeyAction::home:
             return home_view();
-        case KeyAct::style:
+        case KeyAction::style:
             state_.toggles.style = (state_.toggles.style + 1) % 3;
             return;
-        case KeyAct::swap_eyes:
+        case KeyAction::swap_eyes:
             return stage_->swap_eyes();
-        case KeyAct::arm:  // as the button: only from where it can be followed
+        case KeyAction::arm:  // as the button: only from where it can be followed
             if (run == RunState::ready) command(CommandKind::arm);
             return;
-        case KeyAct::disarm:  // whatever is known: no force is always safe, and the controller answers
+        case KeyAction::disarm:  // whatever is known: no force is always safe, and the controller answers
             return command(CommandKind::disarm);
-        case KeyAct::picture:
+        case KeyAction::picture:
             picture_wanted_ = true;
             return;
-        case KeyAct::mark:
+        case KeyAction::mark:
             return command(CommandKind::mark);
-        case KeyAct::help:
+        case KeyAction::help:
             state_.situation.sheet = !state_.situation.sheet;
             return;
-        case KeyAct::close_sheet:
+        case KeyAction::close_sheet:
             state_.situation.sheet = false;
             return;
-        case KeyAct::open_browser:
+        case KeyAction::open_browser:
             state_.browser.open = true;
             return;
-        case KeyAct::close_browser:
+        case KeyAction::close_browser:
             state_.browser.open = false;
             return;
-        case KeyAct::calibrate:
+        case KeyAction::calibrate:
             if (!calibration_.open()) open_calibration(false);
             return;
-        case KeyAct::measure:
-            return calibration_.act(CalibrationAct::take);
-        case KeyAct::skip_point:
-            return calibration_.act(CalibrationAct::skip);
-        case KeyAct::redo_point:
-            return calibration_.act(CalibrationAct::redo_last);
-        case KeyAct::next_step:
-            return calibration_.act(CalibrationAct::next);
-        case KeyAct::leave_calibration:
-            return calibration_.act(CalibrationAct::leave);
-        case KeyAct::save_calibration:
-            return calibration_.act(CalibrationAct::save);
-        case KeyAct::swap_calibrated_eyes:
+        case KeyAction::measure:
+            return calibration_.perform(CalibrationAction::take);
+        case KeyAction::skip_point:
+            return calibration_.perform(CalibrationAction::skip);
+        case KeyAction::redo_point:
+            return calibration_.perform(CalibrationAction::redo_last);
+        case KeyAction::next_step:
+            return calibration_.perform(CalibrationAction::next);
+        case KeyAction::leave_calibration:
+            return calibration_.perform(CalibrationAction::leave);
+        case KeyAction::save_calibration:
+            return calibration_.perform(CalibrationAction::save);
+        case KeyAction::swap_calibrated_eyes:
             return calibration_.swap_eyes();
         default:  // of the system, and it is another one
             return;

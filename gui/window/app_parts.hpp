@@ -49,7 +49,7 @@ private:
     [[nodiscard]] SystemContext context();
     [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
     void handle_input();
-    void act(KeyAct what, std::size_t place);
+    void perform(KeyAction what, std::size_t place);
     void apply_level();
     void draw_scene(std::int64_t now_ns);
     void begin_view(const ViewFrame& view);
@@ -76,7 +76,7 @@ private:
     double fps_max_ = 60.0;
     // OpenGL objects go before the window: members are destroyed from below.
     PassClock passes_{PassClock::possible(window_.software())};
-    Instant frames_told_{};
+    Instant frames_published_{};
     std::unique_ptr<Stage> stage_;  // of a stereo picture
     std::unique_ptr<PicturePainter> calibration_painter_;
     CalibrationController calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};

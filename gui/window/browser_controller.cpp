@@ -24,8 +24,8 @@ bool ready(std::future<T>& one) {
 }
 
 void say(BrowserState& state, Grade grade, std::string words) {
-    state.said = std::move(words);
-    state.said_grade = grade;
+    state.message = std::move(words);
+    state.message_grade = grade;
 }
 
 }  // namespace
@@ -118,13 +118,13 @@ void BrowserController::show_marks(BrowserState& state) const {
     for (SceneRow& row : state.here)
         row.marked = std::find(marked_.begin(), marked_.end(), row.path) != marked_.end();
     if (marked_.empty()) {
-        state.marks_say.clear();
+        state.marks_text.clear();
         return;
     }
     const Dropped meant = meaning_of(marked_);
     state.marks_import = !meant.import.empty();
-    state.marks_say = meaning_text(meant);
-    if (!state.marks_import) state.marks_say.insert(0, std::to_string(marked_.size()) + " marked. ");
+    state.marks_text = meaning_text(meant);
+    if (!state.marks_import) state.marks_text.insert(0, std::to_string(marked_.size()) + " marked. ");
 }
 
 void BrowserController::follow_marks(BrowserState& state) {
@@ -149,12 +149,12 @@ void BrowserController::follow_marks(BrowserState& state) {
 
 // tact-prep prints a line a step, most with the share of the whole that is done.
 void BrowserController::follow_steps(BrowserState& state) const {
-    const std::string said = import_.said();
-    state.import_share = share_done(said);
+    const std::string output = import_.output();
+    state.import_share = share_done(output);
     say(state, Grade::unknown,
         "Importing " + importing_ + ", " +
             std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) + " s" +
-            (said.empty() ? ": reading it" : ": " + last_line(said)));
+            (output.empty() ? ": reading it" : ": " + last_line(output)));
 }
 
 // At the end tact prints the path of the scene.
@@ -175,7 +175,7 @@ void BrowserController::follow_import(BrowserState& state) {
     else if (cancelled_)
         say(state, Grade::unknown, "The import was cancelled; nothing was written.");
     else if (!outcome->good())
-        say(state, Grade::bad, errors_said(outcome->output));
+        say(state, Grade::bad, error_text(outcome->output));
     else if (last.starts_with('/') && last.ends_with(".tact"))
         open_scene(last, state);
     else
@@ -205,7 +205,7 @@ void BrowserController::follow(BrowserState& state) {
         }
         if (!reading_.valid()) read(state);
     }
-    if (!state.open && was_open_ && !asked_) state.said.clear();
+    if (!state.open && was_open_ && !asked_) state.message.clear();
     was_open_ = state.open;
     if (!state.folder_wanted.empty() && !reading_.valid()) {
         state.folder = std::exchange(state.folder_wanted, {});

@@ -83,9 +83,9 @@ void import_line(const Theme& theme, BrowserState& browser) {
 // What would be made of the rows that are marked, and the way to it; as high as marks_height() says.
 constexpr float kMarksButtons = 130.0F;
 float marks_height(const Theme& theme, const BrowserState& browser) {
-    if (browser.marks_say.empty()) return 0.0F;
+    if (browser.marks_text.empty()) return 0.0F;
     const float room = ImGui::GetContentRegionAvail().x - theme.px(kMarksButtons);
-    return std::max(ImGui::CalcTextSize(browser.marks_say.c_str(), nullptr, false, room).y,
+    return std::max(ImGui::CalcTextSize(browser.marks_text.c_str(), nullptr, false, room).y,
                     ImGui::GetFrameHeight()) +
            2.0F * ImGui::GetStyle().ItemSpacing.y;
 }
@@ -99,7 +99,7 @@ void marks_line(const Theme& theme, BrowserState& browser) {
     ImGui::SameLine(theme.px(kMarksButtons));
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0F);
-    text_coloured(browser.marks_import ? colour::kText : colour::kWatch, browser.marks_say);
+    text_coloured(browser.marks_import ? colour::kText : colour::kWatch, browser.marks_text);
     ImGui::PopTextWrapPos();
 }
 
@@ -119,9 +119,9 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     choose(theme, kTabs, browser.tab);
     ImGui::SameLine(width - theme.px(64.0F));
     if (ImGui::SmallButton("Close")) browser.open = false;
-    if (!browser.said.empty()) {
+    if (!browser.message.empty()) {
         ImGui::PushTextWrapPos(0.0F);
-        text_coloured(grade_colour(browser.said_grade), browser.said);
+        text_coloured(grade_colour(browser.message_grade), browser.message);
         ImGui::PopTextWrapPos();
     }
     if (browser.importing) import_line(theme, browser);

@@ -30,10 +30,10 @@ struct BrowserState {
     bool reading = false;
     bool importing = false, cancel_wanted = false;
     std::optional<double> import_share;  // of the import, 0 to 1, where it says
-    std::string marks_say;  // what would be made of the marked rows, or why nothing can; empty: no mark
+    std::string marks_text;  // what would be made of the marked rows, or why nothing can; empty: no mark
     bool marks_import = false;
-    std::string said;
-    Grade said_grade = Grade::unknown;
+    std::string message;
+    Grade message_grade = Grade::unknown;
     // What a person chose; emptied by the application.
     std::string scene_wanted, folder_wanted, mark_wanted;
     bool import_wanted = false, clear_wanted = false;

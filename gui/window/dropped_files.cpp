@@ -126,10 +126,10 @@ Dropped meaning_of(const std::vector<std::string>& files) {
 std::string meaning_text(const Dropped& meant) {
     if (!meant.scene.empty()) return "Open " + shown_name(meant.scene) + ".";
     if (meant.import.empty()) return meant.trouble;
-    const std::string& act = meant.import[0];
+    const std::string& command = meant.import[0];
     const std::string first = shown_name(meant.import[1]);
-    if (act == "touch") return "Touch " + first + ".";
-    if (act == "drill") return "Drill " + first + ".";
+    if (command == "touch") return "Touch " + first + ".";
+    if (command == "drill") return "Drill " + first + ".";
     const std::size_t more = meant.import.size() - 3;
     return "Dock " + shown_name(meant.import[2]) +
            (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) + " into " + first + ".";

@@ -16,7 +16,7 @@
 namespace tact {
 namespace {
 
-std::string glfw_words() {
+std::string glfw_text() {
     const char* words = nullptr;
     glfwGetError(&words);
     return words != nullptr ? words : "no reason given";
@@ -96,7 +96,7 @@ void Window::open(int width_px, int height_px, bool hidden) {
         const char* const wayland = std::getenv("WAYLAND_DISPLAY");
         const bool none = display == nullptr && wayland == nullptr;
         throw StartupError(
-            "opening a window", none ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_words(),
+            "opening a window", none ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_text(),
             "run it in a desktop session, or under an X server of its own: xvfb-run -a tact-gui ...");
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -109,7 +109,7 @@ void Window::open(int width_px, int height_px, bool hidden) {
     window_ = glfwCreateWindow(width_px, height_px, "Tact", nullptr, nullptr);
     if (window_ == nullptr)
         throw StartupError(
-            "making an OpenGL 3.3 core context", glfw_words(),
+            "making an OpenGL 3.3 core context", glfw_text(),
             "install a graphics driver with OpenGL 3.3, or draw on the processor: LIBGL_ALWAYS_SOFTWARE=1 "
             "with the package libgl1-mesa-dri");
     glfwMakeContextCurrent(window_);

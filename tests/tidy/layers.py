@@ -6,7 +6,8 @@ which target each source belongs to (a header: the target of its .cpp, else the 
   1. an include of another folder's header that the target's USES do not lead to,
   2. a folder that includes what ARCHITECTURE's table puts above it or beside it,
   3. a third-party header outside the folder that wraps it,
-  4. an include that does not start at the root or does not exist, and a source that no target lists.
+  4. an include that does not start at the root or does not exist, and a source that no target lists,
+  5. a system that is named outside of its program's table of systems.
 Prints file:line: what, and exits 1 if there was anything. --self-test proves on a small tree that it finds each.
 """
 import os
@@ -77,6 +78,8 @@ WRAPPED = [
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay", "ipc/topics/frames_json",
                     "ipc/recorder/main", "ipc/station/station_report", "tests"]),
 ]
+# What is named under a folder in these files alone: a table of the systems there.
+NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
@@ -190,6 +193,9 @@ def check(root):
         with open(os.path.join(root, path), encoding="utf-8") as f:
             lines = f.readlines()
         for number, line in enumerate(lines, 1):
+            for folder, pattern, tables in NAMED:
+                if path.startswith(folder) and path not in tables and pattern.search(line):
+                    found.append(f"{path}:{number}: only {' and '.join(tables)} may name a kind of scene")
             match = INCLUDE.match(line)
             if not match:
                 continue
@@ -239,6 +245,9 @@ def self_test():
         "rt/servo/CMakeLists.txt": "tact_library(servo SOURCES l.cpp USES force base)",
         "rt/servo/l.hpp": '#include "ipc/base/a.hpp"\n',
         "rt/servo/l.cpp": '#include "rt/servo/l.hpp"\n',
+        "gui/docking/CMakeLists.txt": "tact_library(gui_docking SOURCES g.cpp USES base)",
+        "gui/docking/g.cpp": '#include "ipc/base/a.hpp"\n',
+        "gui/drilling/h.hpp": "#pragma once\n",
         "tests/unit/x.cmake": "tact_test(unit/x_test.cpp USES shm)",
         "tests/unit/x_test.cpp": '#include "ipc/shm/s.hpp"\n',
     }
@@ -249,6 +258,8 @@ def self_test():
         "USES missing": ("tests/unit/x_test.cpp", '#include "rt/force/f.hpp"\n', "needs USES force"),
         "USES missing, allowed folder": ("rt/servo/l.cpp", '#include "ipc/shm/s.hpp"\n', "needs USES shm"),
         "servo and a model": ("rt/servo/l.cpp", '#include "rt/force/surface/t.hpp"\n', "rt/servo may not include"),
+        "another system of the window": ("gui/docking/g.cpp", '#include "gui/drilling/h.hpp"\n', "gui/docking may not include"),
+        "a kind of scene": ("gui/docking/g.cpp", "auto k = SceneKind::docking;\n", "may name a kind of scene"),
         "third party": ("rt/force/f.cpp", "#include <gemmi/ccp4.hpp>\n", "belongs to prep"),
         "third party, dotted": ("ipc/shm/s.cpp", "#include <imgui.h>\n", "belongs to gui"),
         "relative": ("ipc/shm/s.cpp", '#include "s.hpp"\n', "not a path from the root"),

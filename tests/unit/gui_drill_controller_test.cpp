@@ -109,7 +109,7 @@ protected:
         static_cast<void>(gui_->read());
         desk_.follow(*gui_, changes, state_, drilling_);
     }
-    [[nodiscard]] long said(const std::string& text) const {
+    [[nodiscard]] long message(const std::string& text) const {
         return std::count_if(state_.events.begin(), state_.events.end(),
                              [&](const EventLine& e) { return e.text == text; });
     }
@@ -151,17 +151,17 @@ TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after
     EXPECT_TRUE(state_.events.empty());
     burr(5e-3, true);
     for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
-    EXPECT_EQ(said("burr 1.8 mm from the facial nerve"), 1);
+    EXPECT_EQ(message("burr 1.8 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::watch);
     for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
-    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 1);
+    EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::bad);
     burr(6.9e-3, true);  // 1.1 mm: not yet away
     burr(7.1e-3, true);
     EXPECT_EQ(state_.events.size(), 2U);
     burr(6.5e-3, true);
     burr(7.1e-3, true);
-    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 2);
+    EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 2);
     burr(8.5e-3, true);  // still red
     EXPECT_EQ(state_.events.size(), 3U);
 }
@@ -173,7 +173,7 @@ TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
     after[5] = 100;  // of the third brick: the nerve
     const BrickChange change{2, before, after, true};
     frame({&change, 1});
-    EXPECT_EQ(said("facial nerve cut"), 1);
+    EXPECT_EQ(message("facial nerve cut"), 1);
     EXPECT_EQ(drilling_.injuries, 1U);
     const auto file = folder_ / "report.json";
     desk_.save("", std::nullopt);

@@ -15,7 +15,7 @@ std::string text_of(const char* pattern, auto... values) {
     return text;
 }
 
-std::string fit_words(const Registration& fit) {
+std::string fit_text(const Registration& fit) {
     return text_of("%s: %.1f mm rms, worst %.1f mm", fit_grade_text(fit.grade()), 1e3 * fit.residual_m_rms,
                    1e3 * fit.residual_m_max);
 }
@@ -28,7 +28,7 @@ Calibration::StatusText status_of(const Calibration::Marks& marks, bool taken_be
         return {FitGrade::none, text_of("%zu of %zu points, %zu at least", marks.taken(), kMarks, kMarksMin)};
     const Registration& fit = marks.fit;
     if (fit.residual_m.empty()) return {FitGrade::red, fit.refusal};
-    std::string words = fit_words(fit);
+    std::string words = fit_text(fit);
     if (const auto out = marks.outlier())
         words += text_of(". Point %zu does not fit the others: take it again", *out + 1);
     else if (!fit.good)
@@ -93,7 +93,7 @@ std::string Calibration::instruction() const {
     return {};
 }
 
-std::string Calibration::glass_words() const {
+std::string Calibration::glass_text() const {
     const std::string point = std::to_string(marks().current + 1);
     if (measuring())
         return step_ == CalibrationStep::wand ? "TILT THE WAND TO ALL SIDES" : "HOLD STILL: POINT " + point;
@@ -120,8 +120,8 @@ std::string Calibration::live() const {
     if (turning_)
         return text_of("tilt the wand to all sides: %.0f %%, %zu poses%s", 100.0 * progress(), turned_.size(),
                        input_.sensor_good ? "" : "; the tracker does not see it");
-    std::string words = wand_.measuring() ? wand_.words("the wand") : std::string();
-    if (stylus_.measuring()) words += (words.empty() ? "" : "; ") + stylus_.words("the stylus");
+    std::string words = wand_.measuring() ? wand_.text("the wand") : std::string();
+    if (stylus_.measuring()) words += (words.empty() ? "" : "; ") + stylus_.text("the stylus");
     if (!words.empty()) return words;
     const auto place = [](const char* what, const Vec3& at_m) {
         return text_of("%s: %.1f, %.1f, %.1f mm", what, 1e3 * at_m.x(), 1e3 * at_m.y(), 1e3 * at_m.z());
@@ -163,10 +163,9 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
             if (by.x() > 0.0 && !screen_.outlier()) {
                 const double w = by.x() / draft_.screen.width_m() - 1.0,
                              h = by.y() / draft_.screen.height_m() - 1.0;
-                v.words +=
-                    text_of(". By the marks the picture is %.1f x %.1f mm", 1e3 * by.x(), 1e3 * by.y());
+                v.text += text_of(". By the marks the picture is %.1f x %.1f mm", 1e3 * by.x(), 1e3 * by.y());
                 if (std::max(std::abs(w), std::abs(h)) > kStretchTold) {
-                    v.words +=
+                    v.text +=
                         text_of(", %+.1f %% and %+.1f %% off what was typed: measure it again, or take it",
                                 100.0 * w, 100.0 * h);
                     if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
@@ -177,7 +176,7 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
         case CalibrationStep::workspace: {
             StatusText v = status_of(workspace_, true, "The workspace");
             if (workspace_.fit.good && std::abs(workspace_.fit.stretch - 1.0) > 2.0 * kStretchTold) {
-                v.words +=
+                v.text +=
                     text_of(". The hand's lengths are %+.1f %% off the tracker's: is the arm calibrated?",
                             100.0 / workspace_.fit.stretch - 100.0);
                 if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
@@ -198,7 +197,7 @@ std::vector<std::string> Calibration::remarks() const {
     std::vector<std::string> lines;
     for (const CalibrationStep step : {CalibrationStep::picture, CalibrationStep::wand,
                                        CalibrationStep::screen, CalibrationStep::workspace})
-        lines.push_back(std::string(calibration_step_title(step)) + ": " + status(step).words);
+        lines.push_back(std::string(calibration_step_title(step)) + ": " + status(step).text);
     const auto add = [&](const char* what, const Marks& marks) {
         for (std::size_t i = 0; i < kMarks; ++i)
             if (const auto left = marks.residual_m(i))
