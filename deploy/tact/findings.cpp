@@ -28,7 +28,7 @@ bool none_fails(const std::vector<Finding>& findings) {
 nlohmann::json findings_json(const std::vector<Finding>& findings) {
     nlohmann::json rows = nlohmann::json::array();
     for (const Finding& f : findings)
-        rows.push_back({{"name", f.name}, {"level", level_text(f.level)}, {"says", f.says}, {"mend", f.fix}});
+        rows.push_back({{"name", f.name}, {"level", level_text(f.level)}, {"says", f.says}, {"fix", f.fix}});
     return rows;
 }
 

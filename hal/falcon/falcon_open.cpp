@@ -20,7 +20,7 @@ namespace {
 constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, written up to three times
 constexpr Duration kFlushMax = std::chrono::milliseconds(50);
 
-// What a moment may mend: udev gives the rights a little after the plug.
+// What a moment may fix: udev gives the rights a little after the plug.
 bool passes(BusFault fault) noexcept {
     return fault == BusFault::missing || fault == BusFault::denied || fault == BusFault::busy ||
            fault == BusFault::not_ready;

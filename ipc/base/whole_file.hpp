@@ -19,7 +19,7 @@ namespace tact {
 
 // Makes the folder where there is none.
 inline void write_whole_file(const std::filesystem::path& path, const std::string& content) {
-    constexpr const char* kFix = "free some space, mend the permissions, or give another path";
+    constexpr const char* kFix = "free some space, fix the permissions, or give another path";
     std::error_code failed;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
     std::string temporary = path.string() + ".XXXXXX";

@@ -22,7 +22,7 @@ namespace tact::plot {
 void save_png(const Image& image, const std::filesystem::path& path) {
     const auto fail = [&path](const std::string& why) {
         throw StartupError("writing the picture " + path.string(), why,
-                           "free some space, mend the permissions, or give another path");
+                           "free some space, fix the permissions, or give another path");
     };
     if (image.width <= 0 || image.height <= 0 ||
         image.rgba.size() !=

@@ -11,7 +11,7 @@ tact_test(unit/deploy_probe_test.cpp USES base launch probe SYSTEM nlohmann_json
 find_package(PNG REQUIRED)
 find_package(Freetype REQUIRED)
 tact_test(unit/reproduce_plot_test.cpp USES base plot SYSTEM rapidcheck PNG::PNG)
-tact_test(unit/deploy_drill_test.cpp USES bench reproduce launch scene base)
+tact_test(unit/deploy_drill_test.cpp USES bench reproduce launch scene base SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_drilling_test.cpp USES launch shm topics scene base SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_run_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_run_save_test.cpp USES launch shm topics scene base)

@@ -141,7 +141,7 @@ TEST(Child, a_program_that_does_not_exist_is_refused_with_its_path) {
         FAIL() << "no error";
     } catch (const StartupError& e) {
         EXPECT_NE(std::string(e.what()).find("/nonexistent/program"), std::string::npos);
-        EXPECT_NE(std::string(e.what()).find("mend:"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find("fix:"), std::string::npos);
     }
 }
 

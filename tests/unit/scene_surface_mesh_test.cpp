@@ -112,7 +112,7 @@ RC_GTEST_PROP(SurfaceMesh, sixteen_triangles_looked_at_together_agree_with_one_a
     for (std::size_t k = 0; k < kQueryKernelCount; ++k) {
         if (!kQueryKernels[k].runs_here()) continue;
         TriangleQueries seen;
-        kQueryKernels[k].look(job, seen);
+        kQueryKernels[k].query(job, seen);
         for (std::size_t lane = 0; lane < kLooks; ++lane) {
             const auto vector = [&](const auto& of) {
                 return Vec3(static_cast<double>(of[0][lane]), static_cast<double>(of[1][lane]),
