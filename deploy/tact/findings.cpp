@@ -35,7 +35,7 @@ nlohmann::json findings_json(const std::vector<Finding>& findings) {
 void print_findings(const std::vector<Finding>& findings) {
     for (const Finding& f : findings) {
         std::printf("%-4s  %-14s  %s\n", level_text(f.level), f.name.c_str(), f.says.c_str());
-        if (!f.fix.empty()) std::printf("%22smend: %s\n", "", f.fix.c_str());
+        if (!f.fix.empty()) std::printf("%22sfix: %s\n", "", f.fix.c_str());
     }
 }
 

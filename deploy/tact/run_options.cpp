@@ -38,7 +38,7 @@ constexpr PassedOption kVisual[] = {
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "Stereo mode of the window"},
     {"--window-state", "FILE.toml",
      "Settings of the window (TOML), read at the start if the file exists and written at the end"},
-    {"--stage", "FILE.toml", "Positions of screen, eyes and workspace (TOML); see gui/stage/README.md"},
+    {"--stage", "FILE.toml", "Positions of screen, eyes and workspace (TOML); see gui/stereo/README.md"},
     {"--stage-screenshot", "FILE.png", "Screenshot of the stereo image at the end"},
 };
 

@@ -1,4 +1,4 @@
-// The shader programs of triangles, lines, points and the background. Atoms: gui/render/impostors.hpp.
+// The shader programs of triangles, lines, points and the background. Atoms: gui/docking/impostors.hpp.
 //
 // Light is computed per vertex, so that the cost of a frame follows the vertices drawn (the governor's knob)
 // and drawing on the processor alone stays usable. Attributes: 0 position, 1 normal, 2 colour.

@@ -7,13 +7,13 @@
 
 namespace tact {
 
-void add_revolved(TubeMesh& mesh, std::span<const Ring> rings, const Eigen::Vector3f& from_a,
+void add_revolved(TubeMesh& mesh, std::span<const ProfileRing> rings, const Eigen::Vector3f& from_a,
                   const Eigen::Vector3f& axis, const Rgb8& colour) {
     constexpr std::uint32_t kSides = 16;
     const Eigen::Vector3f u = axis.unitOrthogonal();
     const Eigen::Vector3f v = axis.cross(u);
     const auto first = static_cast<std::uint32_t>(mesh.vertex.size());
-    for (const Ring& ring : rings) {
+    for (const ProfileRing& ring : rings) {
         for (std::uint32_t k = 0; k < kSides; ++k) {
             const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(k) / kSides;
             const Eigen::Vector3f out = std::cos(angle) * u + std::sin(angle) * v;

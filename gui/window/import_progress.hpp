@@ -9,10 +9,10 @@
 namespace tact {
 
 // The last line that is not empty.
-[[nodiscard]] std::string last_line(const std::string& said);
+[[nodiscard]] std::string last_line(const std::string& output);
 // Of the whole, 0 to 1, from the last line "[ 45 %] what is done"; nothing: no line says it.
-[[nodiscard]] std::optional<double> share_done(const std::string& said);
+[[nodiscard]] std::optional<double> share_done(const std::string& output);
 // From the first word of an error on: before it are the steps that went well.
-[[nodiscard]] std::string errors_said(const std::string& said);
+[[nodiscard]] std::string error_text(const std::string& output);
 
 }  // namespace tact

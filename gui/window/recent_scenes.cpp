@@ -22,12 +22,12 @@ constexpr std::int64_t kLatestUnixS = 253402300799;  // the year 9999
 }  // namespace
 
 std::filesystem::path state_folder() {
-    const auto said = [](const char* name) {
+    const auto folder_of = [](const char* name) {
         const char* const value = std::getenv(name);
         return std::filesystem::path(value != nullptr && value[0] == '/' ? value : "");
     };
-    if (const auto xdg = said("XDG_STATE_HOME"); !xdg.empty()) return xdg / "tact";
-    if (const auto home = said("HOME"); !home.empty()) return home / ".local" / "state" / "tact";
+    if (const auto xdg = folder_of("XDG_STATE_HOME"); !xdg.empty()) return xdg / "tact";
+    if (const auto home = folder_of("HOME"); !home.empty()) return home / ".local" / "state" / "tact";
     return {};
 }
 
@@ -90,7 +90,7 @@ std::filesystem::path set_aside(const std::filesystem::path& file) {
     std::error_code failed;
     std::filesystem::rename(file, aside, failed);
     if (failed)
-        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.message(),
+        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.folder_of(),
                            "move the file away, or mend the permissions of its folder");
     return aside;
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gui/panels/browser.hpp"
+#include "gui/window/browser_panel.hpp"
 #include "gui/window/recent_scenes.hpp"
 
 namespace tact {

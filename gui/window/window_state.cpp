@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "gui/window/toml_keys.hpp"
+#include "gui/base/toml_keys.hpp"
 #include "ipc/base/whole_file.hpp"
 
 namespace tact {

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "gui/panels/scene_toggles.hpp"
+#include "gui/dashboard/scene_toggles.hpp"
 #include "ipc/base/pose.hpp"
 
 namespace tact {

@@ -31,7 +31,7 @@
 // too, not the wrist alone. A published J^T F without these two terms is right for forces only.
 //
 // Virtual work: with v = J q', tau = J^T w does tau . q' = w . v. J^T needs no inverse, so nothing grows near
-// a singular posture: |tau_1| <= A |F| + |T|, |tau_2| <= l1 |F|, |tau_3| <= l2 |F| + |T|, the wrist's <= |T|.
+// a singular configuration: |tau_1| <= A |F| + |T|, |tau_2| <= l1 |F|, |tau_3| <= l2 |F| + |T|, the wrist's <= |T|.
 // What is lost there is the force along the direction in which the tip cannot move: it is carried by the
 // arm's links and the hand does not feel it. So nothing has to be faded or cut out, and no other direction
 // suffers.

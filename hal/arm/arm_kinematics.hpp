@@ -22,7 +22,7 @@ using Counts6 = std::array<std::int32_t, 6>;
 using Jacobian3 = Eigen::Matrix3d;
 using Jacobian6 = Eigen::Matrix<double, 6, 6>;  // rows: linear, angular
 
-// How a posture stands to what the arm cannot do.
+// How a configuration stands to what the arm cannot do.
 struct ArmConfiguration {
     double reach_m = 0.0;        // A, from the turret's axis: 0 is singular, no force along x can be shown
     double elbow_cos = 0.0;      // cos(shin - thigh): 0 is singular, stretched or folded, none along the arm
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] Jacobian6 jacobian6(const Joint6& q) const noexcept TACT_RT;
     [[nodiscard]] Twist twist(const Joint6& q, const Joint6& rad_s) const noexcept TACT_RT;
 
-    // The posture that has the tip there: elbow up, turret turned by less than 90 degrees, wrist within its
+    // The configuration that has the tip there: elbow up, turret turned by less than 90 degrees, wrist within its
     // ends where it can be. False: out of reach; q is then the nearest along the line from the shoulder.
     [[nodiscard]] bool inverse(const Pose& T_dev_tool, Joint6& q) const noexcept TACT_RT;
 

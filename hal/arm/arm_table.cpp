@@ -6,7 +6,7 @@
 //   rad, the gimbal (0.000108, 0.797273, -1.94046) rad and the tip (0, -65.5107, -88.1142) mm. The
 //   formula gives the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35)
 //   mm, to 0.01 mm; and the three angles give the reported rotation to 1e-5 (hal_arm_kinematics_test).
-//   This is also the inkwell's posture that calibration uses.
+//   This is also the inkwell's configuration that calibration uses.
 // - Origins of the Premiums: where the makers' box lies whole within reach and farthest from the
 //   stretched and the folded arm: on a grid of 10 mm, cos(elbow) is nowhere below 0.44 (1.5) and 0.58
 //   (1.0). With the reset pose in the middle, a fifth of the box would be out of reach. Joint limits:

@@ -27,7 +27,8 @@ Vec3 shortened(const Vec3& v, double most) noexcept {
 
 }  // namespace
 
-Pump::Pump(const Api& api, Handle device) : api_(&api), device_(device), mailbox_(std::make_unique<Mail>()) {}
+Pump::Pump(const Api& api, Handle device)
+    : api_(&api), device_(device), mailbox_(std::make_unique<Mailbox>()) {}
 
 Enum Pump::tick(Instant now) noexcept {
     if (ended_) return kCallbackDone;

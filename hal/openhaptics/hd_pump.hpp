@@ -79,7 +79,7 @@ private:
         std::uint32_t enable;
         std::uint32_t relaxed;  // calls of relax() so far: each drops the force, though overwritten at once
     };
-    struct Mail {
+    struct Mailbox {
         Latest<SampleWords> sample;
         Latest<CommandWords> command;
         Latest<Counts> counts;
@@ -98,7 +98,7 @@ private:
     const Api* api_;
     Handle device_;
     PumpSettings settings_;
-    std::unique_ptr<Mail> mailbox_;
+    std::unique_ptr<Mailbox> mailbox_;
 
     // On the vendor's thread.
     SampleWords sample_{};

@@ -63,7 +63,7 @@ void SimSurgeon::seek(double h_s, const Vec3& at_m) noexcept {
         back_ = (target_m_ - spot_m_).norm() > 1e-4;
         return;
     }
-    if (felt_n_ > (settings_.suction_tube ? kSuctionTubeContactN : kFeltN)) {
+    if (contact_n_ > (settings_.suction_tube ? kSuctionTubeContactN : kFeltN)) {
         met_ = true;
         met_m_ = at_m;
         return;
@@ -109,8 +109,8 @@ void SimSurgeon::work(double h_s) noexcept {
     towards(Vec3(middle_m.x(), middle_m.y(), met_m_.z()) + goal_m, h_s);
 }
 
-void SimSurgeon::step(double h_s, const Vec3& at_m, const Vec3& felt_n, bool powered) noexcept {
-    felt_n_ += std::min(h_s / kFeltS, 1.0) * (felt_n.z() - felt_n_);
+void SimSurgeon::step(double h_s, const Vec3& at_m, const Vec3& contact_n, bool powered) noexcept {
+    contact_n_ += std::min(h_s / kFeltS, 1.0) * (contact_n.z() - contact_n_);
     if (!powered) {
         off_s_ += h_s;
         if (off_s_ < kForgetS) return;  // a watchdog that dropped for a moment

@@ -36,7 +36,7 @@ public:
     explicit SimSurgeon(const SimSurgeonSettings& settings) noexcept;
 
     // Before pull(): where the hand is and what it felt for a time h.
-    void step(double h_s, const Vec3& at_m, const Vec3& felt_n, bool powered) noexcept TACT_RT;
+    void step(double h_s, const Vec3& at_m, const Vec3& contact_n, bool powered) noexcept TACT_RT;
     [[nodiscard]] Wrench pull(const Pose& pose, const Twist& twist) const noexcept TACT_RT;
 
     [[nodiscard]] Pose begin() const noexcept;
@@ -59,7 +59,7 @@ private:
     Vec3 begin_m_, spot_m_, target_m_;
     Vec3 met_m_ = Vec3::Zero();
     bool met_ = false, works_ = false, back_ = false;
-    double on_s_ = 0.0, off_s_ = kOffAtFirstS, worked_s_ = 0.0, felt_n_ = 0.0, press_n_ = 0.0;
+    double on_s_ = 0.0, off_s_ = kOffAtFirstS, worked_s_ = 0.0, contact_n_ = 0.0, press_n_ = 0.0;
     std::uint32_t missed_ = 0;
     std::uint64_t number_ = 0;
     Series series_;

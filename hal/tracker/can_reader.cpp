@@ -41,7 +41,7 @@ CanReader::CanReader(const CanTrackerSettings& settings, CanSource& source, Cloc
       assembler_(settings.fix),
       clocks_{TrackerClock(period(settings)), TrackerClock(period(settings)), TrackerClock(period(settings)),
               TrackerClock(period(settings))},
-      mailbox_(std::make_unique<Mail>()) {}
+      mailbox_(std::make_unique<Mailbox>()) {}
 
 void CanReader::opened() noexcept {
     health_.link = TrackerLink::up;

@@ -57,7 +57,7 @@ private:
         double pos_m[3], quat_xyzw[4];
         double quality, distortion;
     };
-    struct Mail {
+    struct Mailbox {
         std::array<Latest<SampleWords>, kTrackerSensorsMax> samples;
         Latest<TrackerHealth> health;
     };
@@ -78,7 +78,7 @@ private:
     std::array<std::uint64_t, kTrackerSensorsMax> sequence_{};
     std::array<Instant, kTrackerSensorsMax> taken_at_{};  // of the newest sample
     Instant retry_at_{};
-    std::unique_ptr<Mail> mailbox_;
+    std::unique_ptr<Mailbox> mailbox_;
 };
 
 }  // namespace tact

@@ -20,7 +20,7 @@ inline constexpr int kServoPriority = 80;
 inline constexpr int kPumpPriority = 85;  // of a device's bus: above the servo, which waits for its states
 inline constexpr int kSupervisorPriority = 95;  // the highest, which deploy/limits.conf grants
 
-// whose: "the servo". Empty: granted, or nothing was wished (0).
+// whose: "the servo". Empty: granted, or nothing was requested (0).
 [[nodiscard]] inline std::string raise_to_fifo(pthread_t thread, const std::string& whose, int priority) {
     if (priority <= 0) return {};
     sched_param param{};

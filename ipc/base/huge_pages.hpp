@@ -28,7 +28,7 @@ struct HugePageAllocator {
         const std::size_t bytes = count * sizeof(T);
         if (bytes < kPage) return static_cast<T*>(::operator new(bytes, kAlign));
         void* memory = ::operator new (bytes, std::align_val_t{kPage});
-        (void)::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish; refusal is no error
+        (void)::madvise(memory, bytes, MADV_HUGEPAGE);  // a request; refusal is no error
         return static_cast<T*>(memory);
     }
     void deallocate(T* memory, std::size_t count) noexcept {

@@ -67,7 +67,7 @@ public:
         RepairReport repair;
     };
     [[nodiscard]] const About& about() const { return about_; }
-    // False: that was the last one. Mail of steps that are not there comes with the next one that is.
+    // False: that was the last one. Mailbox of steps that are not there comes with the next one that is.
     bool next(RecordedStep& step);
 
     [[nodiscard]] RowStream<EventTopic>& events() { return events_; }

@@ -87,7 +87,7 @@ public:
     }
 
 private:
-    struct Wish {
+    struct Request {
         std::string cause;
         Instant at;
     };
@@ -101,7 +101,7 @@ private:
     }
 
     void save(Instant now) {
-        const Wish request = *request_;
+        const Request request = *request_;
         request_.reset();
         saved_at_ = now;
         const std::filesystem::path path = settings_.folder / name_of_now();
@@ -142,7 +142,7 @@ private:
     Watched watched_;
     FlightTape tape_;
     FlightOutcome outcome_;
-    std::optional<Wish> request_;
+    std::optional<Request> request_;
     std::optional<Instant> saved_at_;
 };
 

@@ -49,7 +49,7 @@ struct FlightSettings {
     std::size_t files_max = 20;
     double seconds = 0.0, wait_s = 0.0;  // as of a recording
     std::function<bool()> stop = [] { return false; };
-    std::function<bool()> save = [] { return false; };  // true once for each wish
+    std::function<bool()> save = [] { return false; };  // true once for each request
 };
 
 struct FlightOutcome {

@@ -3,7 +3,7 @@
 // Session    a name (default "default"); the socket is <runtime dir>/tact-<session>.sock, where the runtime
 //            dir is $TACT_RUNTIME_DIR, else $XDG_RUNTIME_DIR, else /tmp/tact-<uid> (created 0700, ownership
 //            checked).
-// Server     in tact-rt, polled by the house thread. It holds a lock file, so a second controller of the same
+// Server     in tact-rt, polled by the housekeeping thread. It holds a lock file, so a second controller of the same
 //            session is refused with the process id of the first. It sends its region to everyone who
 //            connects and receives at most one visual process's region; others watch, and the longest waiting
 //            visual process takes over when the first goes. The region has to be marked ready before. Where a scene

@@ -1,7 +1,7 @@
 // The controller's end of a link.
 //
 // Every socket is non-blocking and every client has said hello within kHelloPatience or is dropped, so that
-// nobody can hold the house thread. A second visual process is given the region to watch, and its own region
+// nobody can hold the housekeeping thread. A second visual process is given the region to watch, and its own region
 // is kept: it takes over when the first one goes, which is also what happens when a killed one is restarted
 // before its end was noticed.
 #include <fcntl.h>

@@ -84,7 +84,7 @@ RegionMemory RegionMemory::map(FileDescriptor fd, const RegionIdentity& identity
         return RegionMemory{};
     };
     const int seals = fcntl(fd.get(), F_GET_SEALS);
-    if (seals < 0) return refuse(region + "what was handed over is not sealed memory: " + last_error());
+    if (seals < 0) return refuse(region + "what was passed on is not sealed memory: " + last_error());
     if ((seals & kSealsWanted) != kSealsWanted)
         return refuse(region + "the seals are " + std::to_string(seals) + ", wanted at least " +
                       std::to_string(kSealsWanted));

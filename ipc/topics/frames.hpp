@@ -19,7 +19,7 @@ namespace tact {
 
 enum class Pass : std::uint8_t {
     ground,      // what is behind everything, and under the cards
-    adapt,       // levels obeyed, what changed sent
+    adapt,       // levels applied, what changed sent
     structures,  // bodies, and tools in hand
     bone,
     surface,  // and contours

@@ -1,4 +1,4 @@
-// The governor's word: one level per path. The visual process obeys it within a frame.
+// The governor's word: one level per path. The visual process applies it within a frame.
 #pragma once
 
 #include <cstddef>

@@ -15,7 +15,7 @@ struct alignas(64) LoadTopic {
     static constexpr TopicInfo kInfo{.name = "load", .version = 2, .writer = Writer::gui};
     std::int64_t taken_at_ns;
     std::uint64_t frame;
-    std::uint64_t levels_sequence;  // of the LevelsTopic that this frame obeyed
+    std::uint64_t levels_sequence;  // of the LevelsTopic that this frame applied
     double frame_s;                 // start to start
     double busy_s;                  // without waiting for the display
     double part_s[static_cast<std::size_t>(FramePart::count)];

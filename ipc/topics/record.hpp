@@ -1,6 +1,6 @@
 // What a servo cycle was given and what came of it, in rings: enough to do every cycle again, to the bit.
 //
-// Writer   the servo thread. In each cycle first what came by mail, then each hand, then the cycle itself: who sees a
+// Writer   the servo thread. In each cycle first what came by mailbox, then each hand, then the cycle itself: who sees a
 //          step in `cycles` finds the rest of it in the other rings, unless they lapped.
 // Step     counts all cycles, the dry ones before the start too, from 1; it joins the rings.
 // Reader   tact-record, which writes a file (ipc/record), and whoever replays one.
@@ -35,7 +35,7 @@ struct HousekeepingReport {
     double gui_fps;
     double gui_busy_s;
     std::uint64_t gui_frame;            // of the newest word
-    std::uint64_t gui_levels_sequence;  // of the levels that this frame obeyed
+    std::uint64_t gui_levels_sequence;  // of the levels that this frame applied
     std::int64_t gui_taken_at_ns;
     double gui_work_s;  // of the frame, without its pause
     double gui_cpu_s;   // processor time since its start
@@ -114,7 +114,7 @@ enum class MailboxKind : std::uint32_t {
 
 // What the servo took from others, in the step in which it did.
 struct MailboxTopic {
-    static constexpr TopicInfo kInfo{.name = "mail", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "mailbox", .version = 1, .writer = Writer::rt};
     std::uint64_t step;
     std::uint32_t kind;      // MailboxKind
     std::uint32_t reserved;  // zero

@@ -1,4 +1,4 @@
-// Who records this run, as the house thread sees it on the link: at every change.
+// Who records this run, as the housekeeping thread sees it on the link: at every change.
 #pragma once
 
 #include <cstdint>

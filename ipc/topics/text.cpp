@@ -64,31 +64,31 @@ const char* run_reason_text(RunReason reason) noexcept {
         case RunReason::by_command:
             return "by command";
         case RunReason::hand_present:
-            return "a hand holds the device";
+            return "hand on the device";
         case RunReason::hand_left:
-            return "the hand left the device";
+            return "hand off the device";
         case RunReason::signal:
             return "stopped by a signal";
         case RunReason::force_not_finite:
             return "the force was not a finite number";
         case RunReason::sample_stale:
-            return "the device's position is too old";
+            return "the device position is outdated";
         case RunReason::device_lost:
             return "the device is lost";
         case RunReason::device_fault:
             return "the device reports a fault";
         case RunReason::overruns:
-            return "several cycles in a row took too long";
+            return "several consecutive cycles overran";
         case RunReason::too_late:
-            return "a cycle began far too late";
+            return "a cycle started far too late";
         case RunReason::gui_silent:
-            return "the visual process went silent";
+            return "the display process stopped responding";
         case RunReason::model_failed:
             return "the force model failed";
         case RunReason::emergency_stop:
             return "the emergency stop is pressed";
         case RunReason::stop_channels:
-            return "the emergency stop's two contacts disagree: press it once more";
+            return "the two contacts of the emergency stop disagree: press it again";
         case RunReason::dead_man:
             return "the dead-man switch is released";
         case RunReason::amplifier_readback:
@@ -96,7 +96,7 @@ const char* run_reason_text(RunReason reason) noexcept {
         case RunReason::lines_lost:
             return "the safety lines cannot be read";
         case RunReason::supervisor:
-            return "the supervisor dropped the enable line: the servo stood still";
+            return "the supervisor dropped the enable line: the servo stopped";
     }
     return kUnknown;
 }
@@ -108,7 +108,7 @@ const char* lines_text(LinesShown lines) noexcept {
         case LinesShown::stopped:
             return "stop";
         case LinesShown::waiting:
-            return "wait to be re-armed";
+            return "waiting for re-arming";
         case LinesShown::permitted:
             return "permit";
     }
@@ -136,11 +136,11 @@ const char* event_code_text(EventCode code) noexcept {
         case EventCode::torque_slew_limited:
             return "torque slope limited";
         case EventCode::gui_attached:
-            return "visual process attached";
+            return "display process attached";
         case EventCode::gui_detached:
-            return "visual process gone";
+            return "display process detached";
         case EventCode::gui_silent:
-            return "visual process silent";
+            return "display process not responding";
         case EventCode::command_done:
             return "command handled";
         case EventCode::level_changed:
@@ -150,15 +150,15 @@ const char* event_code_text(EventCode code) noexcept {
         case EventCode::model_swapped:
             return "force model swapped";
         case EventCode::hand_present:
-            return "a hand holds the device";
+            return "hand on the device";
         case EventCode::hand_left:
-            return "the hand left the device";
+            return "hand off the device";
         case EventCode::stopping:
             return "stopping";
         case EventCode::device_watchdog:
             return "the device's watchdog dropped its amplifier";
         case EventCode::body_selected:
-            return "body taken into the hand";
+            return "body held";
         case EventCode::bodies_changed:
             return "bodies changed";
         case EventCode::lines_changed:
@@ -180,9 +180,9 @@ const char* level_reason_text(LevelReason reason) noexcept {
         case LevelReason::rate_high:
             return "force rate above goal";
         case LevelReason::at_floor:
-            return "at its floor";
+            return "at minimum";
         case LevelReason::at_top:
-            return "at its top";
+            return "full detail";
         case LevelReason::by_command:
             return "by command";
         case LevelReason::picture_low:
@@ -212,7 +212,7 @@ const char* command_kind_text(CommandKind kind) noexcept {
         case CommandKind::set_fidelity_auto:
             return "set fidelity to automatic";
         case CommandKind::select_body:
-            return "take a body";
+            return "hold a body";
         case CommandKind::fix_body:
             return "fix or free a body";
         case CommandKind::place_body:
@@ -315,13 +315,12 @@ std::string event_text(const EventTopic& event) {
         case EventCode::input_refused:
             return what + ": " + a + " so far";
         case EventCode::stopping:
-            if (event.a == SIGXCPU)
-                return what + ": the servo did not sleep for a second; choose a lower rate";
-            return event.a < 0.0 ? what + ": the time is over" : what + ": signal " + a;
+            if (event.a == SIGXCPU) return what + ": the servo did not sleep for 1 s; choose a lower rate";
+            return event.a < 0.0 ? what + ": run time over" : what + ": signal " + a;
         case EventCode::device_watchdog:
             return what + ": " + late_text(1e3 * event.a) + " without a cycle";
         case EventCode::body_selected:
-            if (event.a == static_cast<double>(kNoBody)) return "no body in the hand";
+            if (event.a == static_cast<double>(kNoBody)) return "no body held";
             return what + ": body " + a + ", " + b + " points";
         case EventCode::bodies_changed:
             return what + ": " + a + " now";
@@ -332,7 +331,7 @@ std::string event_text(const EventTopic& event) {
         case EventCode::device_notice: {
             const auto notice = code_of<DeviceNotice>(event.a);
             const std::string hand = event.b == 1.0 ? " of the second hand: " : ": ";
-            return what + hand + (notice == DeviceNotice::none ? "all is well" : device_notice_text(notice));
+            return what + hand + (notice == DeviceNotice::none ? "no notice" : device_notice_text(notice));
         }
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);

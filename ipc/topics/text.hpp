@@ -14,8 +14,8 @@
 namespace tact {
 
 [[nodiscard]] const char* run_state_text(RunState state) noexcept;         // "active"
-[[nodiscard]] const char* run_reason_text(RunReason reason) noexcept;      // "the hand left the device"
-[[nodiscard]] const char* lines_text(LinesShown lines) noexcept;           // "wait to be re-armed"
+[[nodiscard]] const char* run_reason_text(RunReason reason) noexcept;      // "hand off the device"
+[[nodiscard]] const char* lines_text(LinesShown lines) noexcept;           // "waiting for re-arming"
 [[nodiscard]] const char* event_code_text(EventCode code) noexcept;        // "overrun"
 [[nodiscard]] const char* level_reason_text(LevelReason reason) noexcept;  // "force rate below goal"
 [[nodiscard]] const char* command_kind_text(CommandKind kind) noexcept;    // "arm"

@@ -1,11 +1,11 @@
-// Which words of the visual process may be believed: those of frames that obeyed the levels as they stand.
+// Which words of the visual process may be believed: those of frames that applied the levels as they stand.
 //
 // asked()    a visual level has changed with this sequence of the levels
-// pending()  no frame has obeyed yet, and it has not been silent about it for kAnswerMax_s: what is measured
+// pending()  no frame has applied yet, and it has not been silent about it for kAnswerMax_s: what is measured
 //            meanwhile says nothing about the levels that stand
-// take()     once for each frame that obeyed. Words in between were not seen, so costs are a mean over them;
+// take()     once for each frame that applied. Words in between were not seen, so costs are a mean over them;
 // of
-//            several frames of which the first did not obey yet, they are the costs of no level and left out
+//            several frames of which the first did not apply yet, they are the costs of no level and left out
 // Hostile    any numbers; the governor judges times, this judges order
 #pragma once
 
@@ -20,7 +20,7 @@ namespace tact {
 
 struct PictureWord {
     std::uint64_t frame = 0;
-    std::uint64_t levels_sequence = 0;  // of the levels that this frame obeyed
+    std::uint64_t levels_sequence = 0;  // of the levels that this frame applied
     std::int64_t taken_at_ns = 0;
     double work_s = 0.0;  // of the frame, without its pause
     double cpu_s = 0.0;   // processor time of the visual process since its start

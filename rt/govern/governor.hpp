@@ -1,6 +1,6 @@
 // The one place that turns fidelity knobs.
 //
-// Runs on   servo thread: step() every so many milliseconds, look() at each frame that obeyed; constant time
+// Runs on   servo thread: step() every so many milliseconds, look() at each frame that applied; constant time
 // In        the rate of the force loop, what the picture costs, and which paths are there
 // Out       one level per path, within [floor, 1]; whether any changed
 // Goals     of the force rate, always; of the picture's own rate, where one is set and somebody draws
@@ -62,7 +62,7 @@ public:
     void replace(std::size_t path, const KnobSpec& knob) noexcept TACT_RT;
     // True: a level or its reason changed. rate_hz of the last interval, dt its length.
     bool step(double rate_hz, Duration dt) noexcept TACT_RT;
-    // One frame, once, and only one that obeyed the levels as they are. True as above.
+    // One frame, once, and only one that applied the levels as they are. True as above.
     bool update(const DisplaySample& picture) noexcept TACT_RT;
 
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate

@@ -8,7 +8,7 @@
 // elastic   the same aim by a measured model of the picture's cost (rt/govern/governor.cpp has the
 // derivation):
 //           one step to where the goal should be, taken when the error is certain (rate_filter.hpp) and the
-//           picture has obeyed the step before.
+//           picture has applied the step before.
 // fixed     the level that a person set, or the start level.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Holds the rate of a freely running loop within a tenth of a second: the fast loop beneath the governor's,
-// which has to wait for whole intervals and for the picture to obey.
+// which has to wait for whole intervals and for the picture to apply.
 //
 // Behind    how much of its work a step may do anew (Budget::share). Looked at is every span up to kWindow_s:
 //           the updates that were due by the goal, less those made. A whole window may lack kSlack of its

@@ -42,10 +42,10 @@ struct Requests {
 class Stage {
 public:
     Stage(const Requests& w, Replay& replay)
-        : link_(w.session, replay.region().fd(), replay.bone_fd()), speed_(w.speed), from_s_(w.from_s) {
+        : link_(w.session, replay.region().fd(), replay.shared_fd()), speed_(w.speed), from_s_(w.from_s) {
         const Instant begin = Monotonic::now();
-        while (!there_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
-        if (!there_ && stop_asked == 0)
+        while (!attached_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
+        if (!attached_ && stop_asked == 0)
             throw StartupError("showing a replay in session '" + w.session + "'", "no window came",
                                "start it with tact replay --show, or tact-gui --session " + w.session);
         if (const RecordedStep* const first = replay.upcoming()) {
@@ -59,31 +59,32 @@ public:
         const double at_s = static_cast<double>(next.now_ns - begin_ns_) * 1e-9 - from_s_;
         if (at_s < 0.0) {
             begun_ = Monotonic::now();
-            return there_;
+            return attached_;
         }
-        if (Monotonic::now() - attended_ > std::chrono::milliseconds(10)) attend(0);
+        if (Monotonic::now() - served_ > std::chrono::milliseconds(10)) attend(0);
         const Instant due = begun_ + Duration(static_cast<std::int64_t>(1e9 * at_s / speed_));
-        while (there_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1)) attend(1);
-        return there_;
+        while (attached_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1))
+            attend(1);
+        return attached_;
     }
 
     // What was last stays in the window until it is closed.
     void hold() {
-        while (there_ && stop_asked == 0) attend(50);
+        while (attached_ && stop_asked == 0) attend(50);
     }
 
 private:
     void attend(int timeout_ms) {
         const LinkServer::News news = link_.poll(timeout_ms);
-        if (news.gui_arrived) there_ = true;
-        if (news.gui_left) there_ = false;
-        attended_ = Monotonic::now();
+        if (news.gui_arrived) attached_ = true;
+        if (news.gui_left) attached_ = false;
+        served_ = Monotonic::now();
     }
     LinkServer link_;
     double speed_, from_s_;
-    bool there_ = false;
+    bool attached_ = false;
     std::int64_t begin_ns_ = 0;
-    Instant begun_{}, attended_{};
+    Instant begun_{}, served_{};
 };
 
 void print_json(const Requests& w, const Replay& replay) {

@@ -120,7 +120,7 @@ Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>&
 void Housekeeping::catch_signals(ServoMailbox& mailbox) {
     signalled.store(&mailbox);
     struct sigaction action {};
-    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the house ends at once
+    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the housekeeping thread ends at once
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) sigaction(number, &action, nullptr);
     signal(SIGPIPE, SIG_IGN);
 }

@@ -1,4 +1,4 @@
-// The house thread: everything of tact-rt that may wait, allocate or speak.
+// The housekeeping thread: everything of tact-rt that may wait, allocate or speak.
 //
 // Does      serves the link, maps the GUI's region, checks its commands and loads and passes them on to the
 //           servo, prints events, has models built, collects old ones, ends the run after its time
@@ -50,7 +50,7 @@ public:
     void order(CommandKind kind, double value, std::uint32_t index);
     // Until the servo has ended.
     void run();
-    // The signals that stop a run go to `mail`; installs the handlers.
+    // The signals that stop a run go to `mailbox`; installs the handlers.
     static void catch_signals(ServoMailbox& mailbox);
 
 private:

@@ -1,7 +1,7 @@
 // Builds models aside for the servo, one at a time, on a thread of its own: another density may take seconds.
 //
-// Does      takes the servo's request from the mail, has the model rebuilt, offers it to the servo
-// Runs on   attend() on the house thread, which it never holds up; the work on a thread below ordinary
+// Does      takes the servo's request from the mailbox, has the model rebuilt, offers it to the servo
+// Runs on   attend() on the housekeeping thread, which it never holds up; the work on a thread below ordinary
 //           priority, off the servo's core where there is another
 // Fails by  refusing the request, with the reason in the log; the model in use goes on
 // Ends      by waiting for the work under way
@@ -36,7 +36,7 @@ private:
     ServoMailbox& mailbox_;
     int servo_thread_id_;
     std::atomic<State> state_{State::idle};
-    // The builder's own while there is work, else the house's.
+    // The builder's own while there is work, else the housekeeping thread's.
     std::unique_ptr<ForceModel> model_;
     std::string failure_;
     double took_s_ = 0.0;

@@ -1,4 +1,4 @@
-// What particles cost, measured by tact-gui, who moves them: for `tact bench drilling`. Keys: gui/app/bench_particles.hpp.
+// What particles cost, measured by tact-gui, who moves them: for `tact bench drilling`. Keys: gui/drilling/bench_particles.hpp.
 //
 // Without   the visual process on this machine: no keys, and a line on standard error that says so
 // Fails by  StartupError where it is there and does not do it

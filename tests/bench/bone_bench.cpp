@@ -14,10 +14,10 @@
 #include <functional>
 #include <set>
 
-#include "gui/app/png.hpp"
-#include "gui/app/window.hpp"
-#include "gui/render/bone_view.hpp"
+#include "gui/drilling/bone_view.hpp"
 #include "gui/render/camera.hpp"
+#include "gui/window/png.hpp"
+#include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 
@@ -32,7 +32,8 @@ struct BonePicture {
     BoneData bone;
     std::vector<std::uint8_t> drilled;
     BoneVolumeView now;
-    SceneContent content;
+    std::unique_ptr<BoneContent> content;
+    Vec3 centre_model_m = Vec3::Zero();
     std::unique_ptr<BoneView> view;
     Camera camera;
 
@@ -45,7 +46,7 @@ struct BonePicture {
         now = bone.view();
         now.density = drilled;
         const auto& size = bone.bricks.size;
-        content.centre_model_m = bone.bricks.to_model(0.5 * Vec3(size[0], size[1], size[2]));
+        centre_model_m = bone.bricks.to_model(0.5 * Vec3(size[0], size[1], size[2]));
         SceneMeta meta{};
         meta.kind = SceneKind::drilling;
         meta.world_per_model = 1.0;
@@ -54,11 +55,12 @@ struct BonePicture {
         const auto path =
             std::filesystem::temp_directory_path() / ("tact-bone-bench-" + std::to_string(getpid()));
         out.write(path);
-        content.bone.reset(
-            new SceneBoneContent{SceneFile::open(path), bone.view(), {bone.structure, bone.label}, {}});
+        content = std::make_unique<BoneContent>(SceneFile::open(path), bone.view(),
+                                                BoneLabelsView{bone.structure, bone.label},
+                                                std::vector<DistanceField>{});
         std::filesystem::remove(path);
         target.bind();
-        view = std::make_unique<BoneView>(content, now);
+        view = std::make_unique<BoneView>(*content, centre_model_m, now);
         camera.frame(static_cast<float>(0.5 * size[0] * bone.bricks.voxel_m / kAngstromM));
     }
     void draw(std::uint32_t rays) {

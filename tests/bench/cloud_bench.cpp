@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "gui/app/png.hpp"
-#include "gui/app/window.hpp"
+#include "gui/drilling/particle_cloud.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/render/particle_cloud.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/window/png.hpp"
+#include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
@@ -104,7 +104,7 @@ void cloud(benchmark::State& state) {
     frame.height_px = kHeight;
     ViewOptions options;
     options.style = SurfaceStyle::solid;
-    options.force = options.graph = options.codebook = false;
+    options.force = false;
     glViewport(0, 0, kWidth, kHeight);
     glClearColor(0.05F, 0.06F, 0.09F, 1.0F);
     ParticleCloud particle_cloud;

@@ -8,9 +8,10 @@
 #include <cstdlib>
 #include <random>
 
-#include "gui/app/window.hpp"
+#include "gui/docking/docking_layer.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/window/window.hpp"
 
 namespace tact {
 namespace {
@@ -47,21 +48,24 @@ void draw(benchmark::State& state) {
     OffscreenTarget target(kWidth, kHeight);
     target.bind();
     auto content = std::make_shared<SceneContent>();
-    content->bodies.push_back(ball_of_atoms(27000));
-    content->bonds.push_back(find_bonds(content->bodies[0]));
-    content->codebooks.emplace_back();
+    auto docking = std::make_unique<DockingContent>();
+    docking->bodies.push_back(ball_of_atoms(27000));
+    docking->bonds.push_back(find_bonds(docking->bodies[0]));
+    docking->codebooks.emplace_back();
+    content->system = std::move(docking);
     content->radius_m = 52e-10;
     Programs programs;
     SceneView view(content, programs);
+    DockingLayer layer(content, programs);
+    view.set_layer(&layer);
     Camera camera;
     camera.frame(view.radius_a());
-    view.molecules().set_look({static_cast<MoleculeStyle>(state.range(0)), Colouring::chain});
+    layer.molecules().set_look({static_cast<MoleculeStyle>(state.range(0)), Colouring::chain});
     const std::array bodies{DrawnBody{Pose{Vec3::Zero(), Quat::Identity()}, 0, 1, false}};
     ViewFrame frame{};
     frame.width_px = kWidth;
     frame.height_px = kHeight;
-    frame.bodies = bodies;
-    frame.active = 1;
+    layer.frame.bodies = bodies;
     glViewport(0, 0, kWidth, kHeight);
     for (auto _ : state) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "gui/particles/particles.hpp"
+#include "gui/drilling/particles.hpp"
 
 namespace {
 

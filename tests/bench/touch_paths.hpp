@@ -1,4 +1,4 @@
-// Ways of a hand over a surface, for measurements.
+// Ways of a pass on a surface, for measurements.
 //
 // slide   wanders about, 1.5 +- 0.5 mm deep, at about 55 mm/s at pace 1
 // orbit   once and again around an axis, 1.5 mm deep, at about 60 mm/s

@@ -32,7 +32,7 @@ SOLID = (12, 14)
 RAMPED_OUT_S = 0.1  # twice what safety.ramp_out_ms gives
 
 
-class Desk:
+class Operator:
     """A screen of its own, and one run at a time on it."""
 
     def __init__(self, bin_dir, folder):
@@ -152,58 +152,58 @@ def expect(what, true):
     return 0 if true else 1
 
 
-def arming(desk):
-    desk.start()
-    desk.wait("the run is armed", lambda s: s["state"] in ("armed", "active"))
-    desk.key("space")
-    desk.wait("Space disarms", lambda s: s["state"] == "ready")
-    desk.key("ctrl+Return")
-    desk.wait("Ctrl+Enter arms", lambda s: s["state"] in ("armed", "active"))
-    desk.end()
+def arming(operator):
+    operator.start()
+    operator.wait("the run is armed", lambda s: s["state"] in ("armed", "active"))
+    operator.key("space")
+    operator.wait("Space disarms", lambda s: s["state"] == "ready")
+    operator.key("ctrl+Return")
+    operator.wait("Ctrl+Enter arms", lambda s: s["state"] in ("armed", "active"))
+    operator.end()
     return expect("Space disarms and Ctrl+Enter arms the controller", True)
 
 
 # Newtons to the device in each recorded cycle, with its time and the state of the controller.
-def forces(desk, recording):
-    table = os.path.join(desk.folder, "cycles.csv")
-    subprocess.run([desk.program("tact"), "record", "--csv", recording, "-o", table], env=desk.env, check=True, stdout=subprocess.DEVNULL)
+def forces(operator, recording):
+    table = os.path.join(operator.folder, "cycles.csv")
+    subprocess.run([operator.program("tact"), "record", "--csv", recording, "-o", table], env=operator.env, check=True, stdout=subprocess.DEVNULL)
     with open(table, newline="") as f:
         return [(float(r["time_s"]), r["state"], math.hypot(*(float(r["hand0_f%s_n" % axis]) for axis in "xyz"))) for r in csv.DictReader(f)]
 
 
-def buttons(desk):
-    config, recording = os.path.join(desk.folder, "lines.toml"), os.path.join(desk.folder, "run.h5")
+def buttons(operator):
+    config, recording = os.path.join(operator.folder, "lines.toml"), os.path.join(operator.folder, "run.h5")
     with open(config, "w") as f:
         f.write('[lines]\ndriver = "sim"\n')
     off, on = lambda s: s["state"] == "ready", lambda s: s["state"] == "active"
-    desk.start("--config", config, "--record", recording, "--start-offset-a", "6", "--seed", "3", hand="wander")
+    operator.start("--config", config, "--record", recording, "--start-offset-a", "6", "--seed", "3", hand="wander")
     # A run that is armed within the time for which contacts have to stand is refused, and left to a person.
-    desk.wait("the run is armed", lambda s: "command arm: " in desk.said())
-    desk.key("space")
-    desk.wait("Space disarms", off)
-    desk.press("Arm", "the button arms", on)
-    desk.press("Disarm", "the button disarms", off)
-    cycles = desk.press("Arm", "the button arms again", on)["servo"]["cycles"]
+    operator.wait("the run is armed", lambda s: "command arm: " in operator.said())
+    operator.key("space")
+    operator.wait("Space disarms", off)
+    operator.press("Arm", "the button arms", on)
+    operator.press("Disarm", "the button disarms", off)
+    cycles = operator.press("Arm", "the button arms again", on)["servo"]["cycles"]
     bad = expect("the buttons Disarm and Arm disarm and arm", True)
-    desk.wait("the force has ramped in", lambda s: s["servo"]["cycles"] > cycles + 1500)
+    operator.wait("the force has ramped in", lambda s: s["servo"]["cycles"] > cycles + 1500)
 
-    os.kill(desk.controller(), signal.SIGUSR1)
-    stopped = desk.wait("the emergency stop stops", lambda s: s["state"] == "fault")
+    os.kill(operator.controller(), signal.SIGUSR1)
+    stopped = operator.wait("the emergency stop stops", lambda s: s["state"] == "fault")
     bad += expect("the emergency stop is what the controller says: %s, lines %s" % (stopped["reason"], stopped["lines"]["state"]),
                   stopped["reason"] == stopped["lines"]["reason"] == "the emergency stop is pressed" and stopped["lines"]["state"] == "stop")
-    refused = desk.press("Reset", "while it is pressed nothing resets it", lambda s: "command reset fault: refused" in desk.said())
+    refused = operator.press("Reset", "while it is pressed nothing resets it", lambda s: "command reset fault: refused" in operator.said())
     bad += expect("Reset while the stop is pressed leaves the fault", refused["state"] == "fault")
-    os.kill(desk.controller(), signal.SIGUSR2)
-    released = desk.wait("the stop is let go", lambda s: s["lines"]["state"] == "wait to be re-armed")
+    os.kill(operator.controller(), signal.SIGUSR2)
+    released = operator.wait("the stop is let go", lambda s: s["lines"]["state"] == "waiting for re-arming")
     bad += expect("the stop let go leaves the fault", released["state"] == "fault")
-    desk.press("Reset", "the button resets", off)
-    desk.press("Arm", "the button arms after a stop", on)
-    disarmed = desk.press("Disarm", "the button disarms after a stop", off)["servo"]["cycles"]
-    desk.wait("some time without a force passes", lambda s: s["servo"]["cycles"] > disarmed + 500)
+    operator.press("Reset", "the button resets", off)
+    operator.press("Arm", "the button arms after a stop", on)
+    disarmed = operator.press("Disarm", "the button disarms after a stop", off)["servo"]["cycles"]
+    operator.wait("some time without a force passes", lambda s: s["servo"]["cycles"] > disarmed + 500)
     bad += expect("after Reset the button Arm arms again", True)
-    desk.end()
+    operator.end()
 
-    rows = forces(desk, recording)
+    rows = forces(operator, recording)
     states = [state for _, state, _ in rows]
     stop = states.index("fault")
     felt_n = max(n for _, state, n in rows[max(stop - 1000, 0):stop] if state == "active")
@@ -218,17 +218,17 @@ def buttons(desk):
         expect("disarmed there is none: 0 N in each of %d cycles" % len(none), len(none) > 100 and max(none) == 0.0)
 
 
-def gestures(desk):
+def gestures(operator):
     # Without force, so that the body stays where it is put and the hand makes no gesture of its own; R looks for the best
     # place from there.
     places, moved_a = [], []
     for keys in (("r",), ("r", "ctrl+z"), ("r", "ctrl+z", "ctrl+y")):
-        desk.start("--force-scale", "0.001", "--start-offset-a", "6", "--seed", "3")
-        desk.key("space")
-        desk.wait("Space disarms", lambda s: s["state"] == "ready")
-        desk.place(*keys)
-        places.append(desk.end()["fit"]["offset_a"])
-        moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", desk.said()).group(1)))
+        operator.start("--force-scale", "0.001", "--start-offset-a", "6", "--seed", "3")
+        operator.key("space")
+        operator.wait("Space disarms", lambda s: s["state"] == "ready")
+        operator.place(*keys)
+        places.append(operator.end()["fit"]["offset_a"])
+        moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", operator.said()).group(1)))
     refined, undone, redone = places
     return expect("R refines: moved %.2f A, %.2f A from its place" % (moved_a[0], refined), moved_a[0] > 1.0 and refined < 0.5) + \
         expect("Ctrl+Z takes %.2f A back: %.2f A" % (moved_a[1], undone), moved_a[1] > 1.0 and undone > 0.5 * moved_a[1]) + \
@@ -245,11 +245,11 @@ def main():
     with tempfile.TemporaryDirectory(prefix="tact-keys-") as folder:
         subprocess.run([os.path.join(sys.argv[1], "tact-prep"), "demo", "dock", "-o", os.path.join(folder, "scene.tact")], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        desk = Desk(sys.argv[1], folder)
+        operator = Operator(sys.argv[1], folder)
         try:
-            return 1 if arming(desk) + buttons(desk) + gestures(desk) > 0 else 0
+            return 1 if arming(operator) + buttons(operator) + gestures(operator) > 0 else 0
         finally:
-            desk.close()
+            operator.close()
 
 
 if __name__ == "__main__":

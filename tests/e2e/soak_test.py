@@ -26,7 +26,7 @@ COLUMNS = {  # of ipc/record/RECORDING.md
     "cycles": ["step", "cycle", "now_ns", "lateness_ns", "cost_ns", "model_ns", "level", "run_state", "flags", "clock_ns"],
     "hand0": ["pose_world", "wrench_world", "wrench_model", "pose_dev", "twist_dev", "buttons", "model_error_n", "items"],
     "hand1": ["pose_world", "wrench_world"],
-    "mail": ["step", "kind", "order", "value", "index", "body", "pose_model"],
+    "mailbox": ["step", "kind", "order", "value", "index", "body", "pose_model"],
     "reports": ["step"],
     "events": ["taken_at_ns", "cycle", "code", "a", "b"],
     "levels": ["taken_at_ns", "level", "rate_hz", "goal_hz"],

@@ -1,8 +1,8 @@
-// Safety lines as a part of tact-emu: an emulated CP2112, wired as a lab would wire it, that obeys orders.
+// Safety lines as a part of tact-emu: an emulated CP2112, wired as a lab would wire it, that applies orders.
 //
 // Wiring   0, 1 the emergency stop's contacts, closed is high; 2 dead-man, pressed is high; 3 whether the amplifier is
 //          on, wired to 4; 4 enable; 5 watchdog; 6 lamp
-// Thread   obey() and say_status() on one thread
+// Thread   apply() and say_status() on one thread
 #pragma once
 
 #include "tests/emu/cp2112.hpp"

@@ -27,7 +27,7 @@ public:
     UsbArm& operator=(const UsbArm&) = delete;
 
     void start();  // the threads; not yet plugged
-    // True: done. False: no deed of an arm.
+    // True: done. False: no action of an arm.
     bool apply(const Order& order);
     void say_status();
     [[nodiscard]] const std::string& serial() const noexcept { return serial_; }

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "gui/app/bone_follower.hpp"
+#include "gui/drilling/bone_follower.hpp"
 #include "ipc/shm/region_header.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

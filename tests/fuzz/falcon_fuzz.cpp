@@ -11,14 +11,12 @@ namespace tact::fuzz {
 namespace {
 
 using falcon::Reply;
-using phantom::BusEvent;
-using phantom::BusEventKind;
+using usb::BusEvent;
+using usb::BusEventKind;
 
-class FuzzBus final : public falcon::FtdiBus {
+class FuzzBus final : public usb::Bus {
 public:
-    phantom::BusFinding open(const std::string& /*serial*/) override {
-        return {phantom::BusFault::none, "F", {}};
-    }
+    usb::BusFinding open(const std::string& /*serial*/) override { return {usb::BusFault::none, "F", {}}; }
     void close() noexcept override { events.clear(); }
     std::size_t wait(std::span<BusEvent> out, Duration patience) noexcept override {
         if (events.empty()) time += patience;
@@ -41,7 +39,7 @@ public:
         return true;
     }
     bool clear_stall() noexcept override { return true; }
-    bool control(const falcon::FtdiRequest& /*request*/) noexcept override { return true; }
+    bool control(const usb::VendorRequest& /*request*/) noexcept override { return true; }
     Instant now() noexcept override { return time; }
 
     void push(BusEventKind kind, std::span<const std::byte> bytes = {}) {

@@ -3,11 +3,11 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 # toml++ as it is installed: in its headers alone the undefined behaviour sanitizer stops at white space beyond Latin-1.
 tact_fuzz(desk_fuzz SOURCES fuzz/desk_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/window_state.cpp
-        ${CMAKE_SOURCE_DIR}/gui/window/toml_keys.cpp
+        ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)
 tact_fuzz(recents_fuzz SOURCES fuzz/recents_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/recent_scenes.cpp
     USES base SYSTEM nlohmann_json::nlohmann_json)
-tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/stage/stage_file.cpp
-        ${CMAKE_SOURCE_DIR}/gui/stage/stage_file_write.cpp ${CMAKE_SOURCE_DIR}/gui/window/toml_keys.cpp
+tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/stereo/stage_file.cpp
+        ${CMAKE_SOURCE_DIR}/gui/stereo/stage_file_write.cpp ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
         ${CMAKE_SOURCE_DIR}/gui/render/screen.cpp ${CMAKE_SOURCE_DIR}/gui/render/camera.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)

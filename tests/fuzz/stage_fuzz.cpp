@@ -1,5 +1,5 @@
 // A stage file of any bytes: refused in words, or a stage that is written and read again as the same.
-#include "gui/stage/stage_file.hpp"
+#include "gui/stereo/stage_file.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

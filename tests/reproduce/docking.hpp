@@ -1,4 +1,4 @@
-// tact reproduce docking: the docking seed's figures 3 to 8 on this machine, its values beside ours.
+// tact reproduce docking: the docking paper's figures 3 to 8 on this machine, its values beside ours.
 //
 // Writes   CSV and PNG of every figure, docking.json with all numbers, conditions and the summary table
 // Says     the table: what differs and why

@@ -1,4 +1,4 @@
-// tact reproduce drilling: the drilling seed's figures 1 to 4 on this machine, its values beside ours.
+// tact reproduce drilling: the drilling paper's figures 1 to 4 on this machine, its values beside ours.
 //
 // Bone      solid, flat, of 0.3 mm voxels; without erosion, as there
 // Figure 1  six pictures of one run of the scripted surgeon and the suction tube in the synthetic temporal bone

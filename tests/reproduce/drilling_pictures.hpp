@@ -1,4 +1,4 @@
-// Figure 1 of the drilling seed: a surgeon and a suction tube at work in the synthetic temporal bone, six pictures of one run.
+// Figure 1 of the drilling paper: a surgeon and a suction tube at work in the synthetic temporal bone, six pictures of one run.
 //
 // Writes   fig1_drilling-01.png to -06.png, of the view alone, equally far apart in time; the first before the burr is in
 //          the bone; fig1_drilling.png, the whole window at the end; fig1_run.json

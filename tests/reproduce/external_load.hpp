@@ -1,4 +1,4 @@
-// Another program on the same core: random-number arithmetic without end, as in the seed's experiment, over a
+// Another program on the same core: random-number arithmetic without end, as in the paper's experiment, over a
 // table that is larger than the caches near the core.
 //
 // Session  that of tact, so that it gets the share of one more process. In a session of its own, where the

@@ -1,4 +1,4 @@
-// The docking seed's figures of meshes: 3 (an open border, with and without protection), 4 (a chaperonin at
+// The docking paper's figures of meshes: 3 (an open border, with and without protection), 4 (a chaperonin at
 // three sizes) and 6 (the surface before and after adaptation).
 //
 // Simplified  by tact-prep, as a child; ours to draw and to measure

@@ -1,4 +1,4 @@
-// The docking seed's load balancing (its figures 5, 7 and 8), run again on this machine.
+// The docking paper's load balancing (its figures 5, 7 and 8), run again on this machine.
 //
 // Set-up   shared_core.hpp: all parties on one core with the same precedence
 // Scale    today's core is some hundred times faster, so every atom is felt many times and the surface is

@@ -1,4 +1,4 @@
-// Meshes for the docking seed's figures 3 and 4, made in code.
+// Meshes for the docking paper's figures 3 and 4, made in code.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"

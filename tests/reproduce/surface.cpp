@@ -20,7 +20,7 @@
 namespace tact::launch {
 namespace {
 
-// Of our own, with what stands in the seed's table at that size.
+// Of our own, with what stands in the paper's table at that size.
 struct Size {
     const char *name, *shape;
     int parts;

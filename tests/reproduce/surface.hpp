@@ -1,4 +1,4 @@
-// tact reproduce surface: the surface seed's table 1 and figure 3 on this machine, its values beside ours.
+// tact reproduce surface: the surface paper's table 1 and figure 3 on this machine, its values beside ours.
 //
 // Meshes   a rough sphere and a rough terrain made here, by number of triangles the seed's 2 K, 8 K, 20 K and 92 K, and
 //          beyond; or those that are given

@@ -7,8 +7,8 @@
 // Picture   a frame costs fixed_s + full_s * level of the levels at its beginning, times a jitter that is
 //           drawn once per frame from the seed; frames begin no faster than fps_max.
 // Held      where the settings say so, updates give up a part of their work, or the loop rests, as in rt/loop
-// Governed  as rt/loop does it: an interval at a time, frames that obeyed once each, and nothing judged
-//           before the picture obeyed where the law waits for it.
+// Governed  as rt/loop does it: an interval at a time, frames that applied once each, and nothing judged
+//           before the picture applied where the law waits for it.
 #pragma once
 
 #include <algorithm>

@@ -15,10 +15,10 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["rt/loop", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/io", "hal/tracker", "ipc/assets", "ipc/shm"]
+FOLDERS = ["rt/servo", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/io", "hal/tracker", "ipc/scene", "ipc/shm"]
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
-    r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::(bodies|touch|drill)\(\) const$|::drive\(tact::ToolDrive const&\)$"
+    r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::bodies\(\) const$|::publish\(tact::ModelCycle const&\)$|::drive\(tact::ToolDrive const&\)$"
     r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up|stiffness_n_m)\(\)( const)?$|::items\(float\) const$"
     r"|::read\((unsigned int, tact::TrackerSample|tact::DeviceSample|tact::LinesSample)&, .*\)( const)?$|::write\(tact::(Device|Lines)Command const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("

@@ -6,7 +6,8 @@ which target each source belongs to (a header: the target of its .cpp, else the 
   1. an include of another folder's header that the target's USES do not lead to,
   2. a folder that includes what ARCHITECTURE's table puts above it or beside it,
   3. a third-party header outside the folder that wraps it,
-  4. an include that does not start at the root or does not exist, and a source that no target lists.
+  4. an include that does not start at the root or does not exist, and a source that no target lists,
+  5. a system that is named outside of its program's table of systems.
 Prints file:line: what, and exits 1 if there was anything. --self-test proves on a small tree that it finds each.
 """
 import os
@@ -34,10 +35,12 @@ BELOW = {
     "ipc/station": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
-    # Force models do not know each other.
-    "rt/force/docking": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/drilling": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/surface": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
+    # Force models do not know each other. Each knows the topic that it publishes, and the commands that it takes.
+    "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/topics/bodies", "ipc/topics/command", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/drilling": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/drill", "ipc/topics/event", "ipc/topics/touch",
+                          "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/surface": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/command", "ipc/topics/touch", "rt/force/force_model",
+                         "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],
     # The cycle knows the contract of a force model and no model.
@@ -47,7 +50,18 @@ BELOW = {
     "rt/start": ["ipc", "hal", "rt/force", "rt/servo", "rt/threads", "rt/config"],
     "rt/replay": ["ipc", "hal", "rt/force", "rt/servo", "rt/threads", "rt/config", "rt/start"],
     "rt": ["ipc", "hal"],
-    "gui": ["ipc"],
+    "gui/base": ["ipc/base"],
+    "gui/link": ["ipc/base", "ipc/shm", "ipc/topics", "ipc/scene/file"],
+    "gui/render": ["ipc/base", "ipc/topics", "ipc/scene"],
+    "gui/dashboard": ["ipc/base", "ipc/topics"],
+    # What a system gives the window; systems do not know each other.
+    "gui/system": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
+    "gui/docking": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
+    "gui/surface": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
+    "gui/drilling": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
+    "gui/stereo": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
+    "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling",
+                   "gui/stereo"],
     "prep": ["ipc/base", "ipc/version", "ipc/scene", "ipc/manual"],
     # Systems do not know each other; they share readers, meshes and the console.
     "prep/console": ["ipc/base", "ipc/scene"],
@@ -63,7 +77,7 @@ BELOW = {
 }
 # Third-party header -> folders that wrap it.
 WRAPPED = [
-    (r"libusb", ["hal/phantom", "hal/falcon"]),
+    (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
@@ -78,6 +92,9 @@ WRAPPED = [
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay", "ipc/topics/frames_json",
                     "ipc/recorder/main", "ipc/station/station_report", "tests"]),
 ]
+# What is named under a folder in these files alone: a table of the systems there.
+NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
+         ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
@@ -191,6 +208,9 @@ def check(root):
         with open(os.path.join(root, path), encoding="utf-8") as f:
             lines = f.readlines()
         for number, line in enumerate(lines, 1):
+            for folder, pattern, tables in NAMED:
+                if path.startswith(folder) and path not in tables and pattern.search(line):
+                    found.append(f"{path}:{number}: only {' and '.join(tables)} may name a kind of scene")
             match = INCLUDE.match(line)
             if not match:
                 continue
@@ -240,6 +260,9 @@ def self_test():
         "rt/servo/CMakeLists.txt": "tact_library(servo SOURCES l.cpp USES force base)",
         "rt/servo/l.hpp": '#include "ipc/base/a.hpp"\n',
         "rt/servo/l.cpp": '#include "rt/servo/l.hpp"\n',
+        "gui/docking/CMakeLists.txt": "tact_library(gui_docking SOURCES g.cpp USES base)",
+        "gui/docking/g.cpp": '#include "ipc/base/a.hpp"\n',
+        "gui/drilling/h.hpp": "#pragma once\n",
         "tests/unit/x.cmake": "tact_test(unit/x_test.cpp USES shm)",
         "tests/unit/x_test.cpp": '#include "ipc/shm/s.hpp"\n',
     }
@@ -250,6 +273,8 @@ def self_test():
         "USES missing": ("tests/unit/x_test.cpp", '#include "rt/force/f.hpp"\n', "needs USES force"),
         "USES missing, allowed folder": ("rt/servo/l.cpp", '#include "ipc/shm/s.hpp"\n', "needs USES shm"),
         "servo and a model": ("rt/servo/l.cpp", '#include "rt/force/surface/t.hpp"\n', "rt/servo may not include"),
+        "another system of the window": ("gui/docking/g.cpp", '#include "gui/drilling/h.hpp"\n', "gui/docking may not include"),
+        "a kind of scene": ("gui/docking/g.cpp", "auto k = SceneKind::docking;\n", "may name a kind of scene"),
         "third party": ("rt/force/f.cpp", "#include <gemmi/ccp4.hpp>\n", "belongs to prep"),
         "third party, dotted": ("ipc/shm/s.cpp", "#include <imgui.h>\n", "belongs to gui"),
         "relative": ("ipc/shm/s.cpp", '#include "s.hpp"\n', "not a path from the root"),

@@ -1,4 +1,4 @@
-// What tact-emu reads and what it says: orders, fault files, wishes, report lines, USB descriptors.
+// What tact-emu reads and what it says: orders, fault files, requests, report lines, USB descriptors.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -40,7 +40,7 @@ struct Core {
                     continue;
                 }
                 all.push_back({t_s, std::ceil(8.0 * hold.work_fraction(now, goal_hz)) / 8.0});
-                left_s += update_s(t_s) * (0.05 + 0.95 * all.back().work_fraction);
+                left_s += update_s(t_s) * (0.05 + 0.95 * all.back().share);
             }
             left_s -= kTick_s;
         }
@@ -71,7 +71,7 @@ double worst_window(const std::vector<Core::Update>& all, double from_s, double 
 double mean_share(const std::vector<Core::Update>& all, double from_s, double to_s) {
     double sum = 0.0, n = 0.0;
     for (const Core::Update& u : all)
-        if (u.t_s >= from_s && u.t_s < to_s) sum += u.work_fraction, n += 1.0;
+        if (u.t_s >= from_s && u.t_s < to_s) sum += u.share, n += 1.0;
     return sum / n;
 }
 

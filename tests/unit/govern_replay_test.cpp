@@ -174,7 +174,7 @@ TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_t
             if (s.t_s < 2.0) continue;
             worst = std::min(worst, s.rate_hz / kGoal_hz);
             sum += s.rate_hz / kGoal_hz;
-            fresh += s.recomputed_fraction;
+            fresh += s.fresh;
             level += s.level;
             ++n;
         }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "gui/render/bone_view.hpp"
+#include "gui/drilling/bone_view.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/elements.hpp"
 #include "ipc/base/units.hpp"
@@ -33,11 +33,11 @@ protected:
         drilled_ = block_->density;
         now_.bricks = block_->bricks;
         now_.density = drilled_;
-        content_ = std::make_unique<SceneContent>();
-        content_->centre_model_m = block_->bricks.to_model(middle());
+        centre_model_m_ = block_->bricks.to_model(middle());
         BoneVolumeView baked = now_;
         baked.density = block_->density;
-        content_->bone.reset(new SceneBoneContent{empty_scene(), baked, {}, {}});
+        bone_ = std::make_unique<BoneContent>(empty_scene(), baked, BoneLabelsView{},
+                                              std::vector<DistanceField>{});
         camera_.frame(static_cast<float>(20.0 * 3e-4 / kAngstromM));
     }
     void TearDown() override { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}); }
@@ -95,12 +95,13 @@ protected:
     std::optional<BoneBlock> block_;
     std::vector<std::uint8_t> drilled_;
     BoneVolumeView now_;
-    std::unique_ptr<SceneContent> content_;
+    std::unique_ptr<BoneContent> bone_;
+    Vec3 centre_model_m_ = Vec3::Zero();
     Camera camera_;
 };
 
 TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
-    BoneView view(*content_, now_);
+    BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     EXPECT_TRUE(view.sharp());
     const Eigen::Matrix4d p = camera_.projection(static_cast<float>(kWidth) / kHeight).cast<double>();
@@ -126,7 +127,7 @@ TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
 }
 
 TEST_F(BoneDraw, drilling_changes_the_picture_where_it_is_and_no_more_rays_are_sent) {
-    BoneView view(*content_, now_);
+    BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     const double before = depth_a(kWidth / 2, kHeight / 2);
     const std::uint32_t whole = view.rays();
@@ -154,7 +155,7 @@ TEST_F(BoneDraw, drilling_changes_the_picture_where_it_is_and_no_more_rays_are_s
 }
 
 TEST_F(BoneDraw, a_moving_view_is_coarse_and_becomes_the_same_as_one_that_never_moved) {
-    BoneView still(*content_, now_), moving(*content_, now_);
+    BoneView still(*bone_, centre_model_m_, now_), moving(*bone_, centre_model_m_, now_);
     draw(still);
     const Image sharp = read_pixels(kWidth, kHeight);
     constexpr std::uint32_t kRays = 3000;
@@ -190,9 +191,9 @@ TEST_F(BoneDraw, a_soft_structure_is_seen_in_its_colour_once_the_bone_over_it_is
                 labels[v] = 1;
                 block_->density[v] = drilled_[v] = 40;
             }
-    content_->bone->labels.structure.push_back({"facial nerve", {255, 221, 64, 255}, true});
-    content_->bone->labels.label = labels;
-    BoneView view(*content_, now_);
+    bone_->labels.structure.push_back({"facial nerve", {255, 221, 64, 255}, true});
+    bone_->labels.label = labels;
+    BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     const Rgb8 bone = pixel(kWidth / 2, kHeight / 2);
     EXPECT_GT(bone[2], 0.6 * bone[0]) << "ivory";
@@ -211,7 +212,7 @@ TEST_F(BoneDraw, a_soft_structure_is_seen_in_its_colour_once_the_bone_over_it_is
 }
 
 TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_the_same_at_the_end) {
-    BoneView at_once(*content_, now_), slowly(*content_, now_);
+    BoneView at_once(*bone_, centre_model_m_, now_), slowly(*bone_, centre_model_m_, now_);
     draw(at_once);
     EXPECT_EQ(at_once.filled(), 1.0F);
     const Image whole = read_pixels(kWidth, kHeight);
@@ -249,7 +250,7 @@ TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_t
 }
 
 TEST_F(BoneDraw, the_frame_buffer_that_was_bound_is_bound_again) {
-    BoneView view(*content_, now_);
+    BoneView view(*bone_, centre_model_m_, now_);
     GLint before = 0, after = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
     draw(view);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gui/app/bone_follower.hpp"
+#include "gui/drilling/bone_follower.hpp"
 
 namespace tact {
 namespace {

@@ -5,10 +5,10 @@
 #include <random>
 #include <set>
 
-#include "gui/app/drill_hands.hpp"
-#include "gui/render/bone_field.hpp"
-#include "gui/render/bone_tiles.hpp"
-#include "gui/render/ray_pace.hpp"
+#include "gui/drilling/bone_field.hpp"
+#include "gui/drilling/bone_tiles.hpp"
+#include "gui/drilling/drill_hands.hpp"
+#include "gui/drilling/ray_pace.hpp"
 #include "tests/support/bone_block.hpp"
 
 namespace tact {

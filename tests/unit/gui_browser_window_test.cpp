@@ -52,7 +52,7 @@ protected:
                   nullptr);
             _exit(127);
         }
-        ASSERT_TRUE(wait_for_words("showing " + first_)) << said();
+        ASSERT_TRUE(wait_for_words("showing " + first_)) << log();
         ASSERT_EQ(std::system("xdotool search --sync --name '^Tact' windowfocus --sync >/dev/null 2>&1"), 0);
     }
     void TearDown() override {
@@ -63,7 +63,7 @@ protected:
         x_server_.reset();
         if (!folder_.empty()) std::filesystem::remove_all(folder_);
     }
-    [[nodiscard]] std::string said() const {
+    [[nodiscard]] std::string log() const {
         std::ifstream file(folder_ + "/said");
         return {std::istreambuf_iterator<char>(file), {}};
     }
@@ -76,7 +76,7 @@ protected:
     bool until_words(const std::string& words, Act&& act) {
         const Instant until = Monotonic::now() + kPatience;
         while (Monotonic::now() < until) {
-            if (said().find(words) != std::string::npos) return true;
+            if (log().find(words) != std::string::npos) return true;
             act();
             std::this_thread::sleep_for(milliseconds(300));
         }
@@ -108,9 +108,9 @@ TEST_F(BrowserInTheWindow, a_scene_that_is_pressed_runs_and_is_the_newest_of_the
         x("key --clearmodifiers o");
         std::this_thread::sleep_for(milliseconds(500));
         press("600 162");
-    })) << said();
-    ASSERT_TRUE(wait_for_words("showing " + second_)) << said();
-    EXPECT_NE(said().find("another scene was asked for: " + second_), std::string::npos) << said();
+    })) << log();
+    ASSERT_TRUE(wait_for_words("showing " + second_)) << log();
+    EXPECT_NE(log().find("another scene was asked for: " + second_), std::string::npos) << log();
     const Instant until = Monotonic::now() + kPatience;
     while (recents().find("second.tact") > recents().find("first.tact") && Monotonic::now() < until)
         std::this_thread::sleep_for(milliseconds(20));
@@ -119,7 +119,7 @@ TEST_F(BrowserInTheWindow, a_scene_that_is_pressed_runs_and_is_the_newest_of_the
     kill(tact_, SIGINT);
     int status = 0;
     waitpid(std::exchange(tact_, 0), &status, 0);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << said();
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << log();
 }
 
 TEST_F(BrowserInTheWindow, raw_data_that_are_marked_in_the_folder_are_imported_and_run) {
@@ -132,8 +132,8 @@ TEST_F(BrowserInTheWindow, raw_data_that_are_marked_in_the_folder_are_imported_a
         std::this_thread::sleep_for(milliseconds(500));
         press("600 329");
         press("506 488");  // below the rows
-    })) << said();
-    EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << said();
+    })) << log();
+    EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << log();
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include <set>
 #include <string>
 
-#include "gui/stage/calibration.hpp"
-#include "gui/stage/test_picture.hpp"
+#include "gui/stereo/calibration.hpp"
+#include "gui/stereo/test_picture.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
@@ -93,7 +93,7 @@ void touch_screen(Person& person, Calibration& calibration, const Lab& lab) {
     for (std::size_t i = 0; i < kMarks; ++i) {
         ASSERT_EQ(calibration.marks().current, i);
         person.touch(lab.mark_screen_m(i));
-        ASSERT_TRUE(calibration.marks().mark[i].taken) << calibration.live() << calibration.said();
+        ASSERT_TRUE(calibration.marks().mark[i].taken) << calibration.live() << calibration.message();
     }
 }
 
@@ -110,7 +110,7 @@ TEST(RestWindow, takes_the_mean_of_a_second_at_rest_and_says_the_spread) {
         window.add(t, i + 1, at + Vec3(0.2 * (t - 2.0), 0.0, 0.0), true);
         ASSERT_NE(window.state(), RestWindow::State::done);
     }
-    EXPECT_NE(window.words("the wand").find("hold the wand still"), std::string::npos);
+    EXPECT_NE(window.text("the wand").find("hold the wand still"), std::string::npos);
     int frames = 0;
     for (; window.state() != RestWindow::State::done && frames < 200; ++frames, t += 0.02)
         window.add(t, 200 + frames, at + noise(random, 1e-3), true);
@@ -133,7 +133,7 @@ TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silen
     for (int i = 0; i < 40; ++i) window.add(0.02 * i, 5, at, true);  // one sample, again and again
     EXPECT_LE(window.samples(), 1U);
     EXPECT_TRUE(window.silent());
-    EXPECT_NE(window.words("the wand").find("lost"), std::string::npos);
+    EXPECT_NE(window.text("the wand").find("lost"), std::string::npos);
     double t = 0.8;
     for (int i = 0; i < 30; ++i, t += 0.02) window.add(t, 100 + i, at, true);
     EXPECT_EQ(window.state(), RestWindow::State::resting);
@@ -142,7 +142,7 @@ TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silen
     EXPECT_EQ(window.samples(), 0U);
     for (int i = 0; i < 1200; ++i, t += 0.02) window.add(t, 400 + i, at, false);
     EXPECT_EQ(window.state(), RestWindow::State::failed);
-    EXPECT_NE(window.words("the wand").find("nothing is heard"), std::string::npos);
+    EXPECT_NE(window.text("the wand").find("nothing is heard"), std::string::npos);
 }
 
 TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual_is_of_the_noise) {
@@ -150,7 +150,7 @@ TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
     touch_screen(person, calibration, lab);
-    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
+    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
     // 1 mm an axis, the mean of some fifty: a seventh of it.
     EXPECT_LT(calibration.marks().fit.residual_m_rms, 0.6e-3);
     EXPECT_GT(calibration.marks().fit.residual_m_rms, 0.02e-3);
@@ -174,7 +174,7 @@ TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual
             person.touch(at_screen_m, lab.T_screen_world.inverse() * at_screen_m);
         }
         EXPECT_EQ(calibration.marks().taken(), kMarks);
-        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
+        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
         EXPECT_LT((calibration.draft().T_screen_world.p_m - lab.T_screen_world.p_m).norm(), 1.5e-3);
         EXPECT_LT(apart_rad(calibration.draft().T_screen_world.q, lab.T_screen_world.q), 0.01);
         EXPECT_TRUE(calibration.draft().in_workspace);
@@ -191,22 +191,22 @@ TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
         const ScreenPlace before = calibration.draft().screen;
         for (std::size_t i = 0; i < kMarks; ++i)
             person.touch(lab.mark_screen_m(i) + (i == missed ? Vec3(0.02, -0.02, 0.03) : Vec3(Vec3::Zero())));
-        EXPECT_EQ(calibration.marks().outlier(), missed) << calibration.status().words;
+        EXPECT_EQ(calibration.marks().outlier(), missed) << calibration.status().text;
         EXPECT_NE(calibration.status().grade, FitGrade::green);
-        EXPECT_NE(calibration.status().words.find("Point " + std::to_string(missed + 1)), std::string::npos)
-            << calibration.status().words;
+        EXPECT_NE(calibration.status().text.find("Point " + std::to_string(missed + 1)), std::string::npos)
+            << calibration.status().text;
         if (missed < kMarksMin && calibration.status().grade == FitGrade::red) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
-        EXPECT_EQ(calibration.glass_words(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
+        EXPECT_EQ(calibration.glass_text(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
         EXPECT_NE(calibration.instruction().find("All points are taken"), std::string::npos);
         calibration.redo(missed);
         EXPECT_EQ(calibration.marks().current, missed);
-        EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
+        EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
-        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
+        EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
         EXPECT_FALSE(calibration.marks().outlier());
-        EXPECT_EQ(calibration.glass_words(), "ALL POINTS ARE TAKEN");
+        EXPECT_EQ(calibration.glass_text(), "ALL POINTS ARE TAKEN");
     }
 }
 
@@ -234,12 +234,12 @@ TEST(Calibration, degenerate_points_are_refused_in_words_and_change_nothing) {
     calibration.set_workspace_by_wand(true);
     for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.0));
     EXPECT_EQ(calibration.status().grade, FitGrade::red);
-    EXPECT_NE(calibration.status().words.find("of each other"), std::string::npos)
-        << calibration.status().words;
+    EXPECT_NE(calibration.status().text.find("of each other"), std::string::npos)
+        << calibration.status().text;
     calibration.clear();
     for (int i = 0; i < 4; ++i) person.touch(Vec3(0.1 * i, 0.0, 0.0), Vec3(0.0, 0.1 * i, 0.0));
     EXPECT_EQ(calibration.status().grade, FitGrade::red);
-    EXPECT_NE(calibration.status().words.find("on a line"), std::string::npos);
+    EXPECT_NE(calibration.status().text.find("on a line"), std::string::npos);
     EXPECT_EQ(before.p_m, calibration.draft().T_screen_world.p_m);
     EXPECT_FALSE(calibration.draft().in_workspace);
 }
@@ -253,10 +253,10 @@ TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
     calibration.go(CalibrationStep::screen);
     for (std::size_t i = 0; i < kMarks; ++i) person.touch(lab.mark_screen_m(i));
     EXPECT_NE(calibration.status().grade, FitGrade::green);
-    EXPECT_NE(calibration.status().words.find("off what was typed"), std::string::npos)
-        << calibration.status().words;
+    EXPECT_NE(calibration.status().text.find("off what was typed"), std::string::npos)
+        << calibration.status().text;
     calibration.use_measured_size();
-    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().words;
+    EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
     EXPECT_NEAR(calibration.draft().screen.width_m(), lab.width_m, 1e-3);
     EXPECT_NEAR(calibration.draft().screen.height_m(), lab.height_m, 1e-3);
 }
@@ -271,7 +271,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.said().find("Nothing is heard of the tracker"), std::string::npos);
+    EXPECT_NE(calibration.message().find("Nothing is heard of the tracker"), std::string::npos);
     person.seen = true;
     person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
@@ -283,7 +283,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     EXPECT_NE(calibration.live().find("lost"), std::string::npos);
     for (int i = 0; i < 1000; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.said().find("Not taken"), std::string::npos);
+    EXPECT_NE(calibration.message().find("Not taken"), std::string::npos);
     // A pose that is no number is as good as none.
     CalibrationInput in;
     in.now_s = 1e3;
@@ -318,29 +318,29 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     for (const CalibrationStep step : {CalibrationStep::screen, CalibrationStep::workspace}) {
         calibration.go(step);
         EXPECT_EQ(calibration.lacking(), Lacking::size);
-        EXPECT_EQ(calibration.glass_words(), "FIRST TYPE THE SIZE OF THE PICTURE");
+        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE SIZE OF THE PICTURE");
         EXPECT_NE(calibration.instruction().find("size comes first"), std::string::npos);
         calibration.take();
         EXPECT_FALSE(calibration.measuring());
-        EXPECT_NE(calibration.said().find("size comes first"), std::string::npos) << calibration.said();
+        EXPECT_NE(calibration.message().find("size comes first"), std::string::npos) << calibration.message();
     }
     calibration.set_workspace_by_wand(true);  // which needs no picture
     EXPECT_EQ(calibration.lacking(), Lacking::nothing);
-    EXPECT_EQ(calibration.glass_words(), "STYLUS TO WAND: POINT 1");
+    EXPECT_EQ(calibration.glass_text(), "STYLUS TO WAND: POINT 1");
     EXPECT_EQ(calibration.instruction().find("size comes first"), std::string::npos);
     calibration.set_workspace_by_wand(false);
     calibration.set_picture_size(lab.width_m, lab.height_m);
-    EXPECT_EQ(calibration.glass_words(), "STYLUS: TOUCH MARK 1");
+    EXPECT_EQ(calibration.glass_text(), "STYLUS: TOUCH MARK 1");
     calibration.go(CalibrationStep::screen);
-    EXPECT_EQ(calibration.glass_words(), "WAND: TOUCH MARK 1");
+    EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK 1");
     calibration.take();
-    EXPECT_EQ(calibration.glass_words(), "HOLD STILL: POINT 1");
+    EXPECT_EQ(calibration.glass_text(), "HOLD STILL: POINT 1");
     calibration.take();
     person.seen = person.arm = false;
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
-    EXPECT_EQ(calibration.glass_words(), "THE TRACKER SEES NO SENSOR");
+    EXPECT_EQ(calibration.glass_text(), "THE TRACKER SEES NO SENSOR");
     calibration.go(CalibrationStep::workspace);
-    EXPECT_EQ(calibration.glass_words(), "NOTHING IS HEARD OF THE STYLUS");
+    EXPECT_EQ(calibration.glass_text(), "NOTHING IS HEARD OF THE STYLUS");
 }
 
 TEST(Calibration, the_stylus_button_takes_once_per_press) {
@@ -371,10 +371,11 @@ TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
                              0.4 * Vec3(std::sin(0.05 * i), well ? std::cos(0.07 * i) : 0.0, 0.0)));
         EXPECT_FALSE(calibration.measuring());
         if (!well) {  // about one axis the tip may be anywhere along it
-            EXPECT_NE(calibration.said().find("turned too little"), std::string::npos) << calibration.said();
+            EXPECT_NE(calibration.message().find("turned too little"), std::string::npos)
+                << calibration.message();
         } else {
             EXPECT_LT((calibration.draft().wand_tip_sensor_m - lab.tip_sensor_m).norm(), 1e-3)
-                << calibration.said();
+                << calibration.message();
         }
     }
 }
@@ -383,9 +384,9 @@ TEST(Calibration, what_is_typed_is_checked) {
     Calibration calibration{StageSettings{}};
     calibration.set_picture_size(NAN, 0.3);
     EXPECT_FALSE(calibration.draft().screen_measured);
-    EXPECT_NE(calibration.said(), "");
+    EXPECT_NE(calibration.message(), "");
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.3, 0.3, 0)});
-    EXPECT_NE(calibration.said().find("no rectangle"), std::string::npos);
+    EXPECT_NE(calibration.message().find("no rectangle"), std::string::npos);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, INFINITY, 0), Vec3(0, 0.3, 0)});
     EXPECT_FALSE(calibration.draft().screen_measured);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.3, 0)});

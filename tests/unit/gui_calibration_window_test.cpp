@@ -12,7 +12,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
-#include "gui/stage/calibration.hpp"
+#include "gui/stereo/calibration.hpp"
 #include "hal/sim/sim_device.hpp"
 #include "hal/sim/sim_tracker.hpp"
 #include "ipc/shm/link.hpp"
@@ -131,7 +131,7 @@ protected:
         return {std::istreambuf_iterator<char>(file), {}};
     }
     // Waits until the window has said so often what is wanted.
-    [[nodiscard]] bool said(const std::string& words, std::size_t times = 1) {
+    [[nodiscard]] bool logged(const std::string& words, std::size_t times = 1) {
         return test::wait_for([&] {
                    const std::string text = log();
                    std::size_t count = 0;
@@ -165,39 +165,39 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
     ASSERT_TRUE(test::wait_for([&] { return laboratory_->attached(); })) << log();
     laboratory_->hold_wand(mark_m(0));
     press("k");
-    ASSERT_TRUE(said("calibration: begins")) << log();
+    ASSERT_TRUE(logged("calibration: begins")) << log();
     press("Return");
     press("Return");
-    ASSERT_TRUE(said("step 3, Screen")) << log();
+    ASSERT_TRUE(logged("step 3, Screen")) << log();
     for (std::size_t i = 0; i < kMarks; ++i) {
         // The third mark is missed by 3 cm at first.
         laboratory_->hold_wand(mark_m(i) + (i == 2 ? Vec3(0.03, 0.0, 0.01) : Vec3(Vec3::Zero())));
         press("t");
-        ASSERT_TRUE(said("Point " + std::to_string(i + 1) + " is taken")) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken")) << log();
     }
     press("Return");
-    ASSERT_TRUE(said("Point 3 does not fit the others: take it again")) << log();
+    ASSERT_TRUE(logged("Point 3 does not fit the others: take it again")) << log();
     press("Escape");
-    ASSERT_TRUE(said("calibration: left")) << log();
+    ASSERT_TRUE(logged("calibration: left")) << log();
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/stage.toml"));
 
     press("k");
-    ASSERT_TRUE(said("calibration: begins", 2)) << log();
+    ASSERT_TRUE(logged("calibration: begins", 2)) << log();
     press("Return");
     press("Return");
-    ASSERT_TRUE(said("step 3, Screen", 2)) << log();
+    ASSERT_TRUE(logged("step 3, Screen", 2)) << log();
     for (std::size_t i = 0; i < kMarks; ++i) {
         laboratory_->hold_wand(mark_m(i));
         press("t");
-        ASSERT_TRUE(said("Point " + std::to_string(i + 1) + " is taken", 2)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", 2)) << log();
     }
     press("b");  // the last one once more
-    ASSERT_TRUE(said("Point 6 is to be taken again")) << log();
+    ASSERT_TRUE(logged("Point 6 is to be taken again")) << log();
     press("t");
-    ASSERT_TRUE(said("Point 6 is taken", 3)) << log();
+    ASSERT_TRUE(logged("Point 6 is taken", 3)) << log();
     press("Return");
-    ASSERT_TRUE(said("calibration: Screen: green")) << log();
-    ASSERT_TRUE(said("step 4, Workspace")) << log();
+    ASSERT_TRUE(logged("calibration: Screen: green")) << log();
+    ASSERT_TRUE(logged("step 4, Workspace")) << log();
 
     // Where the arm reaches: the stylus at the marks.
     std::size_t taken = 0;
@@ -210,19 +210,19 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
         }
         laboratory_->hold_stylus(at_world_m);
         press("t");
-        ASSERT_TRUE(said("Point " + std::to_string(i + 1) + " is taken", i == 5 ? 4 : 3)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", i == 5 ? 4 : 3)) << log();
         ++taken;
     }
     ASSERT_GE(taken, kMarksMin);
     press("Return");
-    ASSERT_TRUE(said("calibration: Workspace: green")) << log();
+    ASSERT_TRUE(logged("calibration: Workspace: green")) << log();
     press("x");
     press("Return");
-    ASSERT_TRUE(said("step 6, Check")) << log();
+    ASSERT_TRUE(logged("step 6, Check")) << log();
     press("ctrl+s");
-    ASSERT_TRUE(said("and read back")) << log();
+    ASSERT_TRUE(logged("and read back")) << log();
     press("Escape");
-    ASSERT_TRUE(said("calibration: left", 2)) << log();
+    ASSERT_TRUE(logged("calibration: left", 2)) << log();
 
     const StageSettings found = read_stage_file(file);
     const ScreenPlace flat = ScreenPlace::of_size(kWidthM, kHeightM);

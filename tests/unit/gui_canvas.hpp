@@ -9,8 +9,8 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
-#include "gui/app/window.hpp"
 #include "gui/render/target.hpp"
+#include "gui/window/window.hpp"
 
 // Graphics drivers and X libraries keep memory to the end on purpose.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }

@@ -3,9 +3,10 @@
 
 #include <filesystem>
 
+#include "gui/drilling/drilling_layer.hpp"
+#include "gui/drilling/particle_cloud.hpp"
+#include "gui/drilling/particle_pace.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/render/particle_cloud.hpp"
-#include "gui/render/particle_pace.hpp"
 #include "gui/render/scene_view.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
@@ -184,11 +185,13 @@ TEST_F(GuiCloud, a_scene_shows_no_more_particles_than_there_may_be_whether_they_
     content->centre_model_m = bricks.to_model(Vec3::Constant(16.0));
     Programs programs;
     SceneView view(content, programs);
+    DrillingLayer layer(content->centre_model_m);
+    view.set_layer(&layer);
     camera_.frame(static_cast<float>(16.0 * bricks.voxel_m / kAngstromM));
     ViewFrame frame;
     frame.width_px = kWidth;
     frame.height_px = kHeight;
-    frame.particles = &particles;
+    layer.frame.particles = &particles;
     const auto covered = [&] {
         target_->bind();
         glViewport(0, 0, kWidth, kHeight);

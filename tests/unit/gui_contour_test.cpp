@@ -10,9 +10,10 @@
 #include <set>
 #include <thread>
 
-#include "gui/app/contour_child.hpp"
-#include "gui/app/contour_option.hpp"
-#include "gui/app/scratch_folder.hpp"
+#include "gui/base/scratch_folder.hpp"
+#include "gui/docking/contour_child.hpp"
+#include "gui/docking/contour_option.hpp"
+#include "gui/window/load_scene.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_fake.hpp"
 #include "tests/unit/gui_wait.hpp"

@@ -5,7 +5,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "gui/panels/dashboard.hpp"
+#include "gui/docking/docking_panels.hpp"
+#include "gui/window/layout.hpp"
 
 namespace tact::test {
 
@@ -32,7 +33,7 @@ public:
     void frame() {
         ImGui::GetIO().DeltaTime = 1.0F / 60.0F;
         ImGui::NewFrame();
-        draw_dashboard(theme, state, width_, height_);
+        draw_dashboard(theme, state, panels, width_, height_);
         ImGui::Render();
     }
     void move(ImVec2 to) {
@@ -87,7 +88,8 @@ public:
     }
 
     Theme theme;
-    DashboardState state;
+    PanelState state;
+    DockingPanels panels;
 
 private:
     float width_, height_;

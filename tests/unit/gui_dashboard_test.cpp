@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "gui/panels/counter_rate.hpp"
-#include "gui/panels/knob_changes.hpp"
-#include "gui/panels/lateness_window.hpp"
+#include "gui/dashboard/counter_rate.hpp"
+#include "gui/dashboard/knob_changes.hpp"
+#include "gui/dashboard/lateness_window.hpp"
 
 namespace tact {
 namespace {

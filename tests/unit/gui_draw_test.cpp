@@ -5,9 +5,11 @@
 #include <optional>
 #include <set>
 
+#include "gui/docking/docking_layer.hpp"
 #include "gui/render/scene_view.hpp"
 #include "gui/render/screen.hpp"
-#include "gui/stage/eye_pictures.hpp"
+#include "gui/stereo/eye_pictures.hpp"
+#include "gui/window/load_scene.hpp"
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
@@ -242,24 +244,30 @@ protected:
         if (!std::filesystem::exists(path)) fake::write_helix_scene(path, 16);
         content_ = load_scene(path);
         programs_.emplace();
-        view_.emplace(content_, *programs_);
+        begin_view();
         camera_.frame(view_->radius_a());
-        options_.surface = options_.codebook = options_.graph = options_.force = false;
-        home_ = {content_->bodies[0].home(), 0, 1};
+        options_.surface = options_.force = false;
+        layer_->frame.codebook = layer_->frame.graph = false;
+        home_ = {docking_of(*content_).bodies[0].home(), 0, 1};
     }
     void TearDown() override {
         view_.reset();
+        layer_.reset();
         programs_.reset();
         GuiDraw::TearDown();
+    }
+    void begin_view(const RefineContour& refine = {}) {
+        view_.emplace(content_, *programs_, refine);
+        layer_.emplace(content_, *programs_);
+        view_->set_layer(&*layer_);
     }
     Image picture(std::span<const DrawnBody> bodies) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         ViewFrame frame{};
         frame.width_px = kWidth;
         frame.height_px = kHeight;
-        frame.bodies = bodies;
-        frame.active = 1000;
-        frame.second_hand = second_hand_;
+        layer_->frame.bodies = bodies;
+        frame.hand = second_hand_;
         view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
                     options_, frame);
         return read_pixels(kWidth, kHeight);
@@ -267,6 +275,7 @@ protected:
     std::shared_ptr<const SceneContent> content_;
     std::optional<Programs> programs_;
     std::optional<SceneView> view_;
+    std::optional<DockingLayer> layer_;
     ViewOptions options_;
     DrawnBody home_;
     std::optional<DrawnHand> second_hand_;
@@ -277,7 +286,7 @@ TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
     for (const auto style :
          {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
         for (const auto colouring : {Colouring::chain, Colouring::body}) {
-            view_->molecules().set_look({style, colouring});
+            layer_->molecules().set_look({style, colouring});
             const Image image = picture(std::array{home_});
             EXPECT_GT(drawn(image), 100U);
             pictures.insert({image.rgb.begin(), image.rgb.end()});
@@ -286,7 +295,7 @@ TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
 }
 
 TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not_at_all) {
-    view_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
+    layer_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
     const std::size_t one = drawn(picture(std::array{home_}));
     DrawnBody copy = home_;
     copy.id = 2;
@@ -341,21 +350,21 @@ TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_w
 TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
     DrawnBody copy = home_;
     copy.id = 2;
-    view_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
+    layer_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
     const Image tube = picture(std::array{home_});
-    view_->molecules().set_look(2, {MoleculeStyle::spheres, Colouring::chain});
+    layer_->molecules().set_look(2, {MoleculeStyle::spheres, Colouring::chain});
     EXPECT_EQ(picture(std::array{home_}).rgb, tube.rgb);
     EXPECT_NE(picture(std::array{copy}).rgb, tube.rgb);
-    view_->molecules().set_shapes_max(content_->bodies[0].size() - 1);
+    layer_->molecules().set_shapes_max(docking_of(*content_).bodies[0].size() - 1);
     EXPECT_EQ(picture(std::array{copy}).rgb, tube.rgb);
-    EXPECT_EQ(view_->molecules().left_out(), 1U);
+    EXPECT_EQ(layer_->molecules().left_out(), 1U);
 }
 
 TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame) {
     const std::string path = folder_ + "/fine.tact";
     fake::write_helix_scene(path, 64);
     content_ = load_scene(path);
-    view_.emplace(content_, *programs_);
+    begin_view();
     const std::uint32_t most = view_->vertices_max();
     ASSERT_GT(most, 4 * MeshCut::kStepsMin);
     view_->approach_vertices(most, 0.0);
@@ -371,7 +380,7 @@ TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come
     const auto refine = [this](double level, const std::function<bool()>&) {
         return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
     };
-    view_.emplace(content_, *programs_, refine);
+    begin_view(refine);
     options_.surface = true;
     const double own = content_->meta.contour;
     EXPECT_EQ(view_->vertices_max(), content_->mesh->vertices());

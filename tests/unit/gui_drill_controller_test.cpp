@@ -6,7 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "gui/app/drill_controller.hpp"
+#include "gui/drilling/drill_controller.hpp"
+#include "gui/window/load_scene.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {
@@ -106,9 +107,9 @@ protected:
     }
     void frame(std::span<const BrickChange> changes) {
         static_cast<void>(gui_->read());
-        desk_.follow(*gui_, changes, state_);
+        desk_.follow(*gui_, changes, state_, drilling_);
     }
-    [[nodiscard]] long said(const std::string& text) const {
+    [[nodiscard]] long message(const std::string& text) const {
         return std::count_if(state_.events.begin(), state_.events.end(),
                              [&](const EventLine& e) { return e.text == text; });
     }
@@ -120,16 +121,17 @@ protected:
     std::optional<Controller> gui_;
     DrillController desk_;
     DashboardState state_;
+    DrillingState drilling_;
     int ms_ = 0;
 };
 
 TEST_F(DrillControllerTest, shows_tools_and_distances_in_the_hands_space) {
     frame({});
-    EXPECT_FALSE(state_.drilling.known);
-    EXPECT_TRUE(state_.drilling.labelled);
+    EXPECT_FALSE(drilling_.known);
+    EXPECT_TRUE(drilling_.labelled);
     attach();
     burr(5e-3, true);
-    const DrillingState& d = state_.drilling;
+    const DrillingState& d = drilling_;
     ASSERT_TRUE(d.known);
     EXPECT_NEAR(d.burr.diameter_m, 4e-3, 1e-8);
     EXPECT_NEAR(d.burr.rpm, 60000.0, 0.1);
@@ -149,17 +151,17 @@ TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after
     EXPECT_TRUE(state_.events.empty());
     burr(5e-3, true);
     for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
-    EXPECT_EQ(said("burr 1.8 mm from the facial nerve"), 1);
+    EXPECT_EQ(message("burr 1.8 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::watch);
     for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
-    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 1);
+    EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::bad);
     burr(6.9e-3, true);  // 1.1 mm: not yet away
     burr(7.1e-3, true);
     EXPECT_EQ(state_.events.size(), 2U);
     burr(6.5e-3, true);
     burr(7.1e-3, true);
-    EXPECT_EQ(said("burr 0.9 mm from the facial nerve"), 2);
+    EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 2);
     burr(8.5e-3, true);  // still red
     EXPECT_EQ(state_.events.size(), 3U);
 }
@@ -171,8 +173,8 @@ TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
     after[5] = 100;  // of the third brick: the nerve
     const BrickChange change{2, before, after, true};
     frame({&change, 1});
-    EXPECT_EQ(said("facial nerve cut"), 1);
-    EXPECT_EQ(state_.drilling.injuries, 1U);
+    EXPECT_EQ(message("facial nerve cut"), 1);
+    EXPECT_EQ(drilling_.injuries, 1U);
     const auto file = folder_ / "report.json";
     desk_.save("", std::nullopt);
     EXPECT_FALSE(std::filesystem::exists(file));

@@ -1,4 +1,4 @@
-// A scene and a controller for tests of the visual process: a region that is published by hand over a real
+// A scene and a controller for tests of the visual process: a region that is published by pass on a real
 // link.
 #pragma once
 

@@ -3,7 +3,8 @@
 
 #include <thread>
 
-#include "gui/app/fit_worker.hpp"
+#include "gui/docking/docking_content.hpp"
+#include "gui/docking/fit_worker.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {
@@ -17,16 +18,18 @@ FitOutcome next(FitWorker& worker, FitOutcome outcome) {
 
 std::shared_ptr<SceneContent> content() {
     auto c = std::make_shared<SceneContent>();
-    c->bodies.push_back(fake::helix(18));
-    c->codebooks.emplace_back();
-    c->grid = fake::density_of(c->bodies[0], 24, 40.0 / 23.0, 3.0);
+    auto docking = std::make_unique<DockingContent>();
+    docking->bodies.push_back(fake::helix(18));
+    docking->codebooks.emplace_back();
+    c->grid = fake::density_of(docking->bodies[0], 24, 40.0 / 23.0, 3.0);
     c->meta.contour = 0.5;
     c->meta.resolution_m = 12e-10;
     c->meta.map_sigma = 1.0;
+    c->system = std::move(docking);
     return c;
 }
 
-std::vector<FitBody> at_home(const SceneContent& c) { return {{1, 0, c.bodies[0].home()}}; }
+std::vector<FitBody> at_home(const SceneContent& c) { return {{1, 0, docking_of(c).bodies[0].home()}}; }
 
 TEST(FitWorker, gives_the_numbers_of_the_newest_place) {
     const auto c = content();
@@ -35,7 +38,7 @@ TEST(FitWorker, gives_the_numbers_of_the_newest_place) {
     worker.request(home);
     const FitOutcome first = next(worker, {});
     ASSERT_TRUE(first.good) << first.error;
-    const PlacedStructure placed[] = {{&c->bodies[0], home[0].T_model_body}};
+    const PlacedStructure placed[] = {{&docking_of(*c).bodies[0], home[0].T_model_body}};
     const FitMetrics direct = fit_metrics(
         c->grid, placed, {.resolution_m = 12e-10, .contour = 0.5, .background = 0.0, .sigma = 1.0});
     EXPECT_DOUBLE_EQ(first.all.cc_zero, direct.cc_zero);

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "gui/app/frame_report.hpp"
+#include "gui/window/frame_report.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_canvas.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "gui/app/fit_history.hpp"
+#include "gui/docking/fit_history.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -12,7 +12,7 @@ namespace {
 
 using Move = FitHistory::Move;
 
-// Bodies and a controller that obeys, seen once a frame.
+// Bodies and a controller that applies, seen once a frame.
 struct Scene {
     std::map<std::uint32_t, double> x_a{{1, 0.0}, {2, 0.0}};
     FitHistory::Boundary boundary{1, 0, 0};
@@ -32,7 +32,7 @@ struct Scene {
         x_a[id] = to_a;
         look();
     }
-    // The hand goes on for some frames before the controller obeys, one command after the other.
+    // The hand goes on for some frames before the controller applies, one command after the other.
     void apply(const FitHistory::Places& moves) {
         const auto before = x_a;
         for (auto& [id, x] : x_a) x += 0.3;
@@ -175,7 +175,7 @@ TEST(FitHistory, a_refused_move_is_not_waited_for_forever) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
-    static_cast<void>(s.history.undo());  // and nobody obeys
+    static_cast<void>(s.history.undo());  // and nobody applies
     for (int i = 0; i < FitHistory::kPatience; ++i) s.look();
     s.drag(1, 5.0);
     s.apply(s.history.undo());

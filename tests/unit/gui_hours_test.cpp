@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "gui/app/show_controller.hpp"
+#include "gui/window/show_controller.hpp"
 #include "ipc/base/run_state.hpp"
 #include "tests/unit/gui_dashboard_fixture.hpp"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "gui/app/browser_controller.hpp"
+#include "gui/window/browser_controller.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 
@@ -45,19 +45,19 @@ protected:
 };
 
 TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
-    const auto scene_switch = folder_ / "hand-over";
+    const auto scene_switch = folder_ / "scene_switch";
     std::filesystem::create_directory(scene_switch);
     BrowserController desk(scene_switch);
     desk.drop({folder_ / "tetra.obj"}, state_);
     until_done(desk);
     const auto asked = take_asked_scene(scene_switch);
-    ASSERT_TRUE(asked) << state_.said;
+    ASSERT_TRUE(asked) << state_.message;
     EXPECT_EQ(asked->parent_path(), folder_ / "cache" / "tact");
     EXPECT_TRUE(std::filesystem::exists(*asked));
     refuse_scene(scene_switch, "not now");
     desk.follow(state_);
-    EXPECT_EQ(state_.said, "not now");
-    EXPECT_EQ(state_.said_grade, Grade::bad);
+    EXPECT_EQ(state_.message, "not now");
+    EXPECT_EQ(state_.message_grade, Grade::bad);
 }
 
 TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
@@ -77,13 +77,13 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     desk.follow(state_);
     while (state_.reading) desk.follow(state_);
     ASSERT_FALSE(state_.here.empty());
-    EXPECT_TRUE(state_.marks_say.empty());
+    EXPECT_TRUE(state_.marks_text.empty());
     press(folder_ / "tetra.obj");
     EXPECT_TRUE(row("tetra.obj").marked && state_.marks_import);
-    EXPECT_EQ(state_.marks_say, "Touch tetra.obj.");
+    EXPECT_EQ(state_.marks_text, "Touch tetra.obj.");
     press(folder_ / "wrong.ply");
     EXPECT_TRUE(row("wrong.ply").marked && !state_.marks_import);
-    EXPECT_EQ(state_.marks_say, "2 marked. One mesh at a time.");
+    EXPECT_EQ(state_.marks_text, "2 marked. One mesh at a time.");
     state_.import_wanted = true;  // the button is not to be pressed now
     desk.follow(state_);
     EXPECT_FALSE(state_.importing);
@@ -91,32 +91,32 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     EXPECT_TRUE(!row("wrong.ply").marked && row("tetra.obj").marked);
     state_.import_wanted = true;
     desk.follow(state_);
-    EXPECT_TRUE(state_.marks_say.empty() && !row("tetra.obj").marked);
+    EXPECT_TRUE(state_.marks_text.empty() && !row("tetra.obj").marked);
     until_done(desk);
-    EXPECT_EQ(scenes(), 1U) << state_.said;
+    EXPECT_EQ(scenes(), 1U) << state_.message;
     for (std::size_t i = 0; i < 3 * kDroppedMost; ++i)
         press(std::string("/a/").append(std::to_string(i)).append(".pdb"));
-    EXPECT_EQ(state_.marks_say.substr(0, 3), "18 ") << state_.marks_say;
+    EXPECT_EQ(state_.marks_text.substr(0, 3), "18 ") << state_.marks_text;
     state_.clear_wanted = true;
     desk.follow(state_);
-    EXPECT_TRUE(state_.marks_say.empty());
+    EXPECT_TRUE(state_.marks_text.empty());
 }
 
 TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
     BrowserController desk({});
     desk.drop({"/a/notes.txt"}, state_);
     EXPECT_TRUE(state_.open);
-    EXPECT_NE(state_.said.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
-        << state_.said;
-    EXPECT_NE(state_.said.find("What can be dropped: a scene"), std::string::npos) << state_.said;
+    EXPECT_NE(state_.message.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
+        << state_.message;
+    EXPECT_NE(state_.message.find("What can be dropped: a scene"), std::string::npos) << state_.message;
 }
 
 TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {
     BrowserController desk({});
     desk.drop({folder_ / "wrong.ply"}, state_);
     until_done(desk);
-    EXPECT_TRUE(state_.said.starts_with("tact-prep: ")) << state_.said;
-    EXPECT_NE(state_.said.find("fix:"), std::string::npos);
+    EXPECT_TRUE(state_.message.starts_with("tact-prep: ")) << state_.message;
+    EXPECT_NE(state_.message.find("fix:"), std::string::npos);
     EXPECT_EQ(scenes(), 0U);
 }
 
@@ -125,7 +125,7 @@ TEST_F(Import, a_cancelled_import_leaves_nothing) {
     desk.drop({folder_ / "tetra.obj"}, state_);
     state_.cancel_wanted = true;
     until_done(desk);
-    EXPECT_NE(state_.said.find("cancelled"), std::string::npos) << state_.said;
+    EXPECT_NE(state_.message.find("cancelled"), std::string::npos) << state_.message;
     EXPECT_EQ(scenes(), 0U);
 }
 
@@ -147,7 +147,7 @@ TEST_F(Import, without_a_launcher_the_window_says_how_to_open_a_scene) {
     BrowserController desk({});
     desk.drop({"/a/b.tact"}, state_);
     EXPECT_TRUE(state_.open);
-    EXPECT_NE(state_.said.find("tact run /a/b.tact"), std::string::npos) << state_.said;
+    EXPECT_NE(state_.message.find("tact run /a/b.tact"), std::string::npos) << state_.message;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "gui/panels/keys.hpp"
+#include "gui/system/keys.hpp"
 
 namespace tact {
 namespace {
@@ -22,7 +22,7 @@ KeySituation where_applies(KeyWhen when) {
 
 TEST(Keys, every_row_is_found_by_its_stroke_where_it_applies_and_by_no_other) {
     for (const KeyRow& row : key_rows()) {
-        if (row.act == KeyAct::none) continue;
+        if (row.action == KeyAction::none) continue;
         const char last = row.last != '\0' ? row.last : row.stroke.character;
         for (char c = row.stroke.character; c <= last; ++c) {
             KeyStroke stroke = row.stroke;
@@ -46,8 +46,9 @@ TEST(Keys, no_two_rows_that_may_apply_at_once_share_a_stroke) {
                 EXPECT_FALSE(collide(a, b)) << a.keys << ": " << a.what << " and " << b.what;
             }
     // The check itself sees one.
-    const KeyRow digits{{KeyCode::character, '1', false, false}, '9', KeyWhen::bodies, KeyAct::home, "", ""};
-    const KeyRow five{{KeyCode::character, '5', false, false}, 0, KeyWhen::always, KeyAct::mark, "", ""};
+    const KeyRow digits{
+        {KeyCode::character, '1', false, false}, '9', KeyWhen::bodies, KeyAction::home, "", ""};
+    const KeyRow five{{KeyCode::character, '5', false, false}, 0, KeyWhen::always, KeyAction::mark, "", ""};
     KeyRow in_bone = five;
     in_bone.when = KeyWhen::bone;
     EXPECT_TRUE(collide(digits, five));
@@ -55,13 +56,13 @@ TEST(Keys, no_two_rows_that_may_apply_at_once_share_a_stroke) {
 }
 
 TEST(Keys, every_act_has_a_key_and_every_row_words) {
-    std::set<KeyAct> acts;
+    std::set<KeyAction> acts;
     for (const KeyRow& row : key_rows()) {
-        acts.insert(row.act);
+        acts.insert(row.action);
         EXPECT_GT(std::string_view(row.keys).size(), 0U);
         EXPECT_GT(std::string_view(row.what).size(), 2U) << row.keys;
     }
-    EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAct::count));
+    EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAction::count));
 }
 
 TEST(Keys, a_long_sheet_has_two_columns_where_both_have_room) {
@@ -74,11 +75,11 @@ TEST(Keys, a_long_sheet_has_two_columns_where_both_have_room) {
 TEST(Keys, the_sheet_takes_esc_before_the_bodies_do) {
     KeySituation now = where_applies(KeyWhen::bodies);
     const KeyStroke escape{KeyCode::escape, '\0', false, false};
-    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::revert);
+    EXPECT_EQ(find_key(escape, now).row->action, KeyAction::revert);
     now.browser = true;
-    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::close_browser);
+    EXPECT_EQ(find_key(escape, now).row->action, KeyAction::close_browser);
     now.sheet = true;
-    EXPECT_EQ(find_key(escape, now).row->act, KeyAct::close_sheet);
+    EXPECT_EQ(find_key(escape, now).row->action, KeyAction::close_sheet);
     EXPECT_EQ(find_key({KeyCode::character, 'j', false, false}, now).row, nullptr);
 }
 

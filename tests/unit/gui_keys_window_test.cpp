@@ -10,7 +10,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
-#include "gui/panels/keys.hpp"
+#include "gui/system/keys.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {
@@ -77,7 +77,7 @@ protected:
         std::ifstream file(folder_ + "/gui.log");
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    bool said(const KeyRow& row) {
+    bool logged(const KeyRow& row) {
         const std::string line = std::string("key ") + row.keys + ": " + row.what + "\n";
         return wait_for([&] { return log_text().find(line) != std::string::npos; });
     }
@@ -146,16 +146,16 @@ TEST_F(KeysInTheWindow, every_row_of_a_docking_scene_is_pressed_and_taken) {
     std::size_t pressed = 0;
     for (const KeyRow& row : key_rows()) {
         if (row.when == KeyWhen::sheet) close = &row;
-        if (row.act == KeyAct::none || !applies(row.when, now)) continue;
+        if (row.action == KeyAction::none || !applies(row.when, now)) continue;
         press(name_for_x(row.stroke));
-        EXPECT_TRUE(said(row)) << row.keys << "\n" << log_text();
+        EXPECT_TRUE(logged(row)) << row.keys << "\n" << log_text();
         ++pressed;
     }
     EXPECT_GT(pressed, 15U);
     // `?` came last: its sheet is open.
     ASSERT_NE(close, nullptr);
     press(name_for_x(close->stroke));
-    EXPECT_TRUE(said(*close)) << log_text();
+    EXPECT_TRUE(logged(*close)) << log_text();
     EXPECT_TRUE(wait_for([&] {
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             if (entry.path().extension() == ".png") return true;

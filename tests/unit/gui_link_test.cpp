@@ -6,13 +6,13 @@
 #include <limits>
 #include <set>
 
-#include "gui/app/body_list.hpp"
-#include "gui/app/command_sender.hpp"
-#include "gui/app/controller.hpp"
-#include "gui/app/mesh_level.hpp"
-#include "gui/app/pose_predictor.hpp"
-#include "gui/app/region_checks.hpp"
-#include "gui/panels/status_text.hpp"
+#include "gui/dashboard/status_text.hpp"
+#include "gui/docking/body_list.hpp"
+#include "gui/link/command_sender.hpp"
+#include "gui/link/controller.hpp"
+#include "gui/link/pose_predictor.hpp"
+#include "gui/link/region_checks.hpp"
+#include "gui/render/mesh_level.hpp"
 
 namespace tact {
 namespace {
@@ -312,7 +312,7 @@ TEST(StatusText, grades_the_rate_against_its_goal) {
     EXPECT_EQ(rate_status(951.0, 1000.0).grade, Grade::good);
     EXPECT_EQ(rate_status(940.0, 1000.0).grade, Grade::watch);
     EXPECT_EQ(rate_status(700.0, 1000.0).grade, Grade::bad);
-    EXPECT_NE(rate_status(700.0, 1000.0).words.find("30 %"), std::string::npos);
+    EXPECT_NE(rate_status(700.0, 1000.0).text.find("30 %"), std::string::npos);
     EXPECT_EQ(rate_status(5.0, 0.0).grade, Grade::unknown);
 }
 
@@ -322,7 +322,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     d.there = 1;
     d.state = 2;
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::good);
-    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).words, "powered");
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).text, "powered");
     BusCounts lossy;
     lossy.lost = 3;
     EXPECT_EQ(device_status(d, lossy, DeviceNotice::none).grade, Grade::watch);
@@ -331,7 +331,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     d.read = 1;
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::watch);
     d.read = 2;
-    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).words, "lost");
+    EXPECT_EQ(device_status(d, {}, DeviceNotice::none).text, "lost");
     d.read = 0;
     d.state = 4;
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::bad);
@@ -345,7 +345,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     EXPECT_EQ(motor_status(m).grade, Grade::watch);
     m.heat = 1.01F;
     EXPECT_EQ(motor_status(m).grade, Grade::bad);
-    EXPECT_NE(motor_status(m).words.find("1.4 N"), std::string::npos);
+    EXPECT_NE(motor_status(m).text.find("1.4 N"), std::string::npos);
     m.winding_c_max = 100.0F;  // what the driver counts is nearer to the truth
     m.winding_c = 60.0F;
     EXPECT_EQ(motor_status(m).grade, Grade::good);
@@ -363,7 +363,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     t.state = 0;
     EXPECT_EQ(tracker_status(t).grade, Grade::bad);
     t.link = 4;
-    EXPECT_EQ(tracker_status(t).words, "gone");
+    EXPECT_EQ(tracker_status(t).text, "gone");
     EXPECT_EQ(tracker_counts_text(t), "");
     t.missed = 2;
     t.bus_errors = 1;
@@ -381,7 +381,7 @@ TEST(StatusText, every_grade_comes_with_words) {
     for (int state = 0; state < 7; ++state)
         for (int reason = 0; reason < 15; ++reason)
             EXPECT_FALSE(
-                state_status(static_cast<RunState>(state), static_cast<RunReason>(reason)).words.empty());
+                state_status(static_cast<RunState>(state), static_cast<RunReason>(reason)).text.empty());
     EXPECT_EQ(state_status(RunState::fault, RunReason::device_lost).grade, Grade::bad);
     const auto overran = [](std::uint64_t overruns, std::uint64_t cycles) {
         HealthTopic h{};
@@ -392,13 +392,13 @@ TEST(StatusText, every_grade_comes_with_words) {
     };
     EXPECT_EQ(overran(0, 1000).grade, Grade::good);
     EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
-    EXPECT_EQ(overran(1, 1'000'000).words, "the last 12 s ago");
+    EXPECT_EQ(overran(1, 1'000'000).text, "the last 12 s ago");
     EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
     EXPECT_EQ(lateness_status(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_status(900'000, 1'000'000).grade, Grade::bad);
     EXPECT_EQ(bus_status({.packets = 1000}).grade, Grade::good);
     EXPECT_EQ(bus_status({.packets = 1000, .stalls = 1}).grade, Grade::watch);
-    EXPECT_EQ(bus_status({.packets = 1000, .checksum = 1, .refused = 2, .repeated = 3, .lost = 4}).words,
+    EXPECT_EQ(bus_status({.packets = 1000, .checksum = 1, .refused = 2, .repeated = 3, .lost = 4}).text,
               "6 bad, 4 lost");
     HealthTopic health{};
     EXPECT_EQ(memory_status(health).grade, Grade::good);
@@ -406,7 +406,7 @@ TEST(StatusText, every_grade_comes_with_words) {
     EXPECT_EQ(memory_status(health).grade, Grade::watch);
     health.allocations = 1;
     EXPECT_EQ(memory_status(health).grade, Grade::bad);
-    EXPECT_NE(memory_status(health).words.find("1 allocation,"), std::string::npos);
+    EXPECT_NE(memory_status(health).text.find("1 allocation,"), std::string::npos);
 }
 
 TEST(CommandSender, carries_the_body_and_its_place) {
@@ -506,14 +506,14 @@ TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
 }
 
 TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and_look_ahead) {
-    EXPECT_EQ(distance_status(-1e-4, 0.0, false).words, "in it");
+    EXPECT_EQ(distance_status(-1e-4, 0.0, false).text, "inside");
     EXPECT_EQ(distance_status(-1e-4, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(0.99e-3, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(1.01e-3, 0.0, false).grade, Grade::watch);
     EXPECT_EQ(distance_status(1.99e-3, 0.0, false).grade, Grade::watch);
     EXPECT_EQ(distance_status(2.01e-3, 0.0, false).grade, Grade::good);
     // 4 mm away and 10 mm/s: at 1 mm in 0.3 s, if it turns.
-    EXPECT_EQ(distance_status(4e-3, 1e-2, true).words, "at 1 mm in 0.3 s");
+    EXPECT_EQ(distance_status(4e-3, 1e-2, true).text, "at 1 mm in 0.3 s");
     EXPECT_EQ(distance_status(4e-3, 1e-2, true).grade, Grade::watch);
     EXPECT_EQ(distance_status(4e-3, 1e-2, false).grade, Grade::good);
     EXPECT_EQ(distance_status(4e-3, 2e-3, true).grade, Grade::good);
@@ -522,8 +522,8 @@ TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and
 }
 
 TEST(StatusTexts, of_the_force_on_a_burr_say_how_long_it_was_too_much) {
-    EXPECT_EQ(force_status(1.0, 0.0).words, "never above 2 N");
-    EXPECT_EQ(force_status(1.0, 3.21).words, "above 2 N for 3.2 s");
+    EXPECT_EQ(force_status(1.0, 0.0).text, "always below 2 N");
+    EXPECT_EQ(force_status(1.0, 3.21).text, "above 2 N for 3.2 s");
     EXPECT_EQ(force_status(1.0, 3.21).grade, Grade::good);
     EXPECT_EQ(force_status(2.1, 3.21).grade, Grade::watch);
 }

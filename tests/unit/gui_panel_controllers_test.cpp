@@ -229,7 +229,7 @@ TEST_F(Desk, what_an_import_printed_tells_how_far_it_is) {
     EXPECT_EQ(share_done("[101 %] x\n[-1 %] x\n"), std::nullopt);
     EXPECT_EQ(last_line("one\n[ 45 %] two\n\n"), "[ 45 %] two");
     EXPECT_EQ(last_line("\n"), "");
-    EXPECT_EQ(errors_said("[  0 %] reading\ntact-prep: no\n  fix: x\n"), "tact-prep: no\n  fix: x");
+    EXPECT_EQ(error_text("[  0 %] reading\ntact-prep: no\n  fix: x\n"), "tact-prep: no\n  fix: x");
 }
 
 TEST_F(Desk, sizes_and_times_read_well) {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "gui/particles/particles.hpp"
+#include "gui/drilling/particles.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {

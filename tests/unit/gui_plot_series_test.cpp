@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "gui/panels/plot.hpp"
-#include "gui/panels/plot_series.hpp"
-#include "gui/panels/widgets.hpp"
+#include "gui/dashboard/plot.hpp"
+#include "gui/dashboard/plot_series.hpp"
+#include "gui/dashboard/widgets.hpp"
 
 namespace tact {
 namespace {

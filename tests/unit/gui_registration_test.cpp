@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "gui/stage/registration.hpp"
+#include "gui/stereo/registration.hpp"
 #include "ipc/base/random.hpp"
 
 namespace tact {

@@ -5,11 +5,12 @@
 #include <random>
 #include <set>
 
-#include "gui/render/atom_shapes.hpp"
-#include "gui/render/detail_mesh.hpp"
-#include "gui/render/touch_marks.hpp"
+#include "gui/docking/atom_shapes.hpp"
 #include "gui/render/tube.hpp"
 #include "gui/render/viridis.hpp"
+#include "gui/surface/detail_mesh.hpp"
+#include "gui/surface/surface_content.hpp"
+#include "gui/surface/touch_marks.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
@@ -194,7 +195,9 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) 
     const SurfaceMesh surface = read_surface(file);
     const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
     SceneContent content;
-    content.detail.reset(new SurfaceDetail{std::move(file), surface, forest});
+    auto own = std::make_unique<SurfaceContent>();
+    own->detail.reset(new SurfaceDetail{std::move(file), surface, forest});
+    content.system = std::move(own);
 
     DetailCut cut(content);
     const auto settled = [&](const DetailRequest& request) {
@@ -233,7 +236,7 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) 
     EXPECT_GT(near / nears, far / fars + 40.0);
     request.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
     EXPECT_GT(settled(request).triangles, seen.triangles);
-    // The same wish, the same cut, wherever it was before.
+    // The same request, the same cut, wherever it was before.
     request.form = {};
     EXPECT_EQ(settled(request).triangles, seen.triangles);
 }

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "gui/app/bench_particles.hpp"
-#include "gui/app/site.hpp"
-#include "gui/particles/burr_sight.hpp"
+#include "gui/drilling/bench_particles.hpp"
+#include "gui/drilling/burr_sight.hpp"
+#include "gui/drilling/site_effects.hpp"
 
 namespace tact {
 namespace {
@@ -69,20 +69,20 @@ struct Block {
                                std::span<const std::uint8_t>(after).subspan(i * kVoxels, kVoxels), now});
         return lost;
     }
-    Site::Frame frame() const {
+    SiteEffects::Frame frame() const {
         return {0.02, &drill, changes, 1.0F, view.bricks.to_model(Vec3(24, 24, 200))};
     }
 };
 
-std::size_t count(const Site& site, Matter matter) {
+std::size_t count(const SiteEffects& site, Matter matter) {
     const auto all = site.particles().all();
     return static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [matter](const Particle& p) { return p.matter == matter; }));
 }
 
-TEST(Site, dust_is_what_the_bone_lost) {
+TEST(SiteEffects, dust_is_what_the_bone_lost) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     std::uint64_t lost = 0;
     for (std::uint32_t z = 23; z > 15; --z) {
         lost += bone.cut(24, 24, z, 130);
@@ -97,9 +97,9 @@ TEST(Site, dust_is_what_the_bone_lost) {
     EXPECT_EQ(site.particles().ledger().drilled, lost);
 }
 
-TEST(Site, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_particles_allow) {
+TEST(SiteEffects, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_particles_allow) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
     EXPECT_EQ(count(site, Matter::water), 0U);
     bone.drill.hand[0].irrigation = 1.0F;
@@ -108,14 +108,14 @@ TEST(Site, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_particl
     EXPECT_GT(half_a_second, 500U);
     EXPECT_LE(half_a_second, 5600U);  // 3e-7 m3/s, drops of 2.7e-11 m3
     bone.drill.irrigation_m3_s_most = 1.0F;
-    Site flooded(bone.view, bone.labels, 1.0);
+    SiteEffects flooded(bone.view, bone.labels, 1.0);
     for (int i = 0; i < 25; ++i) flooded.step(bone.frame());
     EXPECT_LE(count(flooded, Matter::water), 7500U);
 }
 
-TEST(Site, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
+TEST(SiteEffects, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     static_cast<void>(bone.cut(30, 24, 23, 240));
     site.step(bone.frame());
     bone.changes.clear();
@@ -128,7 +128,7 @@ TEST(Site, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
     EXPECT_GT(count(site, Matter::blood), 100U);
 }
 
-TEST(Site, marrow_stains_and_is_sealed_by_paste) {
+TEST(SiteEffects, marrow_stains_and_is_sealed_by_paste) {
     Block bone;
     for (auto& v : bone.density) v = v > 0 ? 120 : 0;
     Bleeding bleeding(bone.view.bricks, {}, {}, 1);
@@ -153,9 +153,9 @@ TEST(Site, marrow_stains_and_is_sealed_by_paste) {
     EXPECT_EQ(bleeding.wounds(), 0U);
 }
 
-TEST(Site, the_sucker_takes_what_is_at_its_tip) {
+TEST(SiteEffects, the_sucker_takes_what_is_at_its_tip) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
     bone.drill.hand[0].irrigation = 0.0F;
@@ -165,7 +165,7 @@ TEST(Site, the_sucker_takes_what_is_at_its_tip) {
     suction_tube.radius_m = 3e-3F;
     const Vec3 tip = bone.view.bricks.to_model(Vec3(24, 24, 27));
     std::copy(tip.begin(), tip.end(), suction_tube.pos_model_m);
-    Site::Frame frame = bone.frame();
+    SiteEffects::Frame frame = bone.frame();
     for (int i = 0; i < 25; ++i) site.step(frame);
     const std::size_t without = count(site, Matter::water);
     suction_tube.suction = 1.0F;
@@ -178,33 +178,33 @@ TEST(Site, the_sucker_takes_what_is_at_its_tip) {
     EXPECT_TRUE(site.metrics().suction_blocked);
 }
 
-TEST(Site, the_level_bounds_how_many_there_are) {
+TEST(SiteEffects, the_level_bounds_how_many_there_are) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
-    Site::Frame frame = bone.frame();
+    SiteEffects::Frame frame = bone.frame();
     for (int i = 0; i < 60; ++i) site.step(frame);
     EXPECT_GT(site.metrics().alive, 3000U);
     frame.level = 0.02F;
     // What is too much goes within the time of a step: how many steps that takes hangs on the machine.
     for (int i = 0; i < 2000 && site.metrics().alive > 2000; ++i) site.step(frame);
     EXPECT_LE(site.metrics().alive, 2000U);
-    EXPECT_EQ(site.metrics().most, Site::kMost);
+    EXPECT_EQ(site.metrics().most, SiteEffects::kMost);
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(Site, shows_no_more_than_a_lower_level_allows_from_its_first_frame_on) {
+TEST(SiteEffects, shows_no_more_than_a_lower_level_allows_from_its_first_frame_on) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     site.keep(30000);
-    Site::Frame frame = bone.frame();
+    SiteEffects::Frame frame = bone.frame();
     site.step(frame);
     const std::size_t before = site.particles().shown().size();
     ASSERT_GT(before, 20000U);
     EXPECT_EQ(before, site.particles().all().size());
     frame.level = 0.01F;
     site.step(frame);
-    EXPECT_LE(site.particles().shown().size(), Site::kMost / 100);
+    EXPECT_LE(site.particles().shown().size(), SiteEffects::kMost / 100);
     EXPECT_EQ(site.metrics().shown, site.particles().shown().size());
     EXPECT_GT(site.particles().all().size(), before / 2);  // no frame has the time to give them all up
     EXPECT_TRUE(site.particles().ledger().balances());
@@ -213,9 +213,9 @@ TEST(Site, shows_no_more_than_a_lower_level_allows_from_its_first_frame_on) {
     EXPECT_EQ(site.particles().shown().size(), site.particles().all().size());
 }
 
-TEST(Site, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
+TEST(SiteEffects, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[1].suction = 1.0F;
     std::uint64_t gone = 0;
     for (int i = 0; i < 100; ++i) {
@@ -226,19 +226,19 @@ TEST(Site, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
     }
     EXPECT_GT(gone, 0U);  // and were made up for
     EXPECT_GT(count(site, Matter::paste), 300U);
-    Site::Frame half = bone.frame();
+    SiteEffects::Frame half = bone.frame();
     half.level = 0.01F;
     for (int i = 0; i < 20; ++i) site.step(half);
-    EXPECT_LE(site.particles().all().size(), Site::kMost / 100);  // no more than the level allows
+    EXPECT_LE(site.particles().all().size(), SiteEffects::kMost / 100);  // no more than the level allows
     site.keep(1000000);
     site.step(bone.frame());
-    EXPECT_LE(site.particles().all().size(), Site::kMost);
+    EXPECT_LE(site.particles().all().size(), SiteEffects::kMost);
 }
 
-TEST(Site, survives_what_a_controller_may_send) {
+TEST(SiteEffects, survives_what_a_controller_may_send) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
-    Site::Frame frame = bone.frame();
+    SiteEffects site(bone.view, bone.labels, 1.0);
+    SiteEffects::Frame frame = bone.frame();
     frame.drill = nullptr;
     frame.dt_s = 1e9;
     site.step(frame);
@@ -297,9 +297,9 @@ TEST(ParticlesBench, says_what_a_move_costs_and_how_well_a_budget_is_kept) {
     EXPECT_EQ(all["particle_budget_error"], all["particle_budget_error_100000"]);
 }
 
-TEST(Site, counts_how_long_the_burr_was_seen_while_it_drilled) {
+TEST(SiteEffects, counts_how_long_the_burr_was_seen_while_it_drilled) {
     Block bone;
-    Site site(bone.view, bone.labels, 1.0);
+    SiteEffects site(bone.view, bone.labels, 1.0);
     DrillHand& burr = bone.drill.hand[0];
     for (int i = 0; i < 10; ++i) site.step(bone.frame());
     EXPECT_EQ(site.metrics().drilling_s, 0.0);  // it stands
@@ -308,7 +308,7 @@ TEST(Site, counts_how_long_the_burr_was_seen_while_it_drilled) {
     for (int i = 0; i < 50; ++i) site.step(bone.frame());
     EXPECT_NEAR(site.metrics().drilling_s, 1.0, 1e-9);
     EXPECT_NEAR(site.metrics().seen_s, 1.0, 1e-9);
-    Site::Frame from_below = bone.frame();
+    SiteEffects::Frame from_below = bone.frame();
     from_below.eye_model_m = bone.view.bricks.to_model(Vec3(24, 24, -200));
     bone.place(24, 24, 20);
     for (int i = 0; i < 50; ++i) site.step(from_below);

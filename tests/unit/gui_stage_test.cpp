@@ -5,9 +5,9 @@
 #include <string>
 
 #include "gui/render/screen.hpp"
-#include "gui/stage/eye_pictures.hpp"
-#include "gui/stage/head_view.hpp"
-#include "gui/stage/stage_file.hpp"
+#include "gui/stereo/eye_pictures.hpp"
+#include "gui/stereo/head_view.hpp"
+#include "gui/stereo/stage_file.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 

@@ -1,5 +1,5 @@
 // The traces as a file: whole or not at all, and what became of it is said.
-#include "gui/app/trace_export.hpp"
+#include "gui/dashboard/trace_export.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,10 +33,10 @@ protected:
         std::filesystem::current_path(before_);
         std::filesystem::remove_all(folder_);
     }
-    bool said() {
+    bool message() {
         return test::wait_for([this] {
             out_.follow(traces_);
-            return traces_.said_grade != Grade::unknown;
+            return traces_.message_grade != Grade::unknown;
         });
     }
 
@@ -51,12 +51,12 @@ TEST_F(Export, writes_what_is_seen_and_says_where) {
     traces_.export_wanted = true;
     out_.follow(traces_);
     EXPECT_FALSE(traces_.export_wanted);
-    ASSERT_TRUE(said());
-    EXPECT_EQ(traces_.said_grade, Grade::good) << traces_.said;
+    ASSERT_TRUE(message());
+    EXPECT_EQ(traces_.message_grade, Grade::good) << traces_.message;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) files.push_back(entry.path());
     ASSERT_EQ(files.size(), 1U);  // and nothing partial
-    EXPECT_NE(traces_.said.find(files[0].string()), std::string::npos) << traces_.said;
+    EXPECT_NE(traces_.message.find(files[0].string()), std::string::npos) << traces_.message;
     std::ifstream in(files[0]);
     std::string line, last;
     std::size_t lines = 0;
@@ -71,9 +71,9 @@ TEST_F(Export, a_folder_that_is_gone_is_said_in_words) {
     std::filesystem::remove_all(folder_);
     traces_.export_wanted = true;
     out_.follow(traces_);
-    ASSERT_TRUE(said());
-    EXPECT_EQ(traces_.said_grade, Grade::bad);
-    EXPECT_NE(traces_.said.find("fix:"), std::string::npos) << traces_.said;
+    ASSERT_TRUE(message());
+    EXPECT_EQ(traces_.message_grade, Grade::bad);
+    EXPECT_NE(traces_.message.find("fix:"), std::string::npos) << traces_.message;
 }
 
 TEST_F(Export, no_part_of_a_file_stays_where_it_cannot_be_written) {

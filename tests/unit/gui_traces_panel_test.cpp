@@ -34,7 +34,8 @@ protected:
         run(5000);
     }
     ImVec2 on_lanes(float share) {
-        const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true);
+        const Layout l =
+            layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true);
         return {l.plots.x + desk_.theme.px(60.0F) + share * (l.plots.width - desk_.theme.px(80.0F)),
                 l.plots.y + 0.7F * l.plots.height};
     }
@@ -44,10 +45,13 @@ protected:
 };
 
 TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
-    const float before = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, false).plots.height;
+    const float before =
+        layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), false).plots.height;
     open();
-    EXPECT_GT(layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true).plots.height, 1.4F * before);
-    desk_.click(kCard, "Load and knobs");
+    EXPECT_GT(
+        layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true).plots.height,
+        1.4F * before);
+    desk_.click(kCard, "Load and detail");
     EXPECT_EQ(desk_.state.strip, 0);
 }
 
@@ -98,7 +102,7 @@ TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
     desk_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
     const double begun_s = scope().span_s();
-    const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, MiddleCard::fit, true);
+    const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true);
     // The lanes begin behind their numbers, 44 wide, inside the card's padding.
     const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
     const float y = l.plots.y + 0.7F * l.plots.height;

@@ -7,8 +7,8 @@
 #include <random>
 #include <sstream>
 
-#include "gui/panels/plot.hpp"
-#include "gui/panels/trace_scope.hpp"
+#include "gui/dashboard/plot.hpp"
+#include "gui/dashboard/trace_scope.hpp"
 #include "ipc/base/run_state.hpp"
 
 namespace tact {

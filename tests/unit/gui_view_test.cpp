@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "gui/docking/docking_layer.hpp"
 #include "gui/render/arrow.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/mesh_pace.hpp"
-#include "gui/render/scene_view.hpp"
 #include "gui/render/tube.hpp"
 #include "tests/unit/gui_fake.hpp"
 

@@ -1,4 +1,4 @@
-// tact-gui as a process, on an X server of its own: waits, attaches, obeys, survives, draws.
+// tact-gui as a process, on an X server of its own: waits, attaches, applies, survives, draws.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <png.h>

@@ -18,7 +18,7 @@ void for_all(Property&& property) {
 
 using sample::joints;
 
-// A posture within the ends of the arm's joints, the elbow's included.
+// A configuration within the ends of the arm's joints, the elbow's included.
 Joint6 drawn_joints(const ArmParameters& p) {
     const auto unit = [] { return *rc::gen::inRange(0, 1'000'001) * 1e-6; };
     Joint6 q;

@@ -17,7 +17,7 @@ namespace {
 using emu::FalconBoard;
 using emu::LockstepFalcon;
 using falcon::Link;
-using phantom::BusFault;
+using usb::BusFault;
 
 TEST(FtdiPieces, lose_their_status_and_damaged_ones_everything) {
     const auto piece = [](std::initializer_list<int> values) {

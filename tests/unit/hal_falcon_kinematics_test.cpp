@@ -1,5 +1,5 @@
 // The Falcon's legs: there and back, the Jacobian and the motors' steps against differences and virtual work,
-// and what is no posture.
+// and what is no configuration.
 #include "hal/falcon/kinematics.hpp"
 
 #include <gtest/gtest.h>

@@ -137,12 +137,42 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(std::memcmp(&h.t, &wanted, sizeof wanted), 0);
     EXPECT_EQ(h.pos_world_m[0], 1.0);
     EXPECT_EQ(h.pos_world_m[1], 0.1 / 3.0);
-    const auto mails = Hdf5Table::open(file.get(), kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
+    const auto mailboxes =
+        Hdf5Table::open(file.get(), kMailboxGroup, mailbox_columns(), sizeof(MailboxTopic));
     MailboxTopic m{};
-    mails.read(0, 1, &m);
+    mailboxes.read(0, 1, &m);
     EXPECT_EQ(m.order.body, 3U);
     EXPECT_EQ(m.order.pos_model_m[2], 1e-10 / 3.0);
     EXPECT_EQ(m.order.quat_model_body_xyzw[3], 1.0);
+}
+
+// Columns and groups that were renamed on 2026-11-25 are found in files from before.
+TEST_F(RecordFile, columns_and_groups_are_found_under_their_former_names) {
+    const Hdf5Handle file = hdf5::create_file(path_);
+    std::vector<Column> former(cycle_columns().begin(), cycle_columns().end());
+    std::size_t renamed = 0;
+    for (Column& c : former) {
+        if (*c.former == 0) continue;
+        c.name = c.former;
+        ++renamed;
+    }
+    ASSERT_EQ(renamed, 2U);
+    CycleTopic written = cycle(1);
+    written.work_fraction = 0.125F;
+    written.timestamps = 4;
+    Hdf5Table::create(file.get(), kCyclesGroup, former, sizeof(CycleTopic)).append(&written, 1);
+    MailboxTopic order{};
+    order.kind = 3;
+    Hdf5Table::create(file.get(), kFormerMailboxGroup, mailbox_columns(), sizeof(MailboxTopic))
+        .append(&order, 1);
+
+    CycleTopic c{};
+    Hdf5Table::open(file.get(), kCyclesGroup, cycle_columns(), sizeof c).read(0, 1, &c);
+    EXPECT_EQ(c.work_fraction, 0.125F);
+    EXPECT_EQ(c.timestamps, 4);
+    MailboxTopic m{};
+    Hdf5Table::open(file.get(), mailbox_group(file.get()), mailbox_columns(), sizeof m).read(0, 1, &m);
+    EXPECT_EQ(m.kind, 3U);
 }
 
 TEST_F(RecordFile, of_a_writer_that_dies_all_that_was_flushed_is_there) {

@@ -57,12 +57,12 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::overrun, 120, 3), "overrun: 120 us late, 3 so far");
     EXPECT_EQ(text(EventCode::overrun, 8987.07, 4), "overrun: 8.99 ms late, 4 so far");
     EXPECT_EQ(text(EventCode::overrun, 2.5e6, 1), "overrun: 2.5 s late, 1 so far");
-    EXPECT_EQ(text(EventCode::gui_silent, 500.52, 0), "visual process silent: for 501 ms");
+    EXPECT_EQ(text(EventCode::gui_silent, 500.52, 0), "display process not responding: for 501 ms");
     EXPECT_EQ(text(EventCode::fault_latched, static_cast<double>(RunReason::emergency_stop), 0),
               "fault: the emergency stop is pressed");
     EXPECT_EQ(text(EventCode::stopping, SIGTERM, 0), "stopping: signal 15");
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
-              "stopping: the servo did not sleep for a second; choose a lower rate");
+              "stopping: the servo did not sleep for 1 s; choose a lower rate");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
@@ -77,11 +77,11 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::level_changed, kParticlesPathIndex, 0.25),
               "level changed: particles to 0.25, start");
     EXPECT_EQ(text(EventCode::level_changed, 7, 1), "level changed: path 7 to 1, start");
-    EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body taken into the hand: body 3, 825 points");
-    EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body in the hand");
+    EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body held: body 3, 825 points");
+    EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body held");
     EXPECT_EQ(text(EventCode::device_notice, static_cast<double>(DeviceNotice::keep_still), 0),
               "device: keep the arm still");
-    EXPECT_EQ(text(EventCode::device_notice, 0, 1), "device of the second hand: all is well");
+    EXPECT_EQ(text(EventCode::device_notice, 0, 1), "device of the second hand: no notice");
     EXPECT_EQ(text(EventCode::device_notice, 1e9, 0), "device: unknown");
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }

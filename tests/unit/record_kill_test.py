@@ -166,7 +166,7 @@ class Campaign:
         child.send_signal(signal.SIGINT)
         out, err = child.communicate(timeout=PATIENCE_S)
         if child.returncode != 0 or len(said) < 2:
-            return ["%d flights after %d wishes: %s %s" % (len(said), asked, out, err)]
+            return ["%d flights after %d requests: %s %s" % (len(said), asked, out, err)]
         left = files()
         if len(left) != 1 or left[0] != said[-1] and left[0] < said[-1]:
             return ["not the newest one was kept: %s of %s" % (left, said)]
@@ -212,9 +212,9 @@ def main():
     parser.add_argument("writer")
     parser.add_argument("--runs", type=int, default=4)
     parser.add_argument("--seed", type=int, default=20261123)
-    wish = parser.parse_args()
-    chance = random.Random(wish.seed)
-    campaign = Campaign(wish.programs, wish.writer)
+    request = parser.parse_args()
+    chance = random.Random(request.seed)
+    campaign = Campaign(request.programs, request.writer)
     failed = False
     try:
         for name, test in (("ended in order", campaign.in_order), ("disk full", campaign.disk_full), ("flight and table", campaign.flight)):
@@ -222,7 +222,7 @@ def main():
             failed = failed or bool(wrong)
             print("%s: %s" % (name, "; ".join(wrong) or "good"))
         losses = []
-        for number in range(wish.runs):
+        for number in range(request.runs):
             wrong, lost_ns, cycles = campaign.kill_once(number, chance.uniform(0.0, 1.5))
             failed = failed or bool(wrong)
             losses.append(lost_ns)

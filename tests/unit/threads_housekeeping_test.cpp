@@ -1,4 +1,4 @@
-// What the house thread lets through from the other process.
+// What the housekeeping thread lets through from the other process.
 #include "rt/threads/housekeeping.hpp"
 
 #include <gtest/gtest.h>

@@ -24,7 +24,7 @@ class DockingBodies {
 public:
     enum class Change : std::uint8_t {
         refused,
-        none,    // obeyed, and the force does not care
+        none,    // applied, and the force does not care
         others,  // bodies besides the one in the hand
         moved,   // the one in the hand is elsewhere
         taken,   // another one is in the hand, or none

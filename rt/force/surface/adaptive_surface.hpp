@@ -1,14 +1,14 @@
 // A surface that is as fine as its full mesh around the tool and coarse elsewhere, for the servo's contact.
 //
-// Halves    tend() moves the cut on and, where it is in full detail around the path that the tool is about to take, builds
+// Halves    slow_update() moves the cut on and, where it is in full detail around the path that the tool is about to take, builds
 //           the surface there; around() gives the servo what was built last, where it holds what is asked for.
 // Radius    within it, of a box along that path, all is as in the full mesh: the tool's own, what a step may look
 //           at, and a width that the fidelity chooses.
-// Cost      of a turn of tend(): a rate a triangle around the tool, learnt from the turns that built, times how many
+// Cost      of a turn of slow_update(): a rate a triangle around the tool, learnt from the turns that built, times how many
 //           a fidelity brings.
 // Outside   around() gives nothing, and the servo asks the tree over the full mesh: the same force, at the
 //           price of that tree. Coarse triangles are never felt.
-// Unit      metres of the model.  Thread  made anywhere; tend() one thread, around() the servo's. No allocation
+// Unit      metres of the model.  Thread  made anywhere; slow_update() one thread, around() the servo's. No allocation
 //           after the constructor.
 #pragma once
 
@@ -50,7 +50,7 @@ public:
         return static_cast<double>(s_per_triangle_.load(std::memory_order_relaxed)) *
                predicted_triangles(fidelity);
     }
-    // Of tend()'s thread. How far the active surface is from the full one at the most; it looks at all that is
+    // Of slow_update()'s thread. How far the active surface is from the full one at the most; it looks at all that is
     // active.
     [[nodiscard]] float deviation_m() const noexcept { return refinement_.deviation_m(); }
     [[nodiscard]] std::size_t memory_bytes() const { return refinement_.memory_bytes(); }

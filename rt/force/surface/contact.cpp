@@ -211,7 +211,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const double room = collected_m_ - (proxy_m_ - collected_at_m_).norm();
         query(reach_now, rubs ? 0.0 : std::min({room, left, std::max(request.norm(), settings_.margin_m)}),
               contact.triangles);
-        // Single precision of a guard over the length of the wish, and of the distances.
+        // Single precision of a guard over the length of the request, and of the distances.
         const double tolerance = 3e-7 * (request.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
         HalfSpaces::Solution free = half_spaces_.solve(request, tolerance);
         if (!free.exact) {

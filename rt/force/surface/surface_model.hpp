@@ -14,14 +14,14 @@
 //          the proxy is seated as after a reset, and the force fades in.
 // Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags.
 // Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
-//          of a surface kept fine around the tool by tend() (adaptive_surface.hpp), and where that does not hold
+//          of a surface kept fine around the tool by slow_update() (adaptive_surface.hpp), and where that does not hold
 //          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
 //          radius of full detail, AdaptiveToolSurface::kLeastM to kMostM beyond the tool's.
 // Bodies   one, the proxy, in the hand; orders are refused.
 // Clutch   held, the force fades out; released, the proxy is at the tool again and the force fades in.
 // Reset    the proxy is at the tool, or outside where that is inside a closed surface; the force fades in.
 // Frames   tool and wrench in world, the surface in model; SceneMeta maps one to the other.
-// Thread   constructed anywhere (may throw StartupError); then servo, but for tend(). No allocation.
+// Thread   constructed anywhere (may throw StartupError); then servo, but for slow_update(). No allocation.
 #pragma once
 
 #include <array>
@@ -35,14 +35,13 @@
 #include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/shading.hpp"
+#include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
 
 namespace tact {
 
 enum class SurfaceMode : std::uint8_t { off_brute, off_tree, chr };
 inline constexpr std::array kSurfaceModeNames{"off-brute", "off-tree", "chr"};
-// What the force of a step was computed on.
-enum class SurfaceRegime : std::uint8_t { tree, adaptive, brute };
 
 // In the hand's world.
 struct SurfaceSettings {
@@ -80,7 +79,10 @@ public:
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
-    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+    [[nodiscard]] SurfaceTouch touch() const noexcept TACT_RT;
+    // Where touch() is published each cycle; before the first step. Nowhere: the default.
+    void publish_to(Latest<TouchTopic>& topic) { topic_ = &topic; }
+    void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const Contact& contact() const { return contact_; }       // of the last step
@@ -97,7 +99,7 @@ public:
     }
     [[nodiscard]] bool has_slow_update() const noexcept override { return adaptive_ != nullptr; }
     void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
-    [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
+    [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
     // Of mode chr.
     [[nodiscard]] const RefineStep& refined() const { return adaptive_->refined(); }
     [[nodiscard]] const AdaptiveSurface* adaptive() const {
@@ -123,7 +125,8 @@ private:
     std::uint64_t lagging_ = 0, released_ = 0;
     SurfaceMesh full_;
     std::unique_ptr<AdaptiveToolSurface> adaptive_;
-    SurfaceRegime regime_ = SurfaceRegime::tree;
+    TouchRegime regime_ = TouchRegime::tree;
+    Latest<TouchTopic>* topic_ = nullptr;
     std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
 };
 

@@ -145,7 +145,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
     for (std::size_t i = 0; i < held_count_ && room; ++i) {
         if (points_.is_awake(held_[i])) room = query(held_[i], expected, touch);
     }
-    // Single precision of a guard over the length of the wish.
+    // Single precision of a guard over the length of the request.
     const double tolerance = 6e-7 * (request.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
     TwistHalfSpaces::Solution free = TwistHalfSpaces::fresh(request);
     Move move;

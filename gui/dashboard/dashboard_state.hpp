@@ -1,0 +1,118 @@
+// The dashboard: what the panels of every system show (plain data that the window fills) and what a person asked for.
+//
+// Thread   frame thread, inside an ImGui frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gui/dashboard/counter_rate.hpp"
+#include "gui/dashboard/knob_changes.hpp"
+#include "gui/dashboard/lateness_window.hpp"
+#include "gui/dashboard/plot_series.hpp"
+#include "gui/dashboard/scene_toggles.hpp"
+#include "gui/dashboard/theme.hpp"
+#include "gui/dashboard/traces.hpp"
+#include "ipc/topics/command.hpp"
+#include "ipc/topics/device.hpp"
+#include "ipc/topics/frames.hpp"
+#include "ipc/topics/head.hpp"
+#include "ipc/topics/health.hpp"
+#include "ipc/topics/levels.hpp"
+#include "ipc/topics/load.hpp"
+
+namespace tact {
+
+// What a person clicked; the application turns it into a command of the controller.
+struct Request {
+    CommandKind kind = CommandKind::none;
+    double value = 0.0;
+    std::string text;
+    std::uint32_t body = 0;  // id
+    double second = 0.0;     // another number, where a command has one
+};
+
+struct SceneState {
+    bool loaded = false;
+    std::string status;  // "loading ...", or why there is none
+    std::string title, file;
+    double contour = 0.0, contour_sigma = 0.0, map_sigma = 0.0, resolution_m = 0.0;
+    std::uint32_t vertices_max = 0;
+    double mesh_error_m = 0.0;
+    std::size_t bodies = 0, atoms = 0;
+    std::array<std::uint32_t, 3> voxels{};  // of a map, or of bone
+    double voxel_m = 0.0;                   // edge, of bone
+    std::string warning;                    // the controller runs another scene, ...
+};
+
+struct EventLine {
+    std::int64_t taken_at_ns = 0;
+    std::uint16_t code = 0;
+    std::uint64_t count = 1;  // how often in a row
+    std::string text;         // of the newest of them
+    Grade grade = Grade::unknown;
+};
+
+struct History {
+    PlotSeries rate_hz, lateness_p50_s, lateness_p99_s, lateness_max_s, cycle_cost_s;
+    PlotSeries frame_s, busy_s;
+    std::array<PlotSeries, kPathsMax> level;
+    KnobChanges knobs;
+    double now_s = 0.0;
+    std::int64_t first_ns = 0;  // the monotonic clock where now_s is 0
+    [[nodiscard]] double at_s(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - first_ns); }
+};
+
+struct DashboardState {
+    bool attached = false;
+    std::string link_text;
+    std::string session;
+    bool have_health = false, have_levels = false;
+    HealthTopic health{};
+    LevelsTopic levels{};
+    bool have_devices = false, have_tracker = false;
+    DevicesTopic devices{};
+    TrackerTopic tracker{};
+    std::uint32_t recorders = 0, flights = 0;           // that record this run
+    std::array<CounterRate, kDeviceHands> device_rate;  // samples a second
+    CounterRate tracker_rate;
+    LatenessWindow lateness;
+    LoadTopic load{};
+    FrameMetrics frames{};  // twice a second
+    std::uint64_t refused_records = 0;
+    std::string command_text;  // what became of the last command
+    Grade command_grade = Grade::unknown;
+    SceneState scene;
+    History history;
+    TracesState traces;
+    std::deque<EventLine> events;  // newest first
+    std::uint64_t events_missed = 0;
+    std::int64_t now_ns = 0;
+    // The 3D view's overlay.
+    double a_per_px = 0.0;
+    float eye_axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // scene x, y, z in the eye's axes
+    double force_n = 0.0;
+    bool second_hand = false, second_at_wall = false;
+    double second_force_n = 0.0;
+    double arrow_a_per_n = 0.0;
+    std::string renderer;
+    std::string
+        stage;  // of a stereo picture: how it is shown and what becomes of the head; empty: there is none
+    bool head_lost = false;
+    // What a person chose.
+    SceneToggles toggles;
+    int span_choice = 0;      // of the plots
+    int strip = 0;            // 0: plots, 1: traces
+    int lateness_choice = 0;  // a minute, the whole run, over time
+    int tab = 0;              // of the scene card
+    // Emptied by the application.
+    std::vector<Request> requests;
+};
+
+inline constexpr std::array<double, 5> kSpans_s{60.0, 600.0, 3600.0, 6.0 * 3600.0, 24.0 * 3600.0};
+
+}  // namespace tact

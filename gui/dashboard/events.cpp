@@ -1,0 +1,40 @@
+// Events: what happened, newest first, with its age.
+#include "gui/dashboard/panels.hpp"
+#include "gui/dashboard/widgets.hpp"
+
+namespace tact {
+namespace {
+
+std::string age_text(std::int64_t ns) {
+    const double s = 1e-9 * static_cast<double>(ns);
+    if (s < 99.5) return format("%.0f s", s < 0.0 ? 0.0 : s);
+    if (s < 5970.0) return format("%.0f min", s / 60.0);
+    return format("%.0f h", s / 3600.0);
+}
+
+}  // namespace
+
+void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card) {
+    begin_card(theme, "Events", card, true);
+    if (state.events_missed > 0) {
+        ImGui::SameLine();
+        text_small(theme, colour::kWatch,
+                   format("%llu missed", static_cast<unsigned long long>(state.events_missed)), false);
+    }
+    if (state.events.empty()) text_small(theme, colour::kDim, "none yet");
+    ImGui::PushFont(theme.small);
+    for (const EventLine& e : state.events) {
+        text_coloured(colour::kDim, age_text(state.now_ns - e.taken_at_ns));
+        ImGui::SameLine(theme.px(44.0F));
+        ImGui::PushTextWrapPos(0.0F);
+        text_coloured(
+            e.grade == Grade::good || e.grade == Grade::unknown ? colour::kText : grade_colour(e.grade),
+            e.count > 1 ? e.text + format("  (%llu times)", static_cast<unsigned long long>(e.count))
+                        : e.text);
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::PopFont();
+    end_card();
+}
+
+}  // namespace tact

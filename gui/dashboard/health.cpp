@@ -1,0 +1,226 @@
+// Health: how the controller is doing, in numbers, words and colour, and the buttons that a person needs
+// first.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "gui/dashboard/panels.hpp"
+#include "gui/dashboard/widgets.hpp"
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+namespace {
+
+void buttons(const Theme& theme, DashboardState& state) {
+    const auto run_state = static_cast<RunState>(state.health.state);
+    const bool known = state.attached && state.have_health;
+    const float width = (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
+    const auto button = [&](const char* name, bool enabled, CommandKind kind, ImU32 c) {
+        ImGui::BeginDisabled(!enabled);
+        if (enabled) {
+            ImGui::PushStyleColor(ImGuiCol_Button, (c & 0x00FFFFFFU) | (0x48U << 24U));
+            ImGui::PushStyleColor(ImGuiCol_ButtonHovered, (c & 0x00FFFFFFU) | (0x80U << 24U));
+        }
+        if (ImGui::Button(name, {width, 0.0F})) state.requests.push_back({kind, 0.0, {}});
+        if (enabled) ImGui::PopStyleColor(2);
+        ImGui::EndDisabled();
+    };
+    button("Arm", known && run_state == RunState::ready, CommandKind::arm, colour::kGood);
+    ImGui::SameLine();
+    button("Disarm", known && (run_state == RunState::armed || run_state == RunState::active),
+           CommandKind::disarm, colour::kWatch);
+    ImGui::SameLine();
+    button("Reset", known && run_state == RunState::fault, CommandKind::reset_fault, colour::kBad);
+    (void)theme;
+}
+
+std::string upper(std::string word) {
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return word;
+}
+
+// The rate as a length, and the goal as a mark on it.
+void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = theme.px(5.0F);
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, {at.x + width, at.y + height}, colour::kGrid);
+    if (h.goal_hz > 0.0 && std::isfinite(h.force_rate_hz)) {
+        constexpr double kReach = 1.25;  // of the goal
+        const double share = std::clamp(h.force_rate_hz / (kReach * h.goal_hz), 0.0, 1.0);
+        draw->AddRectFilled(at, {at.x + static_cast<float>(share) * width, at.y + height}, c);
+        const float goal = at.x + width / static_cast<float>(kReach);
+        draw->AddRectFilled({goal - theme.px(1.0F), at.y - theme.px(2.0F)},
+                            {goal + theme.px(1.0F), at.y + height + theme.px(2.0F)}, colour::kText);
+    }
+    ImGui::Dummy({width, height + theme.px(2.0F)});
+}
+
+// What a device says comes in place of the state's own words: it knows more.
+void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
+    bool message = false;
+    for (const std::uint8_t code : h.device_notice) {
+        const auto notice = static_cast<DeviceNotice>(code);
+        if (notice == DeviceNotice::none) continue;
+        message = true;
+        ImGui::PushTextWrapPos(0.0F);
+        text_small(theme, grade_colour(notice_grade(notice)), device_notice_text(notice));
+        ImGui::PopTextWrapPos();
+    }
+    if (!message) text_small(theme, grade_colour(state.grade), state.text);
+}
+
+// A run that is kept says so: beside the card's title, at its right.
+void recording(const Theme& theme, const DashboardState& state) {
+    const bool whole = state.recorders > 0;
+    const std::string text = whole ? "recording" : "flight recorder on";
+    const float width = theme.small->CalcTextSizeA(theme.small->FontSize, 1e9F, 0.0F, text.c_str()).x;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float x = at.x + ImGui::GetContentRegionAvail().x - width, r = theme.px(4.0F);
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    if (whole)
+        draw->AddCircleFilled({x - 2.0F * r, at.y + 0.6F * theme.small->FontSize}, r, colour::kBad, 12);
+    draw->AddText(theme.small, theme.small->FontSize, {x, at.y}, whole ? colour::kText : colour::kDim,
+                  text.c_str());
+    ImGui::NewLine();
+}
+
+// What is read first: what the controller does and why, and its force rate against the goal.
+void hero(const Theme& theme, const DashboardState& state) {
+    const HealthTopic& h = state.health;
+    const auto run_state = static_cast<RunState>(h.state);
+    const StatusText v = state_status(run_state, static_cast<RunReason>(h.reason));
+    const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
+    badge(theme, upper(run_state_text(run_state)), grade_colour(v.grade), theme.large);
+    ImGui::SameLine();
+    ImGui::BeginGroup();  // beside it, as many lines as it takes
+    if (silent_s > 1.0) badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
+    words(theme, h, v);
+    ImGui::EndGroup();
+    const auto lines = static_cast<LinesShown>(h.lines);
+    if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
+        const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
+        text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
+                   std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
+    }
+    const StatusText rate = rate_status(h.force_rate_hz, h.goal_hz);
+    ImGui::PushFont(theme.large);
+    text_coloured(grade_colour(rate.grade), rate_text(h.force_rate_hz));
+    const float beside = ImGui::GetItemRectSize().x;
+    const ImVec2 at = ImGui::GetItemRectMin();
+    ImGui::PopFont();
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y - theme.px(1.0F)});
+    ImGui::BeginGroup();
+    text_small(theme, colour::kDim, "force rate, goal " + rate_text(h.goal_hz), false);
+    ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y + theme.small->FontSize});
+    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.text,
+               false);
+    ImGui::EndGroup();
+    ImGui::SetCursorScreenPos(below);
+    rate_bar(theme, h, grade_colour(rate.grade));
+}
+
+void timing(const Theme& theme, const DashboardState& state) {
+    const HealthTopic& h = state.health;
+    row(theme, "Lateness p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)),
+        lateness_status(h.lateness_p99_ns, h.period_ns));
+    row(theme, "Overruns", grouped(h.overruns), overrun_status(h, state.now_ns));
+}
+
+// A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
+// step's work it still does anew.
+void free_running(const Theme& theme, const HealthTopic& h) {
+    row(theme, "Recomputed", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_mean)),
+        recomputed_status(h.recomputed_fraction_mean));
+    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_least)),
+        "in the last 0.1 s");
+    row(theme, "Idle", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
+}
+
+// How long the loop is from the encoders to the motors, and what that allows.
+void delay(const Theme& theme, const HealthTopic& h) {
+    if (h.delay_p99_ns <= 0) return;
+    row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
+        format("p99; stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+}
+
+void law_and_goal(const Theme& theme, DashboardState& state) {
+    if (!state.have_levels) return;
+    std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
+    ImGui::BeginDisabled(!state.attached);
+    text_coloured(colour::kDim, "Law");
+    ImGui::SameLine(theme.px(100.0F));
+    ImGui::SetNextItemWidth(theme.px(84.0F));
+    if (ImGui::BeginCombo("##law", law.c_str())) {
+        for (const char* name : {"elastic", "sensitus", "fixed"})
+            if (ImGui::Selectable(name, law == name))
+                state.requests.push_back({CommandKind::set_law, 0.0, name});
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(theme.px(62.0F));
+    static double edited = 0.0;
+    static bool editing = false;
+    if (!editing) edited = state.levels.goal_hz;
+    ImGui::InputDouble("##goal", &edited, 0.0, 0.0, "%.0f");
+    editing = ImGui::IsItemActive();
+    if (ImGui::IsItemDeactivatedAfterEdit()) state.requests.push_back({CommandKind::set_goal_hz, edited, {}});
+    ImGui::SameLine(0.0F, theme.px(4.0F));
+    text_coloured(colour::kDim, "Hz");
+    ImGui::EndDisabled();
+}
+
+}  // namespace
+
+void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
+    begin_card(theme, "Controller", card, true);  // two hands with much to say are higher than it
+    const HealthTopic& h = state.health;
+    const bool known = state.have_health;
+    if (state.attached && state.recorders + state.flights > 0) {
+        ImGui::SameLine();
+        recording(theme, state);
+    }
+    if (!state.attached) {
+        badge(theme, known ? "GONE" : "WAITING", colour::kWatch, theme.large);
+        ImGui::PushTextWrapPos(0.0F);
+        text_coloured(colour::kWatch, state.link_text);
+        ImGui::PopTextWrapPos();
+    } else if (!known) {
+        badge(theme, "ATTACHED", colour::kWatch, theme.large);
+        text_coloured(colour::kWatch, "attached; no health data yet");
+    }
+    if (known && state.attached) hero(theme, state);
+    // Under what is read first: a device with much to say must not push them out.
+    buttons(theme, state);
+    if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
+    if (known && state.attached) {
+        if (h.period_ns > 0) {
+            timing(theme, state);
+        } else {
+            free_running(theme, h);
+        }
+        draw_device_rows(theme, state);
+        delay(theme, h);
+        StatusText picture = display_status(
+            state.load.fps, state.have_levels ? static_cast<double>(state.levels.display_goal_hz) : 0.0);
+        if (state.frames.late > 0) picture.text += ", " + grouped(state.frames.late) + " late";
+        row(theme, "Picture", format("%.0f /s", state.load.fps), picture);
+        const StatusText memory = memory_status(h);
+        if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
+        law_and_goal(theme, state);
+    }
+    if (known && state.attached) {
+        const bool clean = memory_status(h).grade == Grade::good;
+        text_small(theme, colour::kDim, schedule_text(h.schedule_flags) + (clean ? "; memory clean" : ""));
+        if (h.bad_input + state.refused_records > 0)
+            text_small(theme, colour::kWatch,
+                       format("records rejected: %llu by the controller, %llu by this window",
+                              static_cast<unsigned long long>(h.bad_input),
+                              static_cast<unsigned long long>(state.refused_records)));
+    }
+    end_card();
+}
+
+}  // namespace tact

@@ -1,0 +1,54 @@
+// A plot over time, drawn with ImGui's draw lists: axes with units, a band from least to greatest per bin.
+#pragma once
+
+#include <imgui.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gui/dashboard/plot_series.hpp"
+#include "gui/dashboard/theme.hpp"
+
+namespace tact {
+
+struct PlotLine {
+    const PlotSeries* series;
+    ImU32 colour;
+    const char* name;
+};
+
+struct PlotSpec {
+    const char* title;
+    const char* unit;
+    std::span<const PlotLine> lines;
+    double now_s = 0.0;
+    double span_s = 60.0;
+    double scale = 1.0;  // stored value -> shown value
+    bool logarithmic = false;
+    double least_top = 0.0;  // the vertical axis reaches at least this far (shown unit)
+    double fixed_top = 0.0;  // > 0: exactly this far
+    double goal = 0.0;       // > 0: a dashed line (shown unit)
+    bool steps = false;      // a value holds until the next one
+    // In place of the legend's own words, a line for each of `lines`; cut off where there is no room.
+    std::span<const std::string> text = {};
+};
+
+// Where the mouse is in it, for a caller that has words about that moment.
+struct PlotHover {
+    bool inside = false;
+    double t_s = 0.0;
+};
+PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
+
+// Borders for an axis that shows [low, high], and its marks; tested apart from drawing.
+struct Axis {
+    double low = 0.0, high = 1.0;
+    std::vector<double> mark;
+};
+[[nodiscard]] Axis linear_axis(double high, int marks_max);
+// Where 0 is not the end: whole steps around [low, high], and around the middle where both are the same.
+[[nodiscard]] Axis range_axis(double low, double high, int marks_max);
+[[nodiscard]] Axis log_axis(double low, double high);
+
+}  // namespace tact

@@ -1,0 +1,55 @@
+// Colours, fonts and sizes of the dashboard.
+//
+// Scale    1 at 1280x720; grows with the window, so that the same layout stays readable on a large screen.
+// Fonts    the first of a list of Debian's fonts that exists, else ImGui's own (and the window says so once).
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "gui/dashboard/status_text.hpp"
+
+namespace tact {
+
+namespace colour {
+inline constexpr ImU32 kGround = IM_COL32(9, 11, 15, 255);
+inline constexpr ImU32 kPanel = IM_COL32(18, 22, 29, 255);
+inline constexpr ImU32 kPanelEdge = IM_COL32(38, 46, 58, 255);
+inline constexpr ImU32 kGrid = IM_COL32(44, 52, 65, 255);
+inline constexpr ImU32 kText = IM_COL32(219, 226, 236, 255);
+inline constexpr ImU32 kDim = IM_COL32(146, 158, 175, 255);
+inline constexpr ImU32 kAccent = IM_COL32(86, 180, 233, 255);
+inline constexpr ImU32 kGood = IM_COL32(63, 195, 128, 255);
+inline constexpr ImU32 kWatch = IM_COL32(240, 180, 60, 255);
+inline constexpr ImU32 kBad = IM_COL32(255, 107, 94, 255);
+inline constexpr ImU32 kForce = IM_COL32(255, 92, 92, 255);
+inline constexpr ImU32 kNormal = IM_COL32(120, 220, 255, 255);  // of a touched place
+inline constexpr ImU32 kSecondHand = IM_COL32(178, 132, 255, 255);
+inline constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
+inline constexpr ImU32 kGreen = IM_COL32(0, 190, 140, 255);
+inline constexpr ImU32 kPink = IM_COL32(204, 121, 167, 255);
+}  // namespace colour
+
+[[nodiscard]] ImU32 grade_colour(Grade grade) noexcept;
+
+struct Theme {
+    float scale = 1.0F;
+    ImFont* text = nullptr;
+    ImFont* small = nullptr;
+    ImFont* bold = nullptr;
+    ImFont* large = nullptr;
+    std::string font_file;  // empty: ImGui's own font
+
+    [[nodiscard]] float px(float at_scale_1) const { return at_scale_1 * scale; }
+};
+
+// For a window of this size in pixels; steps of a quarter, so that fonts are rarely built anew.
+// density  of the display, 1 at 96 points an inch: what is small and dense has larger letters, as far as 1280x720 of
+//          their size still fit
+// wished   times that, by a person who sees it
+[[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
+// Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
+void build_theme(Theme& theme, float scale);
+
+}  // namespace tact

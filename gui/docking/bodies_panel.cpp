@@ -1,0 +1,117 @@
+// Bodies: who is in the hand, fixed or hidden; what the force is made of; undo, refine, snapshots, saving.
+#include "gui/dashboard/widgets.hpp"
+#include "gui/docking/docking_panels.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
+    const bool live = state.attached;
+    const float right = ImGui::GetContentRegionAvail().x;
+    for (const BodyState& b : fitting.bodies) {
+        ImGui::PushID(static_cast<int>(b.id));
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float h = ImGui::GetTextLineHeight(), r = theme.px(4.5F);
+        ImGui::GetWindowDrawList()->AddCircleFilled({at.x + r, at.y + 0.55F * h}, r, b.colour, 16);
+        ImGui::SetCursorScreenPos({at.x + theme.px(14.0F), at.y});
+        ImGui::BeginDisabled(!live);
+        ImGui::PushStyleColor(ImGuiCol_Text, b.in_hand ? colour::kAccent : colour::kText);
+        const std::string name = format("%u  %s%s", b.id, b.name.c_str(), b.in_hand ? " (held)" : "");
+        if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {right - theme.px(128.0F), 0.0F}))
+            state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
+        ImGui::PopStyleColor();
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s: %s atoms. Click to hold or release.", b.name.c_str(),
+                              grouped(b.atoms).c_str());
+        ImGui::SameLine(right - theme.px(106.0F));
+        bool fixed = b.fixed, shown = !b.hidden;
+        if (ImGui::Checkbox("fixed", &fixed))
+            state.requests.push_back({CommandKind::fix_body, fixed ? 1.0 : 0.0, {}, b.id});
+        ImGui::EndDisabled();
+        ImGui::SameLine(right - theme.px(46.0F));
+        if (ImGui::Checkbox("show", &shown)) fitting.hide_requests.emplace_back(b.id, !shown);
+        ImGui::PopID();
+    }
+}
+
+const BodyState* in_hand(const FittingState& f) {
+    for (const BodyState& b : f.bodies)
+        if (b.in_hand) return &b;
+    return nullptr;
+}
+
+void actions(const DashboardState& state, FittingState& f, std::vector<Request>& requests) {
+    const BodyState* const held = in_hand(f);
+    const std::uint32_t id = held != nullptr ? held->id : 0;
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const float width = (ImGui::GetContentRegionAvail().x - 3.0F * gap) / 4.0F;
+    int column = 0;
+    const auto button = [&](const char* name, bool enabled, const char* help) {
+        if (column++ % 4 != 0) ImGui::SameLine();
+        ImGui::BeginDisabled(!enabled || !state.attached);
+        const bool pressed = ImGui::Button(name, {width, 0.0F});
+        ImGui::EndDisabled();
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
+        return pressed;
+    };
+    const auto request = [&](FitAction action, const std::string& text = {}) {
+        f.requests.push_back({action, id, text});
+    };
+    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAction::undo);
+    if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAction::redo);
+    if (button("Accept", f.can_undo, "accept the present places; Revert returns to them (Enter)"))
+        request(FitAction::accept);
+    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAction::revert);
+    if (button("Refine", held != nullptr && !f.refining, "refine the held body from its present place (R)"))
+        request(FitAction::refine);
+    if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax, "copy the held body"))
+        request(FitAction::copy);
+    if (button("Remove", held != nullptr && f.bodies.size() > 1, "remove the held body from the scene"))
+        requests.push_back({CommandKind::remove_body, 0.0, {}, id});
+    if (button("Save", !f.saving, "PDB or mmCIF, matrix and CSV of every body, in a new folder"))
+        request(FitAction::save);
+    ImGui::BeginDisabled(!state.attached);
+    if (ImGui::Button("Snapshot", {width, 0.0F}))
+        request(FitAction::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(3.0F * width + 2.0F * gap);
+    if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "return to ...")) {
+        for (const std::string& name : f.snapshots)
+            if (ImGui::Selectable(name.c_str())) request(FitAction::restore, name);
+        ImGui::EndCombo();
+    }
+    ImGui::EndDisabled();
+}
+
+void options(const Theme& theme, DashboardState& state, const FittingState& f) {
+    ImGui::BeginDisabled(!state.attached || f.building);
+    const auto box = [&](const char* name, std::uint32_t bit, CommandKind kind, const char* help) {
+        bool on = (f.options & bit) != 0;
+        if (ImGui::Checkbox(name, &on)) state.requests.push_back({kind, on ? 1.0 : 0.0, {}});
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
+    };
+    box("Clash", kDockingClash, CommandKind::set_clash, "bodies repel each other");
+    ImGui::SameLine(theme.px(84.0F));
+    box("Subtract", kDockingSubtraction, CommandKind::set_subtraction,
+        "subtract the density that the other bodies explain");
+    ImGui::SameLine(theme.px(178.0F));
+    box("Laplacian", kDockingLaplacian, CommandKind::set_laplacian,
+        "force from the Laplacian of the map: shape counts more than density");
+    ImGui::EndDisabled();
+    if (f.building) text_small(theme, colour::kWatch, "preparing the density ...");
+}
+
+}  // namespace
+
+void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& f) {
+    list(theme, state, f);
+    ImGui::Spacing();
+    options(theme, state, f);
+    actions(state, f, state.requests);
+    if (f.refining) text_small(theme, colour::kDim, "refining ...");
+    if (f.saving) text_small(theme, colour::kDim, "saving ...");
+    if (!f.message.empty()) text_small(theme, grade_colour(f.message_grade), f.message);
+}
+
+}  // namespace tact

@@ -1,0 +1,48 @@
+// The bodies as the picture shows them: who they are, where they will be when the picture is seen.
+//
+// Follows   BodiesTopic by id, so that a body keeps its speed and its being hidden while others come and go.
+//           Until a controller has spoken: one body per structure, at home.
+// Hostile   a body of a structure that the scene does not have is not shown.
+// Thread    frame thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gui/link/pose_predictor.hpp"
+#include "ipc/topics/bodies.hpp"
+
+namespace tact {
+
+struct ShownBody {
+    std::uint32_t id = 0;
+    std::uint16_t structure = 0;
+    std::uint16_t flags = 0;  // BodyFlag
+    bool hidden = false;      // here only; it is felt all the same
+    Pose newest;              // as the controller said
+    Pose T_model_body;        // predicted
+    PosePredictor predictor;
+};
+
+class BodyList {
+public:
+    // The scene's structures at home, under the ids that a controller gives them at its start.
+    void start(std::span<const Pose> homes);
+    void follow(const BodiesTopic& topic);
+    void forget_motion();  // of another controller
+    void predict(std::int64_t now_ns);
+    void set_hidden(std::uint32_t id, bool hidden);
+
+    [[nodiscard]] std::span<const ShownBody> bodies() const { return bodies_; }
+    [[nodiscard]] std::optional<std::size_t> active() const { return active_; }  // index in bodies()
+    [[nodiscard]] const ShownBody* find(std::uint32_t id) const;
+
+private:
+    std::size_t structures_ = 0;
+    std::vector<ShownBody> bodies_, before_;
+    std::optional<std::size_t> active_;
+};
+
+}  // namespace tact

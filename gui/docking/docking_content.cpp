@@ -1,0 +1,31 @@
+#include "gui/docking/docking_content.hpp"
+
+#include <algorithm>
+
+namespace tact {
+
+void DockingContent::each_point(const std::function<void(const Vec3&)>& take) const {
+    for (const Structure& s : bodies)
+        for (std::size_t i = 0; i < s.size(); ++i)
+            take(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
+}
+
+const DockingContent& docking_of(const SceneContent& content) {
+    static const DockingContent kNone;
+    const DockingContent* const docking = content.of<DockingContent>();
+    return docking != nullptr ? *docking : kNone;
+}
+
+std::unique_ptr<SystemContent> read_docking(SceneFile file, SceneContent& content) {
+    auto docking = std::make_unique<DockingContent>();
+    const std::uint32_t bodies = std::min(file.count({'B', 'O', 'D', 'Y'}), content.meta.body_count);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        docking->bodies.push_back(read_structure(file, i));
+        docking->codebooks.push_back(i < file.count({'C', 'O', 'D', 'E'}) ? read_codebook(file, i)
+                                                                          : Codebook{});
+        docking->bonds.push_back(find_bonds(docking->bodies.back()));
+    }
+    return docking;
+}
+
+}  // namespace tact

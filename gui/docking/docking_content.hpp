@@ -1,0 +1,26 @@
+// What a docking scene has beside its map and mesh: structures, their codebooks and bonds.
+#pragma once
+
+#include <vector>
+
+#include "gui/docking/bonds.hpp"
+#include "gui/render/scene_content.hpp"
+#include "ipc/scene/density/structure.hpp"
+
+namespace tact {
+
+class DockingContent : public SystemContent {
+public:
+    std::vector<Structure> bodies;
+    std::vector<Codebook> codebooks;       // one per body
+    std::vector<std::vector<Bond>> bonds;  // one list per body
+
+    void each_point(const std::function<void(const Vec3&)>& take) const override;
+};
+
+// Of the scene; without bodies where it is of another system.
+[[nodiscard]] const DockingContent& docking_of(const SceneContent& content);
+// Throws StartupError naming the file.
+[[nodiscard]] std::unique_ptr<SystemContent> read_docking(SceneFile file, SceneContent& content);
+
+}  // namespace tact

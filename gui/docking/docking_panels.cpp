@@ -1,0 +1,83 @@
+// The scene's card of docking: bodies, contours, and what is loaded, at which contour, and what of it is drawn.
+#include "gui/docking/docking_panels.hpp"
+
+#include <array>
+#include <span>
+
+#include "gui/dashboard/widgets.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+void scene_rows(const Theme& theme, const DashboardState& state) {
+    const SceneState& s = state.scene;
+    row(theme, "Contour", format("%.4g", s.contour), format("map units, %.2f σ", s.contour_sigma));
+    row(theme, "Map", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
+        s.resolution_m > 0.0 ? format("%.1f Å", s.resolution_m / kAngstromM)
+                             : std::string("resolution not known"));
+    row(theme, "Structure", grouped(s.atoms),
+        s.bodies == 1 ? std::string("atoms, 1 body") : format("atoms, %zu bodies", s.bodies));
+    row(theme, "Surface", grouped(state.load.vertices_drawn),
+        format("of %s vertices", grouped(s.vertices_max).c_str()));
+    if (s.mesh_error_m > 0.0) {
+        ImGui::SameLine();
+        text_coloured(colour::kDim, format("±%.2g Å", s.mesh_error_m / kAngstromM));
+    }
+}
+
+void toggles(const Theme& theme, SceneToggles& t) {
+    const float second = theme.px(104.0F), third = theme.px(196.0F);
+    ImGui::Checkbox("Surface", &t.surface);
+    ImGui::SameLine(second);
+    ImGui::Checkbox("Bodies", &t.backbone);
+    ImGui::SameLine(third);
+    ImGui::Checkbox("Force", &t.force);
+    ImGui::Checkbox("Codebook", &t.codebook);
+    ImGui::SameLine(second);
+    ImGui::Checkbox("Graph", &t.graph);
+    ImGui::SameLine(third);
+    ImGui::Checkbox("Map box", &t.box);
+    ImGui::Checkbox("Depth cue", &t.depth_cue);
+    ImGui::SameLine(second);
+    ImGui::Checkbox("Frame times", &t.frame_times);
+    ImGui::SameLine(third);
+    ImGui::Checkbox("Smooth", &t.smooth_edges);
+    static constexpr std::array<const char*, 4> kMolecule{"trace", "tube", "sticks", "spheres"};
+    static constexpr std::array<const char*, 3> kColouring{"by chain", "by element", "by body"};
+    static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
+    const auto choice = [&](const char* what, std::span<const char* const> words, int& chosen) {
+        text_coloured(colour::kDim, what);
+        ImGui::SameLine(second);
+        ImGui::PushID(what);
+        choose(theme, words, chosen);
+        ImGui::PopID();
+    };
+    choice("Bodies as", kMolecule, t.molecule);
+    choice("Coloured", kColouring, t.colouring);
+    choice("Surface as", kSurface, t.style);
+}
+
+}  // namespace
+
+void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) {
+    static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));
+    ImGui::SameLine(0.0F, theme.px(14.0F));
+    choose(theme, kTabs, state.tab);
+    if (state.tab == 0) {
+        draw_bodies_tab(theme, state, fitting);
+    } else if (state.tab == 1) {
+        draw_contours_tab(theme, contours);
+    } else {
+        scene_rows(theme, state);
+        toggles(theme, state.toggles);
+    }
+    ImGui::PopStyleVar();
+}
+
+std::string DockingPanels::drawn_text(const DashboardState& state) const {
+    return format("%s vertices", grouped(state.load.vertices_drawn).c_str());
+}
+
+}  // namespace tact

@@ -1,0 +1,103 @@
+// The panels of a docking scene: bodies, their fit, contours of the map. Plain data that the window fills and takes.
+//
+// Thread   frame thread, inside an ImGui frame.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gui/dashboard/dashboard_state.hpp"
+#include "gui/dashboard/pixel_rect.hpp"
+#include "gui/system/system_panels.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
+#include "ipc/topics/bodies.hpp"
+
+namespace tact {
+
+// What a person asked to be done with the bodies that takes more than one command.
+enum class FitAction : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
+struct FitRequest {
+    FitAction action = FitAction::undo;
+    std::uint32_t body = 0;  // id: copy, refine, revert
+    std::string text;        // name of a snapshot
+};
+
+struct BodyState {
+    std::uint32_t id = 0;
+    std::string name;
+    std::size_t atoms = 0;
+    bool in_hand = false, fixed = false, hidden = false;
+    ImU32 colour = colour::kText;
+};
+
+struct FittingState {
+    std::vector<BodyState> bodies;
+    std::uint32_t options = 0;  // DockingOption, as felt now
+    bool building = false;      // the controller prepares another density
+    bool refining = false, saving = false;
+    bool can_undo = false, can_redo = false;
+    std::size_t gestures = 0;  // that can be undone
+    std::vector<std::string> snapshots;
+    std::string message;  // what the last action did
+    Grade message_grade = Grade::unknown;
+    // Emptied by the window.
+    std::vector<FitRequest> requests;
+    std::vector<std::pair<std::uint32_t, bool>> hide_requests;  // id, hidden
+};
+
+// What the metrics of a fit mean: ipc/scene/fit/fit_metrics.hpp.
+struct FitState {
+    bool known = false;
+    std::string status;  // "computing", or why there is none
+    FitMetrics all;      // of all bodies together
+    std::size_t bodies = 0;
+    std::uint32_t body_id = 0;  // of the one in the hand; 0: none
+    FitMetrics body;
+    double resolution_m = 0.0;
+    bool resolution_assumed = false;
+    bool pose_known = false;
+    double from_file_m = 0.0, from_file_rad = 0.0;
+};
+
+struct ContourRow {
+    // What a person chose.
+    double level = 0.0;  // in the map's unit
+    float colour[3] = {1.0F, 1.0F, 1.0F};
+    float opacity = 1.0F;
+    int style = 0;  // as the view, glass, solid, wire
+    bool shown = true;
+    // What it means and how far it is.
+    double sigma = 0.0, fraction_inside = 0.0;
+    bool final = true;
+    std::string error;
+};
+
+struct ContourRowState {
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    std::vector<ContourRow> row;
+    std::size_t rows_max = 1;
+    std::vector<std::uint64_t> histogram;  // voxels, bins of equal width from least to greatest
+    double least = 0.0, greatest = 0.0;    // of the map, in its unit
+    bool changed = false, add = false;     // what a person did; for the application to take
+    std::size_t dragged = kNone, removed = kNone;
+};
+
+class DockingPanels : public SystemPanels {
+public:
+    FitState fit;
+    FittingState fitting;
+    ContourRowState contours;
+
+    [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
+    void draw_card(const Theme& theme, const PixelRect& card) const override;  // of the fit
+    void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
+    [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
+};
+
+// The scene card's tabs.
+void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& fitting);
+void draw_contours_tab(const Theme& theme, ContourRowState& contours);
+
+}  // namespace tact

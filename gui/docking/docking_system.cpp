@@ -1,0 +1,157 @@
+#include "gui/docking/docking_system.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "gui/docking/contour_rows.hpp"
+#include "gui/link/region_checks.hpp"
+
+namespace tact {
+namespace {
+
+// Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
+// (tests/bench/draw_bench.cpp).
+constexpr std::size_t kShapesMaxInSoftware = 8000;
+
+}  // namespace
+
+void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
+                        SceneView& view, const SystemContext& context) {
+    static_cast<void>(start);
+    content_ = content;
+    view_ = &view;
+    layer_ = std::make_unique<DockingLayer>(content, view.programs());
+    view.set_layer(layer_.get());
+    if (!options_.empty()) view.contours().set(contours_of(options_, content->scale));
+    if (context.software) layer_->molecules().set_shapes_max(kShapesMaxInSoftware);
+    begin_contours(view.contours(), content->scale, panels_.contours);
+    std::vector<Pose> homes;
+    for (const Structure& structure : docking_of(*content).bodies) homes.push_back(structure.home());
+    list_.start(homes);
+    if (context.controller.have_bodies) list_.follow(context.controller.bodies);
+    fit_controller_.use(content);
+}
+
+void DockingSystem::close() {
+    if (view_ != nullptr) view_->set_layer(nullptr);
+    view_ = nullptr;
+    layer_.reset();
+    content_.reset();
+    list_.start({});
+    fit_controller_.use(nullptr);
+}
+
+void DockingSystem::describe(const SceneContent& content, SceneState& scene) const {
+    const DockingContent& docking = docking_of(content);
+    scene.bodies = docking.bodies.size();
+    for (const Structure& s : docking.bodies) scene.atoms += s.size();
+}
+
+void DockingSystem::attach(const SystemContext& context) {
+    static_cast<void>(context);
+    list_.forget_motion();
+}
+
+void DockingSystem::read(const Controller::Fresh& fresh, const SystemContext& context) {
+    if (fresh.bodies) list_.follow(context.controller.bodies);
+}
+
+bool DockingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
+    const auto active = list_.active();
+    const std::uint32_t held = active ? list_.bodies()[*active].id : 0;
+    const auto fit = [&](FitAction request) { panels_.fitting.requests.push_back({request, held, {}}); };
+    const auto select = [&](std::uint32_t body) {
+        context.state.requests.push_back({CommandKind::select_body, 0.0, {}, body});
+    };
+    switch (what) {
+        case KeyAction::raise_contour:
+            turn_wheel(1.0);
+            return true;
+        case KeyAction::lower_contour:
+            turn_wheel(-1.0);
+            return true;
+        case KeyAction::take_body:
+            if (place < list_.bodies().size() && context.controller.attached())
+                select(list_.bodies()[place].id);
+            return true;
+        case KeyAction::let_go:
+            if (context.controller.attached()) select(kNoBody);
+            return true;
+        case KeyAction::undo:
+            fit(FitAction::undo);
+            return true;
+        case KeyAction::redo:
+            fit(FitAction::redo);
+            return true;
+        case KeyAction::refine:
+            if (held != 0) fit(FitAction::refine);
+            return true;
+        case KeyAction::accept:
+            fit(FitAction::accept);
+            return true;
+        case KeyAction::revert:
+            fit(FitAction::revert);
+            return true;
+        default:
+            return false;
+    }
+}
+
+void DockingSystem::turn_wheel(double steps) {
+    if (content_) nudge_contour(panels_.contours, content_->scale, steps);
+}
+
+void DockingSystem::adapt() {
+    if (view_ != nullptr) follow_contours(view_->contours(), content_->scale, panels_.contours);
+}
+
+void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& context) {
+    list_.predict(now_ns);
+    const BodiesTopic* const topic = context.controller.attached() && context.controller.have_bodies
+                                         ? &context.controller.bodies
+                                         : nullptr;
+    FittingState& fitting = panels_.fitting;
+    std::vector<Command> commands;
+    for (const auto& [id, hidden] : fitting.hide_requests) list_.set_hidden(id, hidden);
+    for (const FitRequest& request : fitting.requests) fit_controller_.perform(request, list_, commands);
+    fitting.hide_requests.clear();
+    fitting.requests.clear();
+    fit_controller_.follow(list_, topic, commands);
+    if (topic != nullptr)
+        for (const Command& command : commands) context.commands.send(command, now_ns);
+    fit_controller_.describe(list_, topic, fitting, panels_.fit);
+}
+
+void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
+    static_cast<void>(sharp);
+    follow_bodies(now_ns, context);
+    drawn_.clear();
+    for (const ShownBody& b : list_.bodies()) drawn_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
+    if (const auto active = list_.active()) frame.force_at_model_m = drawn_[*active].T_model_body.p_m;
+    const SceneToggles& t = context.state.toggles;
+    const Controller& c = context.controller;
+    const PathLevel* const force = c.have_levels ? find_path(c.levels, kDockingPath) : nullptr;
+    layer_->frame = {t.backbone, t.codebook, t.graph, drawn_, force != nullptr ? force->items : 0};
+    layer_->molecules().set_look(
+        {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
+}
+
+void DockingSystem::drawn(const SystemContext& context) {
+    static_cast<void>(context);
+    const std::size_t left_out = layer_->molecules().left_out();
+    if (left_out == left_out_) return;
+    left_out_ = left_out;
+    if (left_out > 0)
+        spdlog::info(
+            "bodies drawn as tubes, as this renderer has no time for "
+            "their atoms: {}",
+            left_out);
+}
+
+void DockingSystem::finish(const SystemContext& context) {
+    static_cast<void>(context);
+    fit_controller_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
+}
+
+}  // namespace tact

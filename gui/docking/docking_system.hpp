@@ -1,0 +1,52 @@
+// Docking in the window: bodies, their fit, and contours of the map.
+//
+// Thread   frame thread
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gui/docking/body_list.hpp"
+#include "gui/docking/contour_option.hpp"
+#include "gui/docking/docking_layer.hpp"
+#include "gui/docking/docking_panels.hpp"
+#include "gui/docking/fit_controller.hpp"
+#include "gui/system/scene_system.hpp"
+
+namespace tact {
+
+class DockingSystem : public SceneSystem {
+public:
+    // contours: in place of the scene's own; empty: that.
+    explicit DockingSystem(std::vector<ContourOption> contours) : options_(std::move(contours)) {}
+
+    [[nodiscard]] SystemPanels& panels() override { return panels_; }
+    void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
+             SceneView& view, const SystemContext& context) override;
+    void close() override;
+    void describe(const SceneContent& content, SceneState& scene) const override;
+    void attach(const SystemContext& context) override;
+    void read(const Controller::Fresh& fresh, const SystemContext& context) override;
+    bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
+    void turn_wheel(double steps) override;
+    void adapt() override;
+    void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+    void drawn(const SystemContext& context) override;
+    void finish(const SystemContext& context) override;
+
+private:
+    void follow_bodies(std::int64_t now_ns, const SystemContext& context);
+
+    const std::vector<ContourOption> options_;
+    DockingPanels panels_;
+    std::shared_ptr<const SceneContent> content_;
+    SceneView* view_ = nullptr;
+    std::unique_ptr<DockingLayer> layer_;
+    FitController fit_controller_;
+    BodyList list_;
+    std::vector<DrawnBody> drawn_;
+    std::size_t left_out_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,52 @@
+// What a person does with the bodies beyond holding them: measure, undo, refine, copy, take snapshots, save.
+//
+// Reads    the bodies as the controller publishes them; changes them only by commands, which it returns
+// Does     the slow work beside the frame loop: metrics and refinement on threads, saving in tact-prep
+// Thread   frame thread
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gui/base/child_job.hpp"
+#include "gui/docking/body_list.hpp"
+#include "gui/docking/docking_panels.hpp"
+#include "gui/docking/fit_history.hpp"
+#include "gui/docking/fit_worker.hpp"
+#include "gui/docking/refine_worker.hpp"
+#include "gui/link/command_sender.hpp"
+
+namespace tact {
+
+class FitController {
+public:
+    // Another scene, or none: everything begins anew.
+    void use(std::shared_ptr<const SceneContent> content);
+    // Once a frame; topic: of the attached controller, or null. Commands that became due are added.
+    void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);
+    void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
+    // At the end: a save under way is let end, for so long at the most.
+    void finish_saving(Duration patience);
+    // For the panels.
+    void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit) const;
+
+private:
+    void report(Grade grade, std::string text);
+    void copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands);
+    void save(const BodyList& list);
+    void place(std::span<const FitHistory::Move> moves, const BodyList& list, std::vector<Command>& commands);
+
+    std::shared_ptr<const SceneContent> content_;
+    std::unique_ptr<FitWorker> fit_;
+    std::unique_ptr<RefineWorker> refine_;
+    FitOutcome outcome_;
+    FitHistory history_;
+    ChildJob saving_;
+    std::string saving_to_;
+    std::string message_;
+    Grade message_grade_ = Grade::unknown;
+    std::vector<FitBody> bodies_;
+};
+
+}  // namespace tact

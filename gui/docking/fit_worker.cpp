@@ -1,0 +1,102 @@
+#include "gui/docking/fit_worker.hpp"
+
+#include "gui/docking/docking_content.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+
+#include "ipc/base/units.hpp"
+
+namespace tact {
+
+bool moved(std::span<const FitBody> a, std::span<const FitBody> b) {
+    return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FitBody& x, const FitBody& y) {
+        return x.id == y.id && x.structure == y.structure &&
+               (x.T_model_body.p_m - y.T_model_body.p_m).norm() <= 0.01 * kAngstromM &&
+               x.T_model_body.q.angularDistance(y.T_model_body.q) <= 0.01 * kDegreeRad;
+    });
+}
+
+FitWorker::FitWorker(std::shared_ptr<const SceneContent> content, Duration pause)
+    : content_(std::move(content)), pause_(pause), thread_([this] { work(); }) {}
+
+FitWorker::~FitWorker() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void FitWorker::request(std::span<const FitBody> bodies) {
+    {
+        const std::lock_guard lock(mutex_);
+        requested_.clear();
+        std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(requested_),
+                     [&](const FitBody& b) { return b.structure < docking_of(*content_).bodies.size(); });
+    }
+    changed_.notify_all();
+}
+
+bool FitWorker::take(FitOutcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    if (outcome_.number == outcome.number) return false;
+    outcome = outcome_;
+    return true;
+}
+
+void FitWorker::work() {
+    // Nice values belong to threads on Linux. That it may fail (it never does upwards) changes nothing.
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
+    std::vector<FitBody> places;
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || (!requested_.empty() && moved(requested_, places)); });
+        if (stop_) return;
+        places = requested_;
+        const std::uint64_t number = outcome_.number + 1;
+        lock.unlock();
+        FitOutcome outcome = compute(places);
+        outcome.number = number;
+        lock.lock();
+        outcome_ = std::move(outcome);
+        const Duration rest =
+            std::max(pause_, std::chrono::nanoseconds(static_cast<std::int64_t>(1e10 * outcome_.compute_s)));
+        if (changed_.wait_for(lock, rest, [&] { return stop_; })) return;
+    }
+}
+
+FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
+    FitOutcome outcome;
+    const Instant begun = Monotonic::now();
+    outcome.resolution_m = content_->meta.resolution_m;
+    if (!(outcome.resolution_m > 0.0)) {
+        outcome.resolution_m = 3.0 * content_->grid.spacing_m.maxCoeff();
+        outcome.resolution_assumed = true;
+    }
+    std::vector<PlacedStructure> placed;
+    for (const FitBody& b : bodies)
+        placed.push_back({&docking_of(*content_).bodies[b.structure], b.T_model_body});
+    outcome.body = std::move(bodies);
+    try {
+        FitOfBodies fit = fit_of_bodies(content_->grid, placed,
+                                        {.resolution_m = outcome.resolution_m,
+                                         .contour = content_->meta.contour,
+                                         .background = content_->meta.map_background,
+                                         .sigma = content_->meta.map_sigma});
+        outcome.all = fit.all;
+        outcome.of = std::move(fit.body);
+        outcome.good = true;
+    } catch (const std::exception& e) {
+        outcome.error = e.what();
+    }
+    outcome.compute_s = to_s(Monotonic::now() - begun);
+    return outcome;
+}
+
+}  // namespace tact

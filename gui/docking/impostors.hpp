@@ -1,0 +1,63 @@
+// Spheres and sticks drawn as impostors: a quad each, on which the fragment shader meets the eye's ray with
+// the true shape. Round at any size, with the depth and the light of every pixel its own.
+//
+// Quad     the bounds of the shape seen in perspective, at its nearest point; all corners have one depth, so
+//          that what is interpolated is exact. A shape that reaches the eye is not drawn.
+// Depth    of the surface that is met: impostors cut each other and meshes where the shapes do.
+// Thread   frame thread, context current.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gui/docking/atom_shapes.hpp"
+#include "gui/render/elements.hpp"
+#include "gui/render/looks.hpp"
+#include "gui/render/shading.hpp"
+
+namespace tact {
+
+// What one draw needs to know beside the shapes.
+struct ImpostorView {
+    Eigen::Matrix4f eye_from_local, projection;  // local: ångström
+    const Haze& haze;
+    Colouring colouring = Colouring::chain;
+    Rgb8 body{255, 255, 255};  // where by body
+};
+
+// The shapes of one structure in graphics memory, shared by all its copies.
+class ImpostorShapes {
+public:
+    void fill(std::span<const Sphere> spheres);
+    void fill(std::span<const Stick> sticks);
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] bool filled() const { return filled_; }
+    void draw();
+
+private:
+    template <class Shape>
+    void send(std::span<const Shape> shapes);
+    GlVertexArray array_;
+    GlBuffer vertices_, indices_;
+    std::size_t count_ = 0;
+    bool filled_ = false;
+};
+
+class ImpostorPrograms {
+public:
+    ImpostorPrograms();
+    void use_spheres(const ImpostorView& view);
+    void use_sticks(const ImpostorView& view);
+
+private:
+    struct Program {
+        Program(const char* what, const char* vertex, const char* fragment);
+        void use(const ImpostorView& view) const;
+        GlProgram program;
+        ViewUniforms view;
+        GLint pick, body;
+    };
+    Program spheres_, sticks_;
+};
+
+}  // namespace tact

@@ -1,0 +1,69 @@
+// The bodies of a scene, each in the style and colouring that a person chose for it.
+//
+// Shared   what a structure needs on the graphics card is made when a style is first drawn, once for all its
+//          copies; a body brings its pose alone.
+// Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, as many as bonds and atoms:
+//          easy for a graphics card, dear where the processor draws. Of one frame, at most shapes_max are
+//          drawn (set_shapes_max); bodies that find no room are drawn as tubes, and left_out() counts them.
+// Thread   frame thread, context current.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gui/docking/impostors.hpp"
+#include "gui/render/looks.hpp"
+#include "gui/render/programs.hpp"
+#include "gui/render/scene_content.hpp"
+#include "gui/render/triangle_buffers.hpp"
+
+namespace tact {
+
+// A body as it is to be drawn now. Copies share a structure.
+struct DrawnBody {
+    Pose T_model_body;
+    std::uint32_t structure = 0;  // of the scene
+    std::uint32_t id = 0;         // names the body for the setters below
+    bool hidden = false;
+};
+
+class Molecules {
+public:
+    static constexpr std::size_t kTubeVertices = 20000;  // of all structures together
+    static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+
+    Molecules(std::shared_ptr<const SceneContent> content, Programs& programs);
+
+    void set_look(const MoleculeLook& look);  // of all bodies, also of those to come
+    void set_look(std::uint32_t id, const MoleculeLook& look);
+    [[nodiscard]] MoleculeLook look(std::uint32_t id) const;
+    void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
+
+    // Opaque; depth test and depth writing on.
+    void draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& eye_from_scene,
+              const Eigen::Matrix4f& projection, const Haze& haze);
+    // Bodies of the last draw() that were to be sticks or spheres and were drawn as tubes.
+    [[nodiscard]] std::size_t left_out() const { return left_out_; }
+
+private:
+    struct OfStructure {
+        TriangleBuffers tube;
+        ImpostorShapes trace, sticks, spheres;
+    };
+    ImpostorShapes& shapes(std::size_t structure, MoleculeStyle style);
+    void draw_tube(std::size_t structure, const ImpostorView& view);
+
+    std::shared_ptr<const SceneContent> content_;
+    Programs& programs_;
+    std::unique_ptr<ImpostorPrograms> impostors_;  // compiled when first needed
+    std::vector<OfStructure> structures_;
+    MoleculeLook look_;
+    std::map<std::uint32_t, MoleculeLook> look_of_;
+    std::size_t shapes_max_ = kNoLimit, left_out_ = 0;
+};
+
+}  // namespace tact

@@ -1,0 +1,142 @@
+#include "gui/drilling/bone_field.hpp"
+
+#include <algorithm>
+
+namespace tact {
+
+BoneField::BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now,
+                     std::span<const std::uint8_t> free_cells)
+    : baked_(baked), labels_(labels), now_(now) {
+    const auto n = now.bricks.bricks();
+    constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
+    for (std::size_t i = 0; i < 3; ++i) cells_[i] = n[i] * kCellsOfBrick;
+    free_.resize(std::size_t{cells_[0]} * cells_[1] * cells_[2]);
+    if (free_cells.size() == free_.size())
+        std::copy(free_cells.begin(), free_cells.end(), free_.begin());
+    else
+        measure();
+}
+
+std::uint8_t BoneField::solid(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    const std::size_t v = now_.bricks.voxel(x, y, z);
+    return solid_of(now_.density[v], baked_.density[v], label(v));
+}
+
+void BoneField::solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const {
+    const std::size_t first = std::size_t{brick} * BoneBricks::kVoxels;
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = solid_of(now_.density[first + i], baked_.density[first + i], label(first + i));
+}
+
+double BoneField::reach_voxels(const Vec3& centre) const {
+    double most = 0.0;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+        if (free_[i] != 0) continue;
+        const Vec3 at(static_cast<double>(i % cells_[0]), static_cast<double>(i / cells_[0] % cells_[1]),
+                      static_cast<double>(i / cells_[0] / cells_[1]));
+        most = std::max(most, ((at.array() + 0.5) * double{kCell} - centre.array()).matrix().norm());
+    }
+    return most;
+}
+
+// Between two voxels the surface may come as near as their midpoint, or a whole edge where one is solid: with the
+// voxels about a cell counted, nothing of it lies in an empty one.
+bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) const {
+    const std::array<std::uint32_t, 3> c{cx, cy, cz};
+    std::array<std::uint32_t, 3> from{}, to{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        from[i] = c[i] * kCell - (c[i] > 0 ? 1 : 0);
+        to[i] = std::min((c[i] + 1) * kCell + 1, now_.bricks.size[i]);
+    }
+    for (std::uint32_t z = from[2]; z < to[2]; ++z)
+        for (std::uint32_t y = from[1]; y < to[1]; ++y)
+            for (std::uint32_t x = from[0]; x < to[0]; ++x)
+                if (solid(x, y, z) >= kSurface) return false;
+    return true;
+}
+
+bool BoneField::changed(std::uint32_t brick) {
+    constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
+    const auto n = now_.bricks.bricks();
+    const std::array<std::uint32_t, 3> at{brick % n[0] * kCellsOfBrick, brick / n[0] % n[1] * kCellsOfBrick,
+                                          brick / n[0] / n[1] * kCellsOfBrick};
+    for (std::uint32_t z = at[2]; z < at[2] + kCellsOfBrick; ++z)
+        for (std::uint32_t y = at[1]; y < at[1] + kCellsOfBrick; ++y)
+            for (std::uint32_t x = at[0]; x < at[0] + kCellsOfBrick; ++x) {
+                std::uint8_t& cell = free_[(std::size_t{z} * cells_[1] + y) * cells_[0] + x];
+                const bool none = empty(x, y, z);
+                if (cell > 0 && !none) {
+                    measure();
+                    return false;
+                }
+                if (none) cell = std::max(cell, std::uint8_t{1});
+            }
+    return true;
+}
+
+void BoneField::mark_own() {
+    std::fill(free_.begin(), free_.end(), std::uint8_t{1});
+    const auto n = now_.bricks.bricks();
+    constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
+    std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
+    for (std::uint32_t b = 0; b < now_.bricks.brick_count(); ++b) {
+        solids(b, voxels);
+        const std::uint32_t bx = b % n[0], by = b / n[0] % n[1], bz = b / n[0] / n[1];
+        for (std::uint32_t i = 0; i < voxels.size(); ++i) {
+            if (voxels[i] < kSurface) continue;
+            const std::uint32_t x = i % 8 / kCell, y = i / 8 % 8 / kCell, z = i / 64 / kCell;
+            free_[(std::size_t{bz * kCellsOfBrick + z} * cells_[1] + by * kCellsOfBrick + y) * cells_[0] +
+                  bx * kCellsOfBrick + x] = 0;
+        }
+    }
+}
+
+// Distances by two sweeps: forward from the thirteen neighbours before a cell, backward from those behind.
+void BoneField::measure() {
+    constexpr int kMost = 255;
+    const std::uint32_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
+    const auto place = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+        return (std::size_t{z} * ny + y) * nx + x;
+    };
+    mark_own();
+    // free_ is 1 where a cell's own voxels are all clear. Only where a neighbour's are not, voxels decide.
+    std::vector<std::uint8_t> none(free_.size());
+    for (std::uint32_t z = 0; z < nz; ++z)
+        for (std::uint32_t y = 0; y < ny; ++y)
+            for (std::uint32_t x = 0; x < nx; ++x) {
+                bool clear = true;
+                for (std::uint32_t c = z > 0 ? z - 1 : 0; c < std::min(z + 2, nz); ++c)
+                    for (std::uint32_t b = y > 0 ? y - 1 : 0; b < std::min(y + 2, ny); ++b)
+                        for (std::uint32_t a = x > 0 ? x - 1 : 0; a < std::min(x + 2, nx); ++a)
+                            clear = clear && free_[place(a, b, c)] != 0;
+                none[place(x, y, z)] = clear || (free_[place(x, y, z)] != 0 && empty(x, y, z)) ? 1 : 0;
+            }
+    for (std::size_t i = 0; i < free_.size(); ++i)
+        free_[i] = none[i] != 0 ? static_cast<std::uint8_t>(kMost) : std::uint8_t{0};
+    const auto sweep = [&](bool back) {
+        for (std::size_t n = 0; n < free_.size(); ++n) {
+            const std::size_t i = back ? free_.size() - 1 - n : n;
+            int least = free_[i];
+            if (least == 0) continue;
+            const auto x = static_cast<int>(i % nx), y = static_cast<int>(i / nx % ny),
+                       z = static_cast<int>(i / nx / ny);
+            for (int k = 0; k < 13; ++k) {
+                const int s = back ? -1 : 1;
+                const int dx = s * (k % 3 - 1), dy = s * (k / 3 % 3 - 1), dz = s * (k / 9 - 1);
+                const int ax = x + dx, ay = y + dy, az = z + dz;
+                if (ax < 0 || ay < 0 || az < 0 || ax >= static_cast<int>(nx) || ay >= static_cast<int>(ny) ||
+                    az >= static_cast<int>(nz))
+                    continue;
+                least = std::min(least,
+                                 free_[place(static_cast<std::uint32_t>(ax), static_cast<std::uint32_t>(ay),
+                                             static_cast<std::uint32_t>(az))] +
+                                     1);
+            }
+            free_[i] = static_cast<std::uint8_t>(std::min(least, kMost));
+        }
+    };
+    sweep(false);
+    sweep(true);
+}
+
+}  // namespace tact

@@ -1,0 +1,64 @@
+#include "gui/drilling/drilling_layer.hpp"
+
+#include <algorithm>
+
+#include "gui/render/scene_frame.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+void DrillingLayer::draw_structures(const LayerPass& pass) {
+    const std::size_t count = std::min(frame.tools.size(), tool_.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const DrawnDrillTool& tool = frame.tools[i];
+        ToolInHand& hand = tool_[i];
+        if (!tool.same_shape(hand.shape)) {
+            hand.mesh.fill(build_drill_tool(tool), GL_STATIC_DRAW);
+            hand.shape = tool;
+        }
+        Pose turned = tool.T_model_tool;
+        turned.q = turned.q * Quat(Eigen::AngleAxisd(tool.turned_rad, Vec3::UnitZ()));
+        pass.programs.use_lit(pass.eye_from_scene * scene_from_body(turned, centre_model_m_), pass.projection,
+                              pass.haze, {});
+        hand.mesh.draw();
+    }
+}
+
+void DrillingLayer::draw_volume(const LayerPass& pass) {
+    if (!bone_) return;
+    const PassClock::Scope scope(pass.passes, Pass::bone);
+    try {
+        bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, pass.x_px, pass.y_px, pass.width_px,
+                     pass.height_px, frame.bone_rays / static_cast<std::uint32_t>(pass.eyes), pass.eye,
+                     frame.bone_fill_s});
+    } catch (const StartupError& e) {
+        bone_error_ = e.what();
+        bone_.reset();
+        glViewport(pass.x_px, pass.y_px, pass.width_px, pass.height_px);
+    }
+}
+
+void DrillingLayer::draw_fluids(const LayerPass& pass) {
+    if (frame.particles == nullptr) return;
+    if (frame.time_particles) {  // what is left of the bone is not theirs
+        const PassClock::Scope scope(pass.passes, Pass::bone);
+        glFinish();
+    }
+    const PassClock::Scope scope(pass.passes, Pass::particles);
+    if (!cloud_) cloud_ = std::make_unique<ParticleCloud>();
+    const ParticleCells& cells = frame.particles->cells();
+    const Instant begin = Monotonic::now();
+    cloud_->fill(frame.particles->shown());
+    Eigen::Matrix4f model_from_cells = Eigen::Matrix4f::Identity();
+    model_from_cells.topLeftCorner<3, 3>() *= static_cast<float>(cells.cell_m());
+    model_from_cells.topRightCorner<3, 1>() = cells.to_model(Vec3::Zero()).cast<float>();
+    cloud_->draw({pass.eye_from_scene * scene_from_model(centre_model_m_) * model_from_cells, pass.projection,
+                  static_cast<float>(cells.cell_m()) * kSceneAPerM, pass.haze, pass.x_px, pass.y_px,
+                  pass.width_px, pass.height_px});
+    if (!frame.time_particles) return;
+    glFinish();
+    particles_draw_s_ = to_s(Monotonic::now() - begin);
+}
+
+}  // namespace tact

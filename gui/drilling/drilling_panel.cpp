@@ -1,0 +1,106 @@
+// Drilling: the tools, what they took, the force, and how far the burr is from each structure to keep away from.
+#include <algorithm>
+#include <cmath>
+
+#include "gui/dashboard/widgets.hpp"
+#include "gui/drilling/drilling_panel.hpp"
+
+namespace tact {
+namespace {
+
+std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
+
+void tools(const Theme& theme, const DrillingState& d) {
+    static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
+    const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
+    std::string does =
+        d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stopped";
+    if (d.burr.water) does += ", water";
+    row(theme, "Burr", size, does);
+    if (d.suction_tube.there)
+        row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),
+            d.suction_tube.suction ? "suction on" : "suction off");
+}
+
+void metrics(const Theme& theme, const DrillingState& d) {
+    row(theme, "Bone removed", fixed(1e9 * d.removed_m3, 1) + " mm³",
+        format("in %.0f s of drilling", d.drilling_s));
+    row(theme, "Force", fixed(d.force_n, 2) + " N", force_status(d.force_n, d.excess_s));
+    row(theme, "Strokes", grouped(d.strokes),
+        d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
+                      : std::string());
+}
+
+void structure(const Theme& theme, const DrillingState& d, const DrillingState::Structure& s) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float edge = theme.px(8.0F), h = ImGui::GetTextLineHeight();
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x, at.y + 0.5F * (h - edge)}, {at.x + edge, at.y + 0.5F * (h + edge)}, s.colour, theme.px(2.0F));
+    ImGui::SetCursorScreenPos({at.x + edge + theme.px(5.0F), at.y});
+    const StatusText v = distance_status(s.burr_m, s.closing_m_s, d.burr.rpm > 0.0);
+    const bool calm = v.grade == Grade::good;
+    text_coloured(calm ? colour::kDim : colour::kText, s.name);
+    ImGui::SameLine(theme.px(122.0F));
+    text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
+    if (calm) return;
+    ImGui::SameLine(0.0F, theme.px(8.0F));
+    text_coloured(grade_colour(v.grade), v.text);
+}
+
+void tip(const DrillingState& d) {
+    if (!ImGui::IsItemHovered()) return;
+    std::string text = "Distance from the burr surface to each critical structure; negative inside it.";
+    if (d.suction_tube.there)
+        for (const auto& s : d.structures)
+            if (s.suction_tube_m < 2e-3)
+                text += "\nsuction tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
+    ImGui::SetTooltip("%s", text.c_str());
+}
+
+}  // namespace
+
+void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+    const DrillingState& d = drilling;
+    begin_card(theme, "Drilling", card, true);
+    if (!d.known) {
+        text_small(theme, colour::kDim, "no tool: waiting for the controller");
+    } else {
+        if (d.injuries > 0) {
+            ImGui::SameLine();
+            badge(theme, format("%llu injured", static_cast<unsigned long long>(d.injuries)), colour::kBad);
+        }
+        tools(theme, d);
+        metrics(theme, d);
+        if (d.structures.empty()) {
+            text_small(theme, colour::kDim,
+                       d.labelled ? "No labelled structure is critical (tact drill --critical)."
+                                  : "No labels, so no warnings (tact drill --labels).");
+        } else {
+            text_small(theme, colour::kDim, "Distance from the burr to");
+            tip(d);
+            for (const DrillingState::Structure& s : d.structures) structure(theme, d, s);
+        }
+    }
+    end_card();
+}
+
+void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) {
+    const SceneState& s = state.scene;
+    row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
+        format("of %.3g mm", 1e3 * s.voxel_m));
+    row(theme, "File", s.file, "");
+    ImGui::Checkbox("Frame times", &state.toggles.frame_times);
+    ImGui::SameLine(theme.px(130.0F));
+    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
+}
+
+std::string DrillingPanels::drawn_text(const DashboardState& state) const {
+    std::string text;
+    if (bone_shown < 1.0F) text = format("loading bone, %.0f %%   ", 100.0 * static_cast<double>(bone_shown));
+    // Only what changed is drawn again.
+    text += state.load.vertices_drawn <= 1 ? std::string("sharp")
+                                           : format("%s rays", grouped(state.load.vertices_drawn).c_str());
+    return text + format("   %s particles", grouped(state.load.particles).c_str());
+}
+
+}  // namespace tact

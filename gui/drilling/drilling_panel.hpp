@@ -1,0 +1,52 @@
+// The panels of drilling: plain data that the window fills.
+//
+// Thread   frame thread, inside an ImGui frame.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gui/dashboard/pixel_rect.hpp"
+#include "gui/dashboard/theme.hpp"
+#include "gui/system/system_panels.hpp"
+
+namespace tact {
+
+// A tool that drills or sucks, in the hand's space.
+struct ToolDescription {
+    bool there = false;
+    int shape = 0;  // ball, cylinder, cone
+    double diameter_m = 0.0, length_m = 0.0;
+    double rpm = 0.0;  // 0: it stands
+    bool water = false, suction = false;
+    double depth = 0.0;  // of its radius, in bone
+};
+
+struct DrillingState {
+    struct Structure {
+        std::string name;
+        ImU32 colour = colour::kText;
+        double burr_m = 0.0, closing_m_s = 0.0;  // below zero: in it
+        double suction_tube_m = 1e9;
+    };
+    bool known = false, labelled = false;
+    ToolDescription burr, suction_tube;
+    double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
+    std::uint64_t strokes = 0, injuries = 0;
+    double stroke_m = 0.0, stroke_m_s = 0.0;
+    std::vector<Structure> structures;  // to keep away from, the nearest first
+};
+
+class DrillingPanels : public SystemPanels {
+public:
+    DrillingState drilling;
+    float bone_shown = 1.0F;  // share of the bone that is in graphics memory
+
+    [[nodiscard]] CardSize card_size() const override { return {300.0F, 0.37F}; }
+    void draw_card(const Theme& theme, const PixelRect& card) const override;
+    void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
+    [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
+};
+
+}  // namespace tact

@@ -1,0 +1,182 @@
+#include "gui/drilling/drilling_system.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kFillS = 12e-3;       // of a picture, for bone that goes into graphics memory
+constexpr float kBurrsShown = 4.0F;    // radii about a burr that is looked at
+constexpr float kArrowShare = 0.012F;  // of the force's arrow, which must not hide the burr
+
+}  // namespace
+
+void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
+                         std::unique_ptr<SceneStart> start, SceneView& view, const SystemContext& context) {
+    content_ = content;
+    view_ = &view;
+    reach_a_ = 0.0F;
+    site_.reset();
+    layer_ = std::make_unique<DrillingLayer>(content->centre_model_m);
+    view.set_layer(layer_.get());
+    auto* const made = dynamic_cast<DrillStart*>(start.get());
+    bone_.use(made != nullptr ? std::move(made->follower) : nullptr);
+    controller_.use(content);
+    bone_.meet(context.controller);
+    const BoneContent* const bone = content->of<BoneContent>();
+    if (bone == nullptr || made == nullptr) return;
+    site_ = std::move(made->site);
+    site_->keep(options_.particles);
+    layer_->show_bone(*bone, *bone_.volume());
+    reach_a_ = layer_->bone()->reach_a();
+}
+
+void DrillingSystem::close() {
+    if (view_ != nullptr) view_->set_layer(nullptr);
+    view_ = nullptr;
+    layer_.reset();
+    site_.reset();
+    bone_.use(nullptr);
+    controller_.use(nullptr);
+    content_.reset();
+    reach_a_ = 0.0F;
+    panels_.drilling = {};
+    panels_.bone_shown = 1.0F;
+}
+
+void DrillingSystem::describe(const SceneContent& content, SceneState& scene) const {
+    const BoneContent* const bone = content.of<BoneContent>();
+    if (bone == nullptr) return;
+    scene.voxels = bone->volume.bricks.size;
+    scene.voxel_m = bone->volume.bricks.voxel_m;
+}
+
+void DrillingSystem::attach(const SystemContext& context) {
+    bone_.meet(context.controller);
+    controller_.meet();
+}
+
+void DrillingSystem::follow(const SystemContext& context) {
+    bone_.follow();
+    controller_.follow(context.controller, bone_.changes(), context.state, panels_.drilling);
+}
+
+bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
+    static_cast<void>(place);
+    if (what != KeyAction::approach_burr) return false;
+    approach_burr(context);
+    return true;
+}
+
+void DrillingSystem::approach_burr(const SystemContext& context) const {
+    const Controller& controller = context.controller;
+    if (!content_ || !controller.attached() || !controller.have_drill) return;
+    const DrillHand& hand = controller.drill.hand[0];
+    if (hand.kind == DrillKind::none) return;
+    const Vec3 at(hand.pos_model_m[0], hand.pos_model_m[1], hand.pos_model_m[2]);
+    const double radius_m = static_cast<double>(hand.radius_m) / content_->meta.world_per_model;
+    context.camera.approach(((at - content_->centre_model_m) / kAngstromM).cast<float>(),
+                            kBurrsShown * static_cast<float>(radius_m / kAngstromM));
+}
+
+void DrillingSystem::move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) {
+    if (!site_) return;
+    const Controller& controller = context.controller;
+    if (const PathLevel* const path = controller.level(kParticlesPath)) particles_level_ = path->level;
+    const bool told = controller.attached() && controller.have_drill;
+    site_->step({frame_s, told ? &controller.drill : nullptr, bone_.changes(), particles_share(context),
+                 eye_model_m});
+}
+
+float DrillingSystem::particles_share(const SystemContext& context) const {
+    const Controller& controller = context.controller;
+    const bool by_hand = controller.have_levels &&
+                         std::string_view(controller.levels.law) == "fixed";  // ends with 0, as was checked
+    if (!context.software || by_hand) return particles_level_;
+    return std::min(particles_level_,
+                    static_cast<float>(particle_pace_.most()) / static_cast<float>(SiteEffects::kMost));
+}
+
+std::uint32_t DrillingSystem::rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context) {
+    if (const PathLevel* const path = context.controller.level(kVolumePath))
+        rays_share_ = static_cast<double>(path->level);
+    const double pixels = static_cast<double>(frame.width_px) * frame.height_px;
+    if (sharp) return static_cast<std::uint32_t>(pixels);
+    const auto rays = static_cast<std::uint32_t>(std::lround(rays_share_ * pixels));
+    return context.software ? std::min(rays, ray_pace_.rays_most()) : rays;
+}
+
+void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
+                             const SystemContext& context) {
+    static_cast<void>(now_ns);
+    const Controller& controller = context.controller;
+    if (site_) {
+        DrillingLayer::Frame& drawn = layer_->frame = {};
+        drawn.bone_rays = rays_most(frame, sharp, context);
+        if (!sharp) drawn.bone_fill_s = kFillS;
+        if (BoneView* const bone = layer_->bone())
+            for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
+        if (controller.attached() && controller.have_drill)
+            drawn.tools = hands_.follow(controller.drill, content_->meta);
+        drawn.particles = &site_->particles();
+        drawn.time_particles = context.software;
+        if (!drawn.tools.empty()) {
+            frame.force_at_model_m = drawn.tools.front().T_model_tool.p_m;
+            frame.force_thickness = kArrowShare;
+        }
+    }
+    if (near_burr_wanted_ && controller.have_drill && controller.drill.hand[0].depth > 0.0F) {
+        near_burr_wanted_ = false;
+        approach_burr(context);
+    }
+}
+
+void DrillingSystem::drawn(const SystemContext& context) {
+    if (!layer_->bone_error().empty()) context.state.scene.warning = layer_->bone_error();
+    panels_.bone_shown = layer_->bone() != nullptr ? layer_->bone()->filled() : 1.0F;
+    if (site_ && context.software)
+        particle_pace_.took(site_->particles().shown().size(), layer_->particles_draw_s());
+}
+
+void DrillingSystem::ended(double work_s) {
+    if (layer_ && layer_->bone() != nullptr) ray_pace_.took(layer_->bone()->rays(), work_s);
+}
+
+void DrillingSystem::add_to(LoadTopic& load) const {
+    if (site_) {
+        load.particles = site_->metrics().shown;
+        load.particle_moves = std::min(site_->metrics().moves, site_->metrics().most);
+        load.particles_max = site_->metrics().most;
+    }
+    const BoneView* const bone = layer_ ? std::as_const(*layer_).bone() : nullptr;
+    if (bone != nullptr) {
+        load.vertices_max = bone->rays_max();
+        load.vertices_drawn = std::clamp(bone->rays(), 1U, load.vertices_max);
+    }
+}
+
+void DrillingSystem::finish(const SystemContext& context) {
+    const Controller& controller = context.controller;
+    std::optional<BurrVisibility> visibility;
+    if (site_) {
+        visibility = {site_->metrics().drilling_s, site_->metrics().seen_s};
+        const Ledger& l = site_->particles().ledger();
+        spdlog::info(
+            "levels of bone: {} taken by the controller, {} seen to go while shown: {} sucked, {} carried, "
+            "{} left, {} "
+            "given up, {} too few for a grain",
+            controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
+            l.left, l.given_up, l.pooled);
+    }
+    controller_.save(options_.report, visibility);
+}
+
+}  // namespace tact

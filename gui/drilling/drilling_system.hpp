@@ -1,0 +1,77 @@
+// Drilling in the window: the bone as it is now, what flies and flows about the burr, the tools, distances and a trainee's
+// report.
+//
+// Start     a large volume goes into graphics memory over many pictures; a share of it is seen meanwhile, and said
+// Levels    "gui.volume" and "gui.particles" stay as the controller last told. Where the processor draws, no more than fit
+//           a picture by the clock; of particles not where a person fixed the level.
+// Thread    frame thread
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gui/drilling/bone_controller.hpp"
+#include "gui/drilling/drill_controller.hpp"
+#include "gui/drilling/drill_hands.hpp"
+#include "gui/drilling/drill_start.hpp"
+#include "gui/drilling/drilling_layer.hpp"
+#include "gui/drilling/drilling_panel.hpp"
+#include "gui/drilling/particle_pace.hpp"
+#include "gui/drilling/ray_pace.hpp"
+#include "gui/drilling/site_effects.hpp"
+#include "gui/system/scene_system.hpp"
+
+namespace tact {
+
+struct DrillingOptions {
+    std::string report;           // JSON, at the end; empty: none
+    std::uint32_t particles = 0;  // there are always so many over the bone (SiteEffects::keep())
+    bool near_burr = false;       // the view goes there once the burr is in bone
+};
+
+class DrillingSystem : public SceneSystem {
+public:
+    explicit DrillingSystem(DrillingOptions options) : options_(std::move(options)) {}
+
+    [[nodiscard]] SystemPanels& panels() override { return panels_; }
+    void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
+             SceneView& view, const SystemContext& context) override;
+    void close() override;
+    void describe(const SceneContent& content, SceneState& scene) const override;
+    [[nodiscard]] float home_reach_a() const override { return reach_a_; }
+    void attach(const SystemContext& context) override;
+    void detach() override { bone_.leave(); }
+    void follow(const SystemContext& context) override;
+    bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
+    void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) override;
+    [[nodiscard]] bool second_hand_is_pen() const override { return false; }
+    void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+    void drawn(const SystemContext& context) override;
+    void ended(double work_s) override;
+    void add_to(LoadTopic& load) const override;
+    void finish(const SystemContext& context) override;
+
+private:
+    [[nodiscard]] std::uint32_t rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context);
+    [[nodiscard]] float particles_share(const SystemContext& context) const;
+    void approach_burr(const SystemContext& context) const;
+
+    const DrillingOptions options_;
+    DrillingPanels panels_;
+    std::shared_ptr<const SceneContent> content_;
+    SceneView* view_ = nullptr;
+    BoneController bone_;
+    std::unique_ptr<SiteEffects> site_;     // goes before the bone that it reads
+    std::unique_ptr<DrillingLayer> layer_;  // likewise
+    ParticlePace particle_pace_;
+    RayPace ray_pace_;
+    float particles_level_ = 1.0F;
+    double rays_share_ = 1.0;  // of the pixels
+    float reach_a_ = 0.0F;     // of the bone as it was when it came; 0: none is drawn
+    bool near_burr_wanted_ = options_.near_burr;
+    DrillController controller_;
+    DrillHands hands_;
+};
+
+}  // namespace tact

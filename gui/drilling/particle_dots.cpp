@@ -1,0 +1,43 @@
+#include "gui/drilling/particle_dots.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tact {
+namespace {
+
+bool wet(const Particle& p) { return p.matter != Matter::dust; }
+
+// A number of the cell that it lies in: what rests does not flicker when others are removed before it.
+std::uint8_t shade_of(const std::array<float, 3>& at) {
+    auto bits = static_cast<std::uint32_t>(at[0]) * 73856093U ^
+                static_cast<std::uint32_t>(at[1]) * 19349663U ^ static_cast<std::uint32_t>(at[2]) * 83492791U;
+    bits ^= bits >> 15U;
+    bits *= 2246822519U;
+    return static_cast<std::uint8_t>(bits >> 24U);
+}
+
+}  // namespace
+
+DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDot>& dots) {
+    dots.resize(particles.size());
+    DotRanges ranges;
+    ranges.fluids_low.fill(std::numeric_limits<float>::max());
+    ranges.fluids_high.fill(std::numeric_limits<float>::lowest());
+    // Grains from the front, what is wet from the back: one pass, no second list.
+    std::size_t back = dots.size();
+    for (const Particle& p : particles) {
+        const bool fluid = wet(p);
+        ParticleDot& dot = dots[fluid ? --back : ranges.grains++];
+        dot = {p.at, p.matter, shade_of(p.at), {}};
+        if (!fluid) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+            ranges.fluids_low[i] = std::min(ranges.fluids_low[i], p.at[i]);
+            ranges.fluids_high[i] = std::max(ranges.fluids_high[i], p.at[i]);
+        }
+    }
+    ranges.fluids = dots.size() - back;
+    return ranges;
+}
+
+}  // namespace tact

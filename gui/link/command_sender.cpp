@@ -1,0 +1,50 @@
+#include "gui/link/command_sender.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "ipc/topics/text.hpp"
+
+namespace tact {
+
+bool CommandSender::send(const Command& wanted, std::int64_t now_ns) {
+    CommandTopic command{};
+    if (wanted.text.size() >= sizeof command.text) return false;
+    command.sequence = ++sequence_;
+    command.taken_at_ns = now_ns;
+    command.value = wanted.value;
+    command.kind = static_cast<std::uint16_t>(wanted.kind);
+    command.body = wanted.body;
+    const Eigen::Vector4d q = wanted.T_model_body.q.coeffs();  // x, y, z, w
+    std::copy_n(wanted.T_model_body.p_m.data(), 3, command.pos_model_m);
+    std::copy_n(q.data(), 4, command.quat_model_body_xyzw);
+    std::memcpy(command.text, wanted.text.data(), wanted.text.size());
+    ring_.push(command);
+    kind_ = wanted.kind;
+    sent_at_ns_ = now_ns;
+    stage_ = Stage::sent;
+    text_ = std::string(command_kind_text(wanted.kind)) + ": sent";
+    return true;
+}
+
+void CommandSender::update(const HealthTopic& health, std::int64_t now_ns) {
+    if (stage_ != Stage::sent && stage_ != Stage::unanswered) return;
+    if (health.command_sequence == sequence_) {
+        const auto result = static_cast<CommandResult>(health.command_result & 0xFFFFU);
+        stage_ = result == CommandResult::done ? Stage::done : Stage::refused;
+        text_ = std::string(command_kind_text(kind_)) + ": " + command_result_text(result);
+    } else if (now_ns - sent_at_ns_ > kPatience_ns) {
+        stage_ = Stage::unanswered;
+        text_ = std::string(command_kind_text(kind_)) + ": the controller has not answered";
+    }
+}
+
+void CommandSender::forget() {
+    if (stage_ == Stage::sent || stage_ == Stage::unanswered) {
+        stage_ = Stage::unanswered;
+        text_ = std::string(command_kind_text(kind_)) + ": the controller went before it answered";
+    }
+    if (stage_ != Stage::unanswered) stage_ = Stage::none;
+}
+
+}  // namespace tact

@@ -1,0 +1,15 @@
+// The tool that touches a surface, as a solid body: smooth where its facets are within some 35 degrees.
+//
+// Frame   tool, ångström. Pure; SurfaceLayer draws it where the proxy is.
+#pragma once
+
+#include "gui/render/tube.hpp"
+#include "ipc/scene/mesh/touch_tool.hpp"
+
+namespace tact {
+
+inline constexpr Rgb8 kToolColour{196, 203, 214};
+
+[[nodiscard]] TubeMesh build_drawn_tool(const TouchTool& tool);
+
+}  // namespace tact

@@ -1,0 +1,45 @@
+#include "gui/surface/surface_system.hpp"
+
+#include "gui/surface/touch_show.hpp"
+
+namespace tact {
+
+void SurfaceSystem::use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
+                        SceneView& view, const SystemContext& context) {
+    static_cast<void>(start);
+    content_ = content;
+    view_ = &view;
+    layer_ = std::make_unique<SurfaceLayer>(content);
+    view.set_layer(layer_.get());
+    // What is touched is hard: only a contour lets one see what is inside.
+    context.state.toggles.style = static_cast<int>(SurfaceStyle::solid);
+    detail_.use(content, panels_.detail);
+}
+
+void SurfaceSystem::close() {
+    if (view_ != nullptr) view_->set_layer(nullptr);
+    view_ = nullptr;
+    layer_.reset();
+    content_.reset();
+    detail_ = {};
+    panels_.detail = {};
+}
+
+void SurfaceSystem::describe(const SceneContent& content, SceneState& scene) const {
+    static_cast<void>(content), static_cast<void>(scene);
+}
+
+void SurfaceSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
+    static_cast<void>(now_ns), static_cast<void>(sharp);
+    const Controller& controller = context.controller;
+    SceneToggles& t = context.state.toggles;
+    if (const auto pen = touching_pen(controller, *content_)) frame.hand = pen;
+    const bool touched = controller.attached() && controller.have_touch;
+    if (const auto made = detail_.follow(touched ? &controller.touch : nullptr, t.detail, panels_.detail,
+                                         context.state.requests))
+        layer_->show_detail(*made);
+    layer_->frame = {t.detail && t.surface, touching_tool(controller, *content_), {}};
+    if (t.force) layer_->frame.touch = touch_marks(controller);
+}
+
+}  // namespace tact

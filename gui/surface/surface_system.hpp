@@ -1,0 +1,32 @@
+// A surface that is touched, in the window: the tool, what holds it off, and the detail about it.
+//
+// Thread   frame thread
+#pragma once
+
+#include <memory>
+
+#include "gui/surface/detail_controller.hpp"
+#include "gui/surface/surface_layer.hpp"
+#include "gui/surface/surface_panels.hpp"
+#include "gui/system/scene_system.hpp"
+
+namespace tact {
+
+class SurfaceSystem : public SceneSystem {
+public:
+    [[nodiscard]] SystemPanels& panels() override { return panels_; }
+    void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
+             SceneView& view, const SystemContext& context) override;
+    void close() override;
+    void describe(const SceneContent& content, SceneState& scene) const override;
+    void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+
+private:
+    SurfacePanels panels_;
+    std::shared_ptr<const SceneContent> content_;
+    SceneView* view_ = nullptr;
+    std::unique_ptr<SurfaceLayer> layer_;
+    DetailController detail_;
+};
+
+}  // namespace tact

@@ -1,0 +1,129 @@
+#include "gui/system/keys.hpp"
+
+#include <algorithm>
+
+namespace tact {
+namespace {
+
+constexpr KeyStroke typed_key(char c) { return {KeyCode::character, c, false, false}; }
+constexpr KeyStroke control_key(char c) { return {KeyCode::character, c, true, false}; }
+constexpr KeyStroke named_key(KeyCode code) { return {code, '\0', false, false}; }
+
+// Force goes on by two keys together and off by the widest one.
+constexpr auto kKeyRows = [] {
+    using enum KeyWhen;
+    return std::to_array<KeyRow>({
+        {{}, 0, always, KeyAction::none, "left drag", "rotate"},
+        {{}, 0, always, KeyAction::none, "right drag", "pan"},
+        {{}, 0, always, KeyAction::none, "wheel", "zoom"},
+        {{}, 0, bodies, KeyAction::none, "Alt+wheel", "contour level"},
+        {named_key(KeyCode::escape), 0, sheet, KeyAction::close_sheet, "Esc", "close this table"},
+        {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
+        {named_key(KeyCode::space), 0, controller, KeyAction::disarm, "Space", "disarm: no force"},
+        {{KeyCode::enter, '\0', true, false}, 0, controller, KeyAction::arm, "Ctrl+Enter", "arm"},
+        {named_key(KeyCode::home), 0, always, KeyAction::home, "Home", "home view"},
+        {typed_key('f'), 0, bone, KeyAction::approach_burr, "F", "close view of the burr"},
+        {typed_key('s'), 0, always, KeyAction::style, "S", "surface: glass, solid, wire"},
+        {typed_key('x'), 0, stereo, KeyAction::swap_eyes, "X", "stereo: swap the eyes"},
+        {typed_key('+'), 0, bodies, KeyAction::raise_contour, "+", "contour level up"},
+        {typed_key('-'), 0, bodies, KeyAction::lower_contour, "-", "contour level down"},
+        {typed_key('1'), '9', bodies, KeyAction::take_body, "1 ... 9", "hold that body"},
+        {typed_key('0'), 0, bodies, KeyAction::let_go, "0", "release all bodies"},
+        {control_key('z'), 0, bodies, KeyAction::undo, "Ctrl+Z", "undo the last gesture"},
+        {control_key('y'), 0, bodies, KeyAction::redo, "Ctrl+Y", "redo"},
+        {{KeyCode::character, 'z', true, true},
+         0,
+         bodies,
+         KeyAction::redo,
+         "Ctrl+Shift+Z",
+         "redo the last gesture"},
+        {typed_key('r'), 0, bodies, KeyAction::refine, "R", "refine the body in the hand"},
+        {named_key(KeyCode::enter), 0, bodies, KeyAction::accept, "Enter",
+         "accept the places; undo stops here"},
+        {named_key(KeyCode::escape), 0, bodies, KeyAction::revert, "Esc", "back to the last accepted places"},
+        {typed_key('k'), 0, always, KeyAction::calibrate, "K", "calibrate the stereo screen"},
+        {typed_key('t'), 0, calibrating, KeyAction::measure, "T", "measure the point, or stop"},
+        {typed_key('n'), 0, calibrating, KeyAction::skip_point, "N", "the next point"},
+        {typed_key('b'), 0, calibrating, KeyAction::redo_point, "B", "repeat the last point"},
+        {named_key(KeyCode::enter), 0, calibrating, KeyAction::next_step, "Enter", "next step"},
+        {control_key('s'), 0, calibrating, KeyAction::save_calibration, "Ctrl+S", "save the calibration"},
+        {typed_key('x'), 0, calibrating, KeyAction::swap_calibrated_eyes, "X", "swap the eyes"},
+        {named_key(KeyCode::escape), 0, calibrating, KeyAction::leave_calibration, "Esc",
+         "leave the calibration"},
+        {typed_key('o'), 0, always, KeyAction::open_browser, "O", "open another scene"},
+        {typed_key('p'), 0, always, KeyAction::picture, "P", "save a picture"},
+        {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment for the flight recorder"},
+        {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
+    });
+}();
+
+constexpr char last_character(const KeyRow& row) {
+    return row.last != '\0' ? row.last : row.stroke.character;
+}
+
+constexpr int precedence(KeyWhen when) {
+    return when == KeyWhen::sheet ? 2 : when == KeyWhen::browser ? 1 : 0;
+}
+
+}  // namespace
+
+std::span<const KeyRow> key_rows() noexcept { return kKeyRows; }
+
+bool applies(KeyWhen when, const KeySituation& now) noexcept {
+    using enum KeyWhen;
+    switch (when) {
+        case always:
+            return true;
+        case sheet:
+            return now.sheet;
+        case browser:
+            return now.browser;
+        case bodies:
+            return now.bodies;
+        case bone:
+            return now.bone;
+        case stereo:
+            return now.stereo;
+        case controller:
+            return now.controller;
+        case calibrating:
+            return now.calibrating;
+    }
+    return false;
+}
+
+KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
+    KeyFound found;
+    for (const KeyRow& row : kKeyRows) {
+        if (row.action == KeyAction::none || !applies(row.when, now)) continue;
+        KeyStroke of_row = row.stroke;
+        if (row.stroke.code == KeyCode::character && stroke.character >= row.stroke.character &&
+            stroke.character <= last_character(row))
+            of_row.character = stroke.character;
+        if (of_row != stroke) continue;
+        if (found.row == nullptr || precedence(row.when) > precedence(found.row->when))
+            found = {&row, stroke.character - row.stroke.character};
+    }
+    return found;
+}
+
+bool collide(const KeyRow& a, const KeyRow& b) noexcept {
+    using enum KeyWhen;
+    if (a.action == KeyAction::none || b.action == KeyAction::none) return false;
+    if (precedence(a.when) != precedence(b.when)) return false;  // one of them comes first
+    const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
+    if (of_scenes) return false;  // no scene is both
+    const auto of_picture = [](KeyWhen when) { return when == bodies || when == bone || when == stereo; };
+    if ((a.when == calibrating && of_picture(b.when)) || (b.when == calibrating && of_picture(a.when)))
+        return false;  // it takes the picture's place
+    const KeyStroke &p = a.stroke, &q = b.stroke;
+    return p.code == q.code && p.control == q.control && p.shift == q.shift &&
+           p.character <= last_character(b) && q.character <= last_character(a);
+}
+
+int sheet_columns(int rows, int rows_high, int columns_wide) noexcept {
+    constexpr int kLong = 16;  // seen at a glance; a longer one hides the scene over its whole height
+    return columns_wide >= 2 && rows > std::min(rows_high, kLong) ? 2 : 1;
+}
+
+}  // namespace tact

@@ -1,0 +1,232 @@
+#include "gui/window/app.hpp"
+
+#include <csignal>
+
+#include <imgui.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "gui/window/app_parts.hpp"
+#include "gui/window/show_controller.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+void on_signal(int number) { stop_signal = number; }
+
+void catch_signals() {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);
+}
+
+}  // namespace
+
+GuiApp::GuiApp(const GuiOptions& options)
+    : options_(options),
+      controller_(options.session, region_.fd()),
+      commands_(region_->commands),
+      window_(options.width_px, options.height_px, options.hidden, options.ui_scale) {
+    for (const SystemRow& row : system_rows()) systems_.push_back(row.make(options_));
+    region_.mark_ready();
+    state_.session = options.session;
+    state_.history.first_ns = first_ns_;
+    state_.strip = options.traces ? 1 : 0;
+    state_.renderer = window_.renderer();
+    if (options.plain) {
+        view_options_.gradient = false;
+        const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(colour::kGround);
+        view_options_.plain_ground = Eigen::Vector3f(ground.x, ground.y, ground.z);
+        state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
+    }
+    view_options_.depth_cue = options.depth_cue;
+    if (!options.window_state_file.empty()) {
+        state_.toggles = options.window_state.toggles;
+        state_.toggles.style = SceneToggles{}.style;  // of the scene
+        state_.span_choice = options.window_state.span_choice;
+        state_.lateness_choice = options.window_state.lateness_choice;
+    }
+    state_.toggles.smooth_edges = !window_.software();
+    fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
+    if (options.stage.mode != StereoMode::off) make_stage(options.stage);
+    if (!options.scene.empty())
+        start_loading(options.scene);
+    else
+        state_.scene.status = "No scene yet: it comes from the controller, or give one as an argument.";
+    if (options.calibrate || options.test_picture) open_calibration(options.test_picture);
+    spdlog::info("drawing with {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
+}
+
+SystemContext GuiApp::context() { return {controller_, commands_, state_, camera_, window_.software()}; }
+
+int GuiApp::run() {
+    const Instant begun = Monotonic::now();
+    for (bool last = false; !last;) {
+        const Instant now = Monotonic::now();
+        // A picture is asked for to see the scene, so the time is not over before it is there.
+        const bool picture_waits = pictures_.wanted_at_end() && loader_.running();
+        last = stop_signal != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
+               (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
+        frame(now, last && pictures_.wanted_at_end());
+        if (!last) clock_.pace(fps_max_);
+    }
+    keep_window_state();
+    for (const auto& system : systems_) system->finish(context());
+    write_frame_report(options_.frames, frame_metrics(clock_, passes_));
+    if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
+    return pictures_.failed() ? 1 : 0;
+}
+
+void GuiApp::frame(Instant now, bool take_picture) {
+    clock_.begin(due_s());
+    passes_.begin_frame();
+    window_.begin_frame(theme_);
+    const bool of_series = pictures_.series_due(now, view_ != nullptr);
+    sharp_ = of_series || take_picture;
+    const std::int64_t now_ns = to_ns(now);
+    state_.now_ns = now_ns;
+    state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
+    follow_controller(now_ns);
+    follow_scene();
+    if (const auto dropped = window_.take_dropped(); !dropped.empty()) browser_.drop(dropped, state_.browser);
+    browser_.follow(state_.browser);
+    system().follow(context());
+    handle_input();
+    {
+        const PassClock::Scope scope(&passes_, Pass::adapt);
+        system().adapt();
+        follow_calibration(now_ns);
+        apply_level();
+        clock_.end_part(FramePart::adapt);
+        if (view_) view_->upload();
+        clock_.end_part(FramePart::upload);
+    }
+    if (content_) {
+        const PassClock::Scope scope(&passes_, Pass::motion);
+        system().move(clock_.frame_s(),
+                      content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>(), context());
+    }
+    clock_.end_part(FramePart::particles);
+    draw_scene(now_ns);
+    if (of_series) pictures_.save_of_series(window_.picture(), drawn_view_);
+    clock_.end_part(FramePart::scene);
+    draw_panels();
+    clock_.end_part(FramePart::panels);
+    if (take_picture) {
+        pictures_.save_at_end(window_.picture());
+        if (stage_ && (view_ || calibration_.open())) pictures_.save_stage(stage_->pictures());
+    }
+    if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
+    {
+        const PassClock::Scope scope(&passes_, Pass::swap);
+        window_.show();
+    }
+    passes_.end_frame();
+    clock_.end_part(FramePart::swap);
+    if (view_) system().ended(clock_.work_s());
+    publish_load();
+    publish_frames();
+}
+
+void GuiApp::follow_controller(std::int64_t now_ns) {
+    const Controller::News news = controller_.poll();
+    if (news.left) {
+        spdlog::warn("the controller of session {} is gone; waiting for the next", options_.session);
+        commands_.forget();
+        for (const auto& system : systems_) system->detach();
+    }
+    if (news.arrived) {
+        for (const auto& system : systems_) system->attach(context());
+        spdlog::info("attached to the controller of session {}", options_.session);
+        second_hand_.forget();
+        commands_.forget();
+        forget_rates(state_);
+        traces_place_ = {};
+        std::string path = controller_.scene_path();
+        if (options_.scene.empty() && !path.empty() &&
+            (!content_ || content_->checksum != controller_.scene_checksum()))
+            start_loading(path);
+    }
+    const Controller::Fresh fresh = controller_.read();
+    system().read(fresh, context());
+    if (fresh.second) second_hand_.follow(controller_.second);
+    if (fresh.health) add_health(controller_.health, state_.history);
+    add_rates(controller_, fresh, state_);
+    add_cycles(controller_, traces_place_, state_);
+    trace_export_.follow(state_.traces);
+    if (controller_.have_health) commands_.update(controller_.health, now_ns);
+    show_controller(controller_, commands_, state_);
+}
+
+void GuiApp::draw_panels() {
+    const PassClock::Scope scope(&passes_, Pass::dashboard);
+    const ImGuiIO& io = ImGui::GetIO();
+    draw_dashboard(theme_, state_, system().panels(), io.DisplaySize.x, io.DisplaySize.y);
+    window_.draw_panels();
+    for (const Request& request : state_.requests)
+        if (!commands_.send({request.kind,
+                             request.value,
+                             request.text,
+                             request.body,
+                             {Vec3(request.second, 0.0, 0.0), Quat::Identity()}},
+                            state_.now_ns))
+            spdlog::warn("a command with a text too long was not sent");
+    state_.requests.clear();
+}
+
+void GuiApp::publish_load() {
+    LoadTopic load{};
+    load.taken_at_ns = to_ns(Monotonic::now());
+    load.frame = clock_.frame();
+    load.levels_sequence = controller_.have_levels ? controller_.levels.sequence : 0;
+    load.frame_s = clock_.frame_s();
+    load.busy_s = clock_.work_s() - (window_.paced_by_display() ? clock_.part_s(FramePart::swap) : 0.0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(FramePart::count); ++i)
+        load.part_s[i] = clock_.part_s(static_cast<FramePart>(i));
+    load.cpu_s = FrameClock::process_cpu_s();
+    load.fps = clock_.fps();
+    const bool drawn = view_ && state_.toggles.surface;
+    load.vertices_drawn = drawn ? view_->vertices() : 0;
+    load.triangles_drawn = drawn ? view_->triangles() : 0;
+    load.vertices_max = view_ ? view_->vertices_max() : 0;
+    if (view_) system().add_to(load);
+    region_->load.publish(load);
+    state_.load = load;
+    const bool levels = controller_.have_levels && controller_.attached();
+    add_load(load, levels ? &controller_.levels : nullptr, state_.history);
+}
+
+void GuiApp::publish_frames() {
+    constexpr auto kEvery = std::chrono::milliseconds(500);
+    const Instant now = Monotonic::now();
+    if (now - frames_published_ < kEvery) return;
+    frames_published_ = now;
+    FramesTopic topic{};
+    topic.taken_at_ns = to_ns(now);
+    topic.metrics = state_.frames = frame_metrics(clock_, passes_);
+    region_->frames.publish(topic);
+}
+
+// The longest of the display's period, that of the highest rate asked for, and that of the governor's goal.
+double GuiApp::due_s() const {
+    double due = window_.paced_by_display() ? window_.display_period_s() : 0.0;
+    if (fps_max_ > 0.0) due = std::max(due, 1.0 / fps_max_);
+    const double goal_hz = controller_.attached() && controller_.have_levels
+                               ? static_cast<double>(controller_.levels.display_goal_hz)
+                               : 0.0;
+    return goal_hz > 0.0 ? std::max(due, 1.0 / goal_hz) : due;
+}
+
+int run_gui(const GuiOptions& options) {
+    catch_signals();
+    return GuiApp(options).run();
+}
+
+}  // namespace tact

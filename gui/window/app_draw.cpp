@@ -1,0 +1,92 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "gui/window/app_parts.hpp"
+#include "gui/window/grounds.hpp"
+
+namespace tact {
+
+void GuiApp::draw_scene(std::int64_t now_ns) {
+    const Window::Size size = window_.size();
+    const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
+                                     middle_card(state_, system().panels()), state_.strip == 1);
+    const PixelRect& rect = layout.view;
+    const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
+    ViewFrame view{};
+    view.x_px = static_cast<int>(rect.x * to_px);
+    view.width_px = std::max(size.width_px - view.x_px, 1);
+    view.height_px = std::max(static_cast<int>(rect.height * to_px), 1);
+    view.y_px = size.height_px - view.height_px;
+    {
+        const PassClock::Scope scope(&passes_, Pass::ground);
+        paint_grounds(layout, to_px, size.height_px);
+    }
+    view.passes = &passes_;
+    if (!programs_) programs_ = std::make_unique<Programs>();
+    if (!view_ || !stage_) begin_view(view);
+    state_.a_per_px = static_cast<double>(camera_.a_per_px(rect.height));
+    const Eigen::Matrix3f axes = camera_.orientation().toRotationMatrix();
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) state_.eye_axes[i][k] = axes(k, i);
+    drawn_view_ = {view.x_px, view.y_px, view.width_px, view.height_px};
+    if (calibration_.open()) return draw_calibration(view, now_ns);
+    if (!view_) return;
+    if (controller_.attached() && controller_.have_tool) {
+        const double* const f = controller_.tool.force_model_n;
+        view.force_world_n = Vec3(f[0], f[1], f[2]);
+    }
+    if (controller_.attached() && system().second_hand_is_pen())
+        view.hand = second_hand_.at(now_ns, content_->meta);
+    state_.second_hand = view.hand.has_value();
+    system().prepare(now_ns, sharp_, view, context());
+    state_.second_force_n = view.hand ? view.hand->force_world_n.norm() : 0.0;
+    state_.second_at_wall = view.hand && view.hand->at_wall;
+    state_.force_n = view.force_world_n.norm();
+    state_.arrow_a_per_n = static_cast<double>(view_->arrow_a_per_n());
+    const SceneToggles& t = state_.toggles;
+    view_options_.surface = t.surface;
+    view_options_.force = t.force;
+    view_options_.box = t.box;
+    view_options_.style = static_cast<SurfaceStyle>(t.style);
+    view_options_.depth_cue = t.depth_cue;
+    view_options_.smooth_edges = t.smooth_edges;
+    if (stage_)
+        draw_stage(view, now_ns);
+    else
+        view_->draw(camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px)),
+                    view_options_, view);
+    system().drawn(context());
+}
+
+void GuiApp::begin_view(const ViewFrame& view) {
+    const PassClock::Scope scope(&passes_, Pass::ground);
+    glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
+    if (view_options_.gradient) programs_->draw_background();
+}
+
+void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
+    stage_->follow(controller_.attached() && controller_.have_head ? &controller_.head : nullptr, now_ns,
+                   clock_.frame_s(), {view.x_px, view.y_px, view.width_px, view.height_px});
+    view.x_px = view.y_px = 0;
+    view.width_px = stage_->eye_width_px();
+    view.height_px = stage_->eye_height_px();
+    view.eyes = 2;
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        view.eye = eye;
+        stage_->begin(eye, view_options_.plain_ground);
+        begin_view(view);
+        view_->draw(stage_->eye(eye, camera_, content_->meta.world_per_model,
+                                content_->meta.to_world(content_->centre_model_m), view_->radius_a()),
+                    view_options_, view);
+    }
+    {
+        const PassClock::Scope scope(&passes_, Pass::stereo);
+        stage_->show(window_.frame_buffer());
+    }
+    state_.a_per_px = 0.0;  // each eye has a scale of its own
+    state_.stage = std::string("stereo: ") + stage_text(*stage_);
+    state_.head_lost = stage_->head().sight() == HeadSight::lost;
+}
+
+}  // namespace tact

@@ -1,0 +1,95 @@
+#include <imgui.h>
+#include <spdlog/spdlog.h>
+
+#include "gui/window/app_parts.hpp"
+
+namespace tact {
+
+void GuiApp::handle_input() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.WantCaptureMouse && !calibration_.open()) {
+        const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y,
+                                        middle_card(state_, system().panels()), state_.strip == 1)
+                                 .view.height;
+        if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
+        if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
+        if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
+            system().turn_wheel(static_cast<double>(io.MouseWheel));
+        else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
+            camera_.zoom(io.MouseWheel);
+    }
+    KeySituation& now = state_.situation;
+    now.calibrating = calibration_.open();
+    now.browser = state_.browser.open;
+    const KeyWhen of_system = content_ && !now.calibrating ? system_rows()[shown_].keys : KeyWhen::always;
+    now.bodies = of_system == KeyWhen::bodies;
+    now.bone = of_system == KeyWhen::bone;
+    now.stereo = stage_ != nullptr && !now.calibrating;
+    now.controller = controller_.attached();
+    for (const KeyStroke& stroke : window_.take_keys()) {
+        if (io.WantTextInput) continue;
+        const KeyFound found = find_key(stroke, now);
+        if (found.row == nullptr) continue;
+        spdlog::debug("key {}: {}", found.row->keys, found.row->what);
+        perform(found.row->action, static_cast<std::size_t>(found.place));
+    }
+}
+
+void GuiApp::perform(KeyAction what, std::size_t place) {
+    if (content_ && system().perform(what, place, context())) return;
+    const auto command = [&](CommandKind kind) { state_.requests.push_back({kind, 0.0, {}, 0}); };
+    const RunState run =
+        controller_.have_health ? static_cast<RunState>(controller_.health.state) : RunState::off;
+    switch (what) {
+        case KeyAction::home:
+            return home_view();
+        case KeyAction::style:
+            state_.toggles.style = (state_.toggles.style + 1) % 3;
+            return;
+        case KeyAction::swap_eyes:
+            return stage_->swap_eyes();
+        case KeyAction::arm:  // as the button: only from where it can be followed
+            if (run == RunState::ready) command(CommandKind::arm);
+            return;
+        case KeyAction::disarm:  // whatever is known: no force is always safe, and the controller answers
+            return command(CommandKind::disarm);
+        case KeyAction::picture:
+            picture_wanted_ = true;
+            return;
+        case KeyAction::mark:
+            return command(CommandKind::mark);
+        case KeyAction::help:
+            state_.situation.sheet = !state_.situation.sheet;
+            return;
+        case KeyAction::close_sheet:
+            state_.situation.sheet = false;
+            return;
+        case KeyAction::open_browser:
+            state_.browser.open = true;
+            return;
+        case KeyAction::close_browser:
+            state_.browser.open = false;
+            return;
+        case KeyAction::calibrate:
+            if (!calibration_.open()) open_calibration(false);
+            return;
+        case KeyAction::measure:
+            return calibration_.perform(CalibrationAction::take);
+        case KeyAction::skip_point:
+            return calibration_.perform(CalibrationAction::skip);
+        case KeyAction::redo_point:
+            return calibration_.perform(CalibrationAction::redo_last);
+        case KeyAction::next_step:
+            return calibration_.perform(CalibrationAction::next);
+        case KeyAction::leave_calibration:
+            return calibration_.perform(CalibrationAction::leave);
+        case KeyAction::save_calibration:
+            return calibration_.perform(CalibrationAction::save);
+        case KeyAction::swap_calibrated_eyes:
+            return calibration_.swap_eyes();
+        default:  // of the system, and it is another one
+            return;
+    }
+}
+
+}  // namespace tact

@@ -1,0 +1,105 @@
+// The visual process in one object; app.hpp says what a frame is.
+//
+// app.cpp      the frame, the controller, panels, the load that is reported
+// app_scene    what is shown: the scene, its levels, its bodies
+// app_draw     the three-dimensional view, for one eye or two
+// app_calibration  the screen of the stage while it is calibrated
+// app_input    mouse and keys
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gui/dashboard/trace_export.hpp"
+#include "gui/link/command_sender.hpp"
+#include "gui/link/controller.hpp"
+#include "gui/render/camera.hpp"
+#include "gui/render/scene_view.hpp"
+#include "gui/stereo/calibration_controller.hpp"
+#include "gui/stereo/picture_painter.hpp"
+#include "gui/stereo/stage.hpp"
+#include "gui/window/browser_controller.hpp"
+#include "gui/window/frame_clock.hpp"
+#include "gui/window/frame_report.hpp"
+#include "gui/window/layout.hpp"
+#include "gui/window/options.hpp"
+#include "gui/window/picture_files.hpp"
+#include "gui/window/scene_loader.hpp"
+#include "gui/window/second_hand.hpp"
+#include "gui/window/systems.hpp"
+#include "gui/window/window.hpp"
+namespace tact {
+
+class GuiApp {
+public:
+    explicit GuiApp(const GuiOptions& options);
+    int run();
+
+private:
+    void frame(Instant now, bool take_picture);
+    void follow_controller(std::int64_t now_ns);
+    void start_loading(const std::string& path);
+    void follow_scene();
+    void use_scene(std::unique_ptr<SceneStart> start);
+    void home_view();
+    void begin_as_left();
+    void keep_window_state() const;
+    [[nodiscard]] SystemContext context();
+    [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
+    void handle_input();
+    void perform(KeyAction what, std::size_t place);
+    void apply_level();
+    void draw_scene(std::int64_t now_ns);
+    void begin_view(const ViewFrame& view);
+    void draw_stage(ViewFrame view, std::int64_t now_ns);
+    void open_calibration(bool check_alone);
+    void follow_calibration(std::int64_t now_ns);
+    void leave_calibration();
+    void make_stage(const StageSettings& settings);
+    void draw_calibration(const ViewFrame& view, std::int64_t now_ns);
+    void draw_panels();
+    void publish_load();
+    void publish_frames();
+    [[nodiscard]] double due_s() const;
+
+    const GuiOptions options_;
+    OwnedRegion<GuiRegion> region_;
+    Controller controller_;
+    CommandSender commands_;
+    Window window_;
+    Theme theme_;
+    FrameClock clock_;
+    PanelState state_;
+    const std::int64_t first_ns_ = to_ns(Monotonic::now());
+    double fps_max_ = 60.0;
+    // OpenGL objects go before the window: members are destroyed from below.
+    PassClock passes_{PassClock::possible(window_.software())};
+    Instant frames_published_{};
+    std::unique_ptr<Stage> stage_;  // of a stereo picture
+    std::unique_ptr<PicturePainter> calibration_painter_;
+    CalibrationController calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
+    std::unique_ptr<Programs> programs_;
+    std::shared_ptr<const SceneContent> content_;
+    std::unique_ptr<SceneView> view_;
+    // One for each of system_rows(); they keep what they drew in the view, so they go before it.
+    std::vector<std::unique_ptr<SceneSystem>> systems_;
+    std::size_t shown_ = 0;        // of system_rows()
+    double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
+    BrowserController browser_{options_.scene_switch};
+    bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene that is shown
+    SecondHand second_hand_;
+    RingCursor traces_place_;  // in the trace ring
+    TraceExport trace_export_;
+    ViewOptions view_options_;
+    Camera camera_;
+    SceneLoader loader_;
+    std::string next_scene_;  // asked for while another was being read
+    PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
+    PictureFiles::View drawn_view_;
+    bool picture_wanted_ = false;
+    bool sharp_ = false;  // this frame is kept: all its rays
+};
+
+}  // namespace tact

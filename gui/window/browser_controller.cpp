@@ -1,0 +1,228 @@
+#include "gui/window/browser_controller.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "gui/window/import_progress.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/whole_file.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
+
+namespace tact {
+namespace {
+
+constexpr const char* kRecentName = "recent.json";
+
+std::int64_t unix_now_s() { return static_cast<std::int64_t>(std::time(nullptr)); }
+
+template <class T>
+bool ready(std::future<T>& one) {
+    return one.valid() && one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+void say(BrowserState& state, Grade grade, std::string words) {
+    state.message = std::move(words);
+    state.message_grade = grade;
+}
+
+}  // namespace
+
+void BrowserController::used(const std::filesystem::path& scene, BrowserState& state) {
+    const auto path = std::filesystem::absolute(scene).lexically_normal();
+    current_ = path.string();
+    if (state.folder.empty()) state.folder = path.parent_path().string();
+    const auto folder = state_folder();
+    if (scene_switch_.empty() || folder.empty() || keeping_.valid()) return;
+    keeping_ = std::async(std::launch::async, [folder, path]() -> std::string {
+        const auto file = folder / kRecentName;
+        try {
+            std::vector<RecentScene> scenes;
+            try {
+                scenes = read_recents(file);
+            } catch (const StartupError& e) {
+                spdlog::warn("{}", e.what());
+                spdlog::warn("the list of scenes begins anew; the old file is kept as {}",
+                             set_aside(file).string());
+            }
+            write_whole_file(file, recents_text(with_recent(scenes, {path.string(), unix_now_s()})));
+        } catch (const StartupError& e) {
+            return e.what();
+        }
+        return {};
+    });
+}
+
+void BrowserController::read(const BrowserState& state) {
+    reading_ = std::async(std::launch::async, [folder = state.folder] {
+        Read out;
+        const std::int64_t now = unix_now_s();
+        if (const auto used = state_folder(); used.empty()) {
+            out.recent_trouble =
+                "Scenes that were used are not kept: neither XDG_STATE_HOME nor HOME is set.";
+        } else {
+            try {
+                out.recent = recent_rows(read_recents(used / kRecentName), now);
+            } catch (const StartupError& e) {
+                out.recent_trouble = e.what();
+            }
+        }
+        if (!folder.empty()) out.folder = folder_rows(folder, now);
+        return out;
+    });
+}
+
+void BrowserController::open_scene(const std::filesystem::path& scene, BrowserState& state) {
+    state.open = true;
+    if (scene_switch_.empty())
+        return say(state, Grade::watch,
+                   "This window was started alone and cannot end the controller for another scene.\n"
+                   "Close it and start: tact run " +
+                       scene.string());
+    try {
+        ask_for_scene(scene_switch_, scene);
+        asked_ = true;
+        spdlog::info("asking the launcher for {}", scene.string());
+        say(state, Grade::unknown, "Opening " + scene.string() + " ...");
+    } catch (const StartupError& e) {
+        say(state, Grade::bad, e.what());
+    }
+}
+
+void BrowserController::drop(const std::vector<std::string>& files, BrowserState& state) {
+    state.open = true;
+    if (import_.running())
+        return say(state, Grade::watch, "An import is under way: cancel it, or drop again when it is done.");
+    Dropped meant = meaning_of(files);
+    if (!meant.scene.empty()) return open_scene(meant.scene, state);
+    if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + dropped_kinds_text());
+    start_import(std::move(meant), state);
+}
+
+void BrowserController::start_import(Dropped meant, BrowserState& state) {
+    importing_ = meant.import[1];
+    meant.import.emplace_back("--bake-only");
+    try {
+        import_.start("tact", meant.import);
+        import_begun_ = Monotonic::now();
+        cancelled_ = false;
+        spdlog::info("importing {}", importing_);
+    } catch (const StartupError& e) {
+        say(state, Grade::bad, e.what());
+    }
+}
+
+void BrowserController::show_marks(BrowserState& state) const {
+    for (SceneRow& row : state.here)
+        row.marked = std::find(marked_.begin(), marked_.end(), row.path) != marked_.end();
+    if (marked_.empty()) {
+        state.marks_text.clear();
+        return;
+    }
+    const Dropped meant = meaning_of(marked_);
+    state.marks_import = !meant.import.empty();
+    state.marks_text = meaning_text(meant);
+    if (!state.marks_import) state.marks_text.insert(0, std::to_string(marked_.size()) + " marked. ");
+}
+
+void BrowserController::follow_marks(BrowserState& state) {
+    if (!state.mark_wanted.empty()) {
+        const std::string path = std::exchange(state.mark_wanted, {});
+        if (std::erase(marked_, path) == 0 && marked_.size() <= kDroppedMost) marked_.push_back(path);
+        show_marks(state);
+    }
+    if (std::exchange(state.clear_wanted, false)) {
+        marked_.clear();
+        show_marks(state);
+    }
+    if (std::exchange(state.import_wanted, false) && !import_.running()) {
+        Dropped meant = meaning_of(marked_);
+        if (meant.import.empty()) return show_marks(state);
+        start_import(std::move(meant), state);
+        if (!import_.running()) return;
+        marked_.clear();
+        show_marks(state);
+    }
+}
+
+// tact-prep prints a line a step, most with the share of the whole that is done.
+void BrowserController::follow_steps(BrowserState& state) const {
+    const std::string output = import_.output();
+    state.import_share = share_done(output);
+    say(state, Grade::unknown,
+        "Importing " + importing_ + ", " +
+            std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) + " s" +
+            (output.empty() ? ": reading it" : ": " + last_line(output)));
+}
+
+// At the end tact prints the path of the scene.
+void BrowserController::follow_import(BrowserState& state) {
+    if (std::exchange(state.cancel_wanted, false) && import_.running()) {
+        cancelled_ = true;
+        import_.cancel();
+    }
+    const auto outcome = import_.poll();
+    state.importing = import_.running();
+    if (!outcome) {
+        if (state.importing) follow_steps(state);
+        return;
+    }
+    const std::string last = last_line(outcome->output);
+    if (cancelled_ && outcome->good())
+        say(state, Grade::unknown, "The import was done before it could be cancelled: " + last);
+    else if (cancelled_)
+        say(state, Grade::unknown, "The import was cancelled; nothing was written.");
+    else if (!outcome->good())
+        say(state, Grade::bad, error_text(outcome->output));
+    else if (last.starts_with('/') && last.ends_with(".tact"))
+        open_scene(last, state);
+    else
+        say(state, Grade::bad, "The import ended without naming a scene: " + last);
+}
+
+void BrowserController::follow(BrowserState& state) {
+    follow_import(state);
+    follow_marks(state);
+    if (ready(keeping_))
+        if (const std::string trouble = keeping_.get(); !trouble.empty()) {
+            spdlog::warn("{}", trouble);
+            say(state, Grade::watch, trouble);
+        }
+    if (!scene_switch_.empty()) {
+        if (const auto refusal = take_refusal(scene_switch_)) {
+            asked_ = false;
+            state.open = true;
+            spdlog::warn("another scene was refused: {}", *refusal);
+            say(state, Grade::bad, *refusal);
+        }
+    }
+    if (state.open && !was_open_) {
+        if (state.folder.empty()) {
+            std::error_code ignored;
+            state.folder = std::filesystem::current_path(ignored).string();
+        }
+        if (!reading_.valid()) read(state);
+    }
+    if (!state.open && was_open_ && !asked_) state.message.clear();
+    was_open_ = state.open;
+    if (!state.folder_wanted.empty() && !reading_.valid()) {
+        state.folder = std::exchange(state.folder_wanted, {});
+        read(state);
+    }
+    if (ready(reading_)) {
+        Read got = reading_.get();
+        state.recent = std::move(got.recent);
+        state.recent_trouble = std::move(got.recent_trouble);
+        state.here = std::move(got.folder.rows);
+        state.folder_trouble = std::move(got.folder.trouble);
+        for (auto* const list : {&state.recent, &state.here})
+            for (SceneRow& row : *list) row.current = row.path == current_;
+        show_marks(state);
+    }
+    state.reading = reading_.valid();
+    if (!state.scene_wanted.empty()) open_scene(std::exchange(state.scene_wanted, {}), state);
+}
+
+}  // namespace tact

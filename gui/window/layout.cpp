@@ -1,0 +1,72 @@
+#include "gui/window/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/dashboard/panels.hpp"
+
+namespace tact {
+
+MiddleCard middle_card(const PanelState& state, const SystemPanels& system) {
+    if (state.calibration.open) return {{}, true};
+    return {system.card_size(), false};
+}
+
+Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
+                  bool traces) {
+    const float gap = std::round(theme.px(6.0F));
+    const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
+    const float below = traces ? std::round(std::clamp(0.5F * height_px, theme.px(196.0F), theme.px(420.0F)))
+                               : std::round(std::min(theme.px(196.0F), 0.45F * height_px));
+    const auto at_least_one = [](float v) { return std::max(v, 1.0F); };
+    Layout l;
+    l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
+
+    // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
+    const float usable = height_px - 4.0F * gap;
+    const float health = std::round(std::min(theme.px(344.0F), 0.48F * usable));
+    const float between = std::round(std::min(theme.px(middle.size.height), middle.size.share_most * usable));
+    const float inner = at_least_one(left - 2.0F * gap);
+    float y = gap;
+    const auto card = [&](float height) {
+        const PixelRect rect{gap, y, inner, at_least_one(height)};
+        y += height + gap;
+        return rect;
+    };
+    if (middle.calibration) {
+        l.middle = card(height_px - 2.0F * gap);
+        l.health = l.scene = {gap, gap, 0.0F, 0.0F};
+    } else {
+        l.health = card(health);
+        const bool any = middle.size.height > 0.0F;
+        l.middle = any ? card(between) : PixelRect{gap, y, 0.0F, 0.0F};
+        l.scene = card(usable - health - between + (any ? 0.0F : gap));
+    }
+
+    const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
+    const float top = l.view.height, height = at_least_one(below - gap);
+    l.plots = {left, top, at_least_one(l.view.width - events - 2.0F * gap), height};
+    l.events = {left + l.plots.width + gap, top, events, height};
+    return l;
+}
+
+void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,
+                    float height_px) {
+    const MiddleCard middle = middle_card(state, system);
+    const Layout layout = layout_for(theme, width_px, height_px, middle, state.strip == 1);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
+    if (middle.calibration) draw_calibration(theme, state.calibration, layout.middle);
+    if (!middle.calibration) draw_health(theme, state, layout.health);
+    if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle);
+    if (!middle.calibration) draw_scene(theme, state, system, layout.scene);
+    draw_plots(theme, state, layout.plots);
+    draw_events(theme, state, layout.events);
+    if (state.browser.open)
+        draw_browser(theme, state.browser, layout.view);
+    else if (!middle.calibration)
+        draw_browser_button(theme, state.browser, layout.view);
+    ImGui::PopStyleVar();
+    draw_overlay(theme, state, system, layout.view);
+}
+
+}  // namespace tact

@@ -1,0 +1,171 @@
+// Over the 3D view: scale bar, axes, the force's legend, frames per second, what is being waited for, the
+// keys.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "gui/dashboard/panels.hpp"
+#include "gui/dashboard/widgets.hpp"
+#include "gui/window/layout.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+double round_down(double most) {
+    const double power = std::pow(10.0, std::floor(std::log10(most)));
+    return most >= 5.0 * power ? 5.0 * power : most >= 2.0 * power ? 2.0 * power : power;
+}
+
+void scale_bar(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    if (!(state.a_per_px > 0.0) || !state.scene.loaded) return;
+    const double a = round_down(static_cast<double>(pen.theme.px(150.0F)) * state.a_per_px);
+    const auto length = static_cast<float>(a / state.a_per_px);
+    const float x1 = v.x + v.width - pen.theme.px(18.0F), x0 = x1 - length;
+    const float y = v.y + v.height - pen.theme.px(20.0F), t = pen.theme.px(4.0F);
+    pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, colour::kText);
+    pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, colour::kText);
+    pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, colour::kText);
+    const std::string text = length_text(a * kAngstromM);
+    pen.text(pen.theme.small, {0.5F * (x0 + x1 - pen.width(pen.theme.small, text)), y - pen.theme.px(18.0F)},
+             colour::kText, text);
+}
+
+void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    const float r = pen.theme.px(26.0F);
+    const ImVec2 o{v.x + pen.theme.px(44.0F), v.y + v.height - pen.theme.px(46.0F)};
+    static constexpr ImU32 kColours[3] = {IM_COL32(240, 112, 96, 255), IM_COL32(96, 200, 120, 255),
+                                          IM_COL32(96, 160, 250, 255)};
+    static constexpr const char* kNames[3] = {"x", "y", "z"};
+    // Those that point away first, so that the near ones lie over them.
+    int order[3] = {0, 1, 2};
+    std::sort(order, order + 3, [&](int a, int b) { return state.eye_axes[a][2] < state.eye_axes[b][2]; });
+    for (const int i : order) {
+        const float* const e = state.eye_axes[i];
+        const ImVec2 tip{o.x + r * e[0], o.y - r * e[1]};
+        pen.draw->AddLine(o, tip, kColours[i], pen.theme.px(2.0F));
+        const float font = pen.theme.small->FontSize;
+        pen.text(pen.theme.small,
+                 {o.x + 1.32F * r * e[0] - 0.25F * font, o.y - 1.32F * r * e[1] - 0.5F * font}, kColours[i],
+                 kNames[i]);
+    }
+}
+
+void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& system, const PixelRect& v) {
+    const float x = v.x + pen.theme.px(16.0F);
+    float y = v.y + pen.theme.px(12.0F), taken = x;  // to the right of it is room for numbers
+    if (state.scene.loaded) {
+        pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
+        taken = x + pen.width(pen.theme.bold, state.scene.title);
+        y += pen.theme.px(22.0F);
+        const auto line = [&](ImU32 swatch, const std::string& text) {
+            pen.draw->AddRectFilled({x, y + pen.theme.px(6.0F)},
+                                    {x + pen.theme.px(18.0F), y + pen.theme.px(9.0F)}, swatch);
+            pen.text(pen.theme.small, {x + pen.theme.px(24.0F), y}, colour::kText, text);
+            taken = std::max(taken, x + pen.theme.px(24.0F) + pen.width(pen.theme.small, text));
+            y += pen.theme.px(18.0F);
+        };
+        if (state.toggles.force && state.attached)
+            line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
+                                        length_text(state.arrow_a_per_n * kAngstromM).c_str()));
+        std::vector<SystemPanels::LegendLine> lines;
+        system.add_legend(state, lines);
+        for (const SystemPanels::LegendLine& l : lines) line(l.swatch, l.text);
+        if (state.second_hand)
+            line(colour::kSecondHand, format("second hand %.2f N%s", state.second_force_n,
+                                             state.second_at_wall ? ", at the workspace boundary" : ""));
+        if (!state.stage.empty())
+            pen.text(pen.theme.small, {x, y}, state.head_lost ? colour::kWatch : colour::kDim, state.stage);
+    }
+    const std::string fps = format("%.0f fps   ", state.load.fps) + system.drawn_text(state);
+    float at = v.y + pen.theme.px(12.0F);
+    for (const std::string& words : {fps, frame_line(state.frames), std::string("? keys")}) {
+        const float left = v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, words);
+        // In a narrow view, what is drawn goes before how fast.
+        if (left > taken + pen.theme.px(8.0F)) pen.text(pen.theme.small, {left, at}, colour::kDim, words);
+        at += pen.theme.px(18.0F);
+    }
+}
+
+// Over everything, as nothing else matters then.
+void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    if (!state.attached || !state.have_health) return;
+    const StopNotice notice = stop_notice(state.health);
+    if (notice.why.empty()) return;
+    ImFont* const large = pen.theme.large;
+    ImFont* const text = pen.theme.text;
+    const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
+    const std::string title = "No force: " + notice.why;
+    const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, title.c_str()),
+                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, notice.fix.c_str());
+    const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
+    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
+    pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kBad, pen.theme.px(8.0F), 0, pen.theme.px(2.0F));
+    pen.draw->AddText(large, large->FontSize, {at.x + pad, at.y + pad}, IM_COL32(255, 235, 232, 255),
+                      title.c_str(), nullptr, most);
+    pen.draw->AddText(text, text->FontSize, {at.x + pad, at.y + 1.5F * pad + head.y}, colour::kText,
+                      notice.fix.c_str(), nullptr, most);
+}
+
+void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    const std::string text = !state.scene.loaded ? state.scene.status
+                             : !state.attached   ? state.link_text
+                                                 : "";
+    if (text.empty()) return;
+    ImFont* const font = pen.theme.text;
+    const float most = 0.8F * v.width;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most, text.c_str());
+    const float px = pen.theme.px(14.0F), py = pen.theme.px(8.0F);
+    const float cx = v.x + 0.5F * v.width;
+    const float y = state.scene.loaded ? v.y + v.height - size.y - 2.0F * py - pen.theme.px(14.0F)
+                                       : v.y + 0.45F * v.height;
+    pen.draw->AddRectFilled({cx - 0.5F * size.x - px, y}, {cx + 0.5F * size.x + px, y + size.y + 2.0F * py},
+                            IM_COL32(18, 22, 29, 225), pen.theme.px(6.0F));
+    pen.draw->AddText(font, font->FontSize, {cx - 0.5F * size.x, y + py}, colour::kWatch, text.c_str(),
+                      nullptr, most);
+}
+
+// Those that mean something now.
+void keys(const OverlayPen& pen, const KeySituation& now, const PixelRect& v) {
+    std::vector<const KeyRow*> rows;
+    for (const KeyRow& row : key_rows())
+        if (applies(row.when, now)) rows.push_back(&row);
+    const float line = pen.theme.px(20.0F), pad = pen.theme.px(14.0F), column = pen.theme.px(430.0F);
+    const auto columns = static_cast<std::size_t>(
+        sheet_columns(static_cast<int>(rows.size()), static_cast<int>((v.height - 4.0F * pad) / line),
+                      static_cast<int>(v.width / column)));
+    const std::size_t each = (rows.size() + columns - 1) / columns;
+    const float w = column * static_cast<float>(columns), h = line * static_cast<float>(each) + 2.0F * pad;
+    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.5F * (v.height - h)};
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(18, 22, 29, 245), pen.theme.px(8.0F));
+    pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(8.0F));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::size_t in_column = i / each;
+        const float x = at.x + pad + column * static_cast<float>(in_column);
+        const float y = at.y + pad + line * static_cast<float>(i % each);
+        pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent, rows[i]->keys);
+        pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {x + pen.theme.px(112.0F), y},
+                          colour::kText, rows[i]->what);
+    }
+}
+
+}  // namespace
+
+void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view) {
+    const OverlayPen pen{theme, ImGui::GetBackgroundDrawList()};
+    pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
+    if (!state.calibration.open) {
+        legend(pen, state, system, view);
+        axes(pen, state, view);
+        scale_bar(pen, state, view);
+        system.draw_over_view(pen, state, view);
+        if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
+        message(pen, state, view);
+    }
+    stop_banner(pen, state, view);
+    if (state.situation.sheet) keys(pen, state.situation, view);
+    pen.draw->PopClipRect();
+}
+
+}  // namespace tact

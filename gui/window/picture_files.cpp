@@ -1,0 +1,65 @@
+#include "gui/window/picture_files.hpp"
+
+#include <chrono>
+
+#include <spdlog/spdlog.h>
+
+#include "gui/window/png.hpp"
+#include "ipc/base/error.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::uint32_t kSeriesMost = 9999;
+
+}  // namespace
+
+bool PictureFiles::series_due(Instant now, bool something_to_see) {
+    if (!(every_s_ > 0.0) || path_.empty() || !something_to_see || series_ >= kSeriesMost) return false;
+    if (series_ == 0) series_from_ = now;
+    return to_s(now - series_from_) >= every_s_ * series_;
+}
+
+void PictureFiles::save_of_series(const Image& window, const View& view) {
+    Image part{static_cast<std::uint32_t>(view.width_px), static_cast<std::uint32_t>(view.height_px), {}};
+    const auto top = window.height_px - static_cast<std::uint32_t>(view.y_px) - part.height_px;
+    for (std::uint32_t y = 0; y < part.height_px; ++y) {
+        const auto* const row =
+            window.rgb.data() + std::size_t{3} * ((std::size_t{top} + y) * window.width_px +
+                                                  static_cast<std::uint32_t>(view.x_px));
+        part.rgb.insert(part.rgb.end(), row, row + std::size_t{3} * part.width_px);
+    }
+    std::filesystem::path path = path_;
+    const std::string number = std::to_string(++series_);
+    path.replace_filename(path.stem().string() + (number.size() < 2 ? "-0" : "-") + number + ".png");
+    write(path, part);
+}
+
+void PictureFiles::save_stage(const std::vector<Image>& eyes) {
+    if (stage_.empty()) return;
+    if (eyes.size() == 1) return write(stage_, eyes[0]);
+    for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+        std::filesystem::path path = stage_;
+        path.replace_filename(path.stem().string() + (eye == 0 ? "-left" : "-right") +
+                              path.extension().string());
+        write(path, eyes[eye]);
+    }
+}
+
+void PictureFiles::save_now(const Image& window) {
+    const auto moment = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::system_clock::now().time_since_epoch());
+    write("tact-" + std::to_string(moment.count()) + ".png", window);
+}
+
+void PictureFiles::write(const std::filesystem::path& path, const Image& image) {
+    try {
+        write_png(path, image);
+        spdlog::info("wrote {}", path.string());
+    } catch (const StartupError& e) {
+        spdlog::error("{}", e.what());
+        failed_ = true;
+    }
+}
+
+}  // namespace tact
