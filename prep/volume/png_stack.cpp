@@ -28,7 +28,7 @@ auto use_png(const fs::path& folder, const std::string& name, const std::string&
 
 std::vector<std::string> stack_order(std::vector<std::string> names, const std::string& attempt) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError(attempt, why, "give a folder of pictures of one stack, numbered without gaps");
+        throw StartupError(attempt, why, "give a folder with the images of one stack, numbered without gaps");
     };
     std::map<std::uint64_t, std::string> by_number;
     std::string word;
@@ -40,14 +40,14 @@ std::vector<std::string> stack_order(std::vector<std::string> names, const std::
         if (begin == end || end - begin > 9) fail(name + " has no number before .png, or a very long one");
         if (by_number.empty()) word = name.substr(0, begin);
         if (name.compare(0, begin, word) != 0 || begin != word.size())
-            fail("pictures of two names are in it: " + by_number.begin()->second + " and " + name);
+            fail("it contains images with two names: " + by_number.begin()->second + " and " + name);
         const std::uint64_t number = std::stoull(name.substr(begin, end - begin));
         const auto [at, fresh] = by_number.emplace(number, name);
         if (!fresh) fail(at->second + " and " + name + " have the same number");
         if (by_number.size() > kStackMax)
-            fail("there are more than " + std::to_string(kStackMax) + " pictures");
+            fail("there are more than " + std::to_string(kStackMax) + " images");
     }
-    if (by_number.empty()) fail("there is no .png picture in it");
+    if (by_number.empty()) fail("it contains no .png image");
     std::vector<std::string> order;
     std::uint64_t expected = by_number.begin()->first;
     for (auto& [number, name] : by_number) {
@@ -61,7 +61,7 @@ std::vector<std::string> stack_order(std::vector<std::string> names, const std::
 }
 
 PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
-    const std::string attempt = "read the pictures in " + folder.string();
+    const std::string attempt = "read the images in " + folder.string();
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
@@ -109,7 +109,7 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
                 if (found == palette->rgba.end() && palette->rgba.size() == 256)
                     throw StartupError(attempt,
                                        name + ": there are more than 256 colours, so they are no labels",
-                                       "save labels without smoothing, or a grey picture");
+                                       "save labels without smoothing, or a grey image");
                 last = bits;
                 last_number = static_cast<float>(found - palette->rgba.begin());
                 if (found == palette->rgba.end()) palette->rgba.push_back(rgba);

@@ -167,25 +167,25 @@ int main(int argc, char** argv) {
     Requests w;
     std::string file, scene;
     CLI::App app{
-        "tact-replay: does a recorded run again with the controller's own code, and compares every force"};
-    app.add_option("file", file, "recording of tact record")->required()->type_name("FILE.h5");
-    app.add_option("--scene", scene, "where the recorded scene is now")->type_name("SCENE");
+        "tact-replay: repeats a recorded run with the code of the controller, and compares every force"};
+    app.add_option("file", file, "Recording of tact record")->required()->type_name("FILE.h5");
+    app.add_option("--scene", scene, "Current path of the recorded scene")->type_name("SCENE");
     auto* show =
-        app.add_flag("--show", w.show, "show the run at the recorded pace, in the window of the session");
-    app.add_option("--session", w.session, "name of the session of the window")
+        app.add_flag("--show", w.show, "Show the run at the recorded speed in the window of the session");
+    app.add_option("--session", w.session, "Session name of the window")
         ->type_name("NAME")
         ->capture_default_str()
         ->needs(show);
-    app.add_option("--from", w.from_s, "seconds into the recording at which showing begins")
+    app.add_option("--from", w.from_s, "Time in the recording at which the display starts (s)")
         ->check(CLI::Range(0.0, 1e7))
         ->needs(show);
-    app.add_option("--speed", w.speed, "factor of the recorded pace")
+    app.add_option("--speed", w.speed, "Speed of the display relative to the recording")
         ->check(CLI::Range(0.01, 100.0))
         ->needs(show);
-    app.add_flag("--json", w.json, "print the outcome as JSON");
+    app.add_flag("--json", w.json, "Print the result as JSON");
     app.footer(
-        "Exit codes: 0 the same to the bit; 1 error; 2 wrong usage; 3 not the same, or the recording lacks "
-        "something that an exact replay needs.");
+        "Exit codes: 0 bit-exact; 1 error; 2 wrong usage; 3 not bit-exact, or the recording lacks data that "
+        "an exact replay needs.");
     app.set_version_flag("--version", program_version("tact-replay"));
     if (const auto answered = manual::answer(app, "tact-replay", argc, argv)) return *answered;
     try {

@@ -1,8 +1,8 @@
 // A ball that slides over a rough sphere: time of the servo's step in the modes off-tree and chr, on one path.
 //
 // Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
-//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. chr is tended every fourth step by the same
-//           thread, or (Live) steps are 1 ms apart and a thread beside it tends every 4 ms, as in tact-rt.
+//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. the slow update of chr runs every fourth step by the same
+//           thread, or (Live) steps are 1 ms apart and a thread beside it updates it every 4 ms, as in tact-rt.
 // Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
 //           surface; tend_us: of one slow_update(); near: triangles in it, predicted for this fidelity.
 // Measured  see rt/force/surface/README.md.

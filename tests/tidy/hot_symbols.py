@@ -163,7 +163,7 @@ def main():
     entries, reached, bad, pointers = check(list(objects_of(sys.argv[1])))
     for wanted in ("tact::Servo::cycle()", "::step(", "::read(", "::write("):
         if not any(wanted in e for e in entries):
-            bad.append(f"no entry point like {wanted} was found; mend ENTRIES or build first")
+            bad.append(f"no entry point like {wanted} was found; fix ENTRIES or build first")
     print("\n".join(sorted(set(bad))))
     print(f"{len(entries)} entry points, {len(reached)} functions reached, {pointers} calls through pointers, {len(set(bad))} wrong")
     if "--entries" in sys.argv:

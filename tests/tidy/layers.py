@@ -15,6 +15,9 @@ import re
 import sys
 import tempfile
 
+# What the systems of the launcher may use of it.
+LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/files", "deploy/tact/observer", "deploy/tact/run",
+            "deploy/tact/scene_cache", "deploy/tact/signals", "deploy/tact/system_run"]
 # Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
 BELOW = {
     "ipc/base": [],
@@ -61,7 +64,16 @@ BELOW = {
     "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling",
                    "gui/stereo"],
     "prep": ["ipc/base", "ipc/image", "ipc/version", "ipc/scene", "ipc/manual"],
+    # Systems do not know each other; they share readers, meshes and the console.
+    "prep/console": ["ipc/base", "ipc/scene"],
+    "prep/docking": ["ipc/base", "ipc/version", "ipc/scene", "prep/codebook", "prep/console", "prep/input", "prep/map", "prep/mesh",
+                     "prep/structure", "prep/synthetic"],
+    "prep/surface": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/mesh", "prep/mesh_file", "prep/synthetic"],
+    "prep/drilling": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/input", "prep/synthetic", "prep/volume"],
     "deploy": ["ipc", "rt/force", "hal/probe"],
+    "deploy/tact/docking": ["ipc", "rt/force/docking", "rt/force/force_model"] + LAUNCHER,
+    "deploy/tact/surface": ["ipc", "rt/force/surface"] + LAUNCHER,
+    "deploy/tact/drilling": ["ipc", "rt/force/drilling"] + LAUNCHER,
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
 # Third-party header -> folders that wrap it.

@@ -10,7 +10,7 @@ tact_test(unit/deploy_monitoring_test.cpp USES shm topics launch SYSTEM nlohmann
 tact_test(unit/deploy_probe_test.cpp USES base launch probe SYSTEM nlohmann_json::nlohmann_json)
 add_test(NAME reproduce_draw_test COMMAND /usr/bin/python3 tests/reproduce/draw.py --self-test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(reproduce_draw_test PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE 77)
-tact_test(unit/deploy_drill_test.cpp USES bench reproduce launch scene base)
+tact_test(unit/deploy_drill_test.cpp USES bench reproduce launch scene base SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_drilling_test.cpp USES launch shm topics scene base SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_run_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_run_save_test.cpp USES launch shm topics scene base)

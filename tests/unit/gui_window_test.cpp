@@ -427,7 +427,7 @@ TEST_F(GuiWindow, broken_scene_is_told_and_the_window_stays) {
     const std::string path = folder_ + "/broken.tact";
     std::ofstream(path) << "this is no scene";
     EXPECT_EQ(gui({path, "--seconds", "1", "--screenshot", folder_ + "/broken.png"})->wait(), 0) << log();
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
     EXPECT_GT(colours(folder_ + "/broken.png", 640, 480).size(), 20U);
 }
 
@@ -435,7 +435,7 @@ TEST_F(GuiWindow, without_a_display_it_says_so_and_what_mends_it) {
     unsetenv("DISPLAY");
     EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
     EXPECT_NE(log().find("no display"), std::string::npos) << log();
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
 TEST_F(GuiWindow, a_series_is_of_the_view_alone_and_its_first_of_the_scene) {
@@ -495,7 +495,7 @@ TEST_F(GuiWindow, a_stage_that_cannot_be_is_told_in_words) {
     EXPECT_NE(gui({"--stereo", "sideways"})->wait(), 0);
     // Drivers that draw on the processor have no buffers for two eyes.
     EXPECT_EQ(gui({"--seconds", "0.5", "--stereo", "quad-buffer"})->wait(), 1);
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
 TEST_F(GuiWindow, picture_that_cannot_be_written_is_an_error_and_arguments_are_checked) {

@@ -6,7 +6,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/image/png.hpp"
-#include "prep/volume/import_bone.hpp"
+#include "prep/drilling/import_bone.hpp"
 #include "prep/volume/png_stack.hpp"
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
@@ -161,14 +161,14 @@ TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
         return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
     };
     const std::string unit = "\nspacings: 1 1 1\nencoding: raw";
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "mend:"}));
-    EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "mend: crop"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "fix:"}));
+    EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "fix: crop"}));
     EXPECT_TRUE(says(nrrd("sizes: 99999 5 4" + unit), {"99999 x 5 x 4", "8192"}));
     EXPECT_TRUE(says(nrrd("sizes: 1000 1000 1000\nspacings: 1 1 1\nencoding: gzip"),
                      {"than 3 packed ones can hold"}));
     EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"no whole number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5" + unit), {"axes"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"how far its voxels are apart"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"it has no voxel spacing"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"no number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 0 1\nencoding: raw"), {"axis 1", "--unit"}));
     EXPECT_TRUE(
@@ -266,7 +266,7 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         const ScanFolder f;
         for (int u = 0; u < 8; ++u)
             if (u != 3 && u != 4) f.write(numbered("s", u), sample::dicom_bytes(sample::bone_slice(u)));
-        EXPECT_TRUE(says(refusal(of(f.path)), {"2 slices are missing", "2.00 and 5.00 mm", "mend:"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"2 slices are missing", "2.00 and 5.00 mm", "fix:"}));
     }
     {
         const ScanFolder f;
@@ -282,7 +282,7 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "cut short"}));
     }
     const ScanFolder f;
-    EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM picture"}));
+    EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM image"}));
     write_series(f, {0});
     EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
 }
@@ -370,7 +370,7 @@ TEST(Dicom, what_is_no_grey_scan_is_refused) {
                          s.rows = 4096;
                          s.columns = 4096;
                      }),
-                     {"mend:"}));
+                     {"fix:"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.spacing = 0.0; }), {"mm"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unknown kind"}));
     EXPECT_TRUE(
