@@ -43,12 +43,12 @@ TEXT
     fi
     if [ "$(id -u)" -ne 0 ]; then
         echo "install rights: this needs root" >&2
-        echo "  mend: sudo deploy/install.sh --rights" >&2
+        echo "  fix: sudo deploy/install.sh --rights" >&2
         return 1
     fi
     if [ -n "$user" ] && ! id "$user" >/dev/null 2>&1; then
         echo "install rights: there is no user $user" >&2
-        echo "  mend: name one with --user" >&2
+        echo "  fix: name one with --user" >&2
         return 1
     fi
     for group in tact realtime; do

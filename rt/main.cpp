@@ -1,14 +1,12 @@
 // tact-rt: closes the force loop on a baked scene.
 //
 // Exit  0  the run ended in order: by a signal, or its time was over
-//       1  it could not start; one message says what, why and the mend. With --check-config: the file has problems
-#include <pthread.h>
+//       1  it could not start; one message says what, why and the fix. With --check-config: the file has problems
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -26,24 +24,22 @@
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/scene/file/scene_file.hpp"
-#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/shm/link.hpp"
 #include "ipc/shm/servo_threads.hpp"
 #include "ipc/topics/text.hpp"
 #include "rt/config/check_config.hpp"
 #include "rt/config/config.hpp"
-#include "rt/force/drilling/drill_model.hpp"
 #include "rt/servo/rt_guard.hpp"
 #include "rt/servo/servo.hpp"
 #include "rt/start/run_text.hpp"
-#include "rt/start/scene_bone.hpp"
-#include "rt/start/start_model.hpp"
 #include "rt/start/start_options.hpp"
 #include "rt/start/start_station.hpp"
+#include "rt/start/systems.hpp"
 #include "rt/threads/head_feed.hpp"
 #include "rt/threads/housekeeping.hpp"
 #include "rt/threads/journal_format.hpp"
 #include "rt/threads/log_sink.hpp"
+#include "rt/threads/servo_thread.hpp"
 #include "rt/threads/slow_update_thread.hpp"
 #include "rt/threads/supervisor.hpp"
 #include "rt/threads/thread_setup.hpp"
@@ -74,57 +70,6 @@ LevelRequest parse_level(const std::string& text, const std::vector<std::string>
     throw StartupError("--level " + text, "this is not PATH=VALUE with a path of this scene",
                        "paths: " + known);
 }
-
-// The servo thread: its stack is small, locked and touched before the loop.
-struct ServoThread {
-    Servo& servo;
-    ScheduleRequest request;
-    Platform& platform;
-    ServoMailbox& mailbox;
-    std::atomic<int> running{0};
-    int thread_id = 0;
-    std::uint64_t faults_at_start = 0;
-    pthread_t handle{};
-    bool started = false;
-
-    // Where the house fails, the servo ends in order before anything that it uses goes.
-    ~ServoThread() {
-        if (!started) return;
-        int none = 0;
-        mailbox.stop_signal.compare_exchange_strong(none, -1, std::memory_order_relaxed);
-        join();
-    }
-
-    static void* body(void* self) {
-        ServoThread& t = *static_cast<ServoThread*>(self);
-        prepare_thread(t.request, t.platform);
-        t.servo.set_schedule_flags(t.platform.flags);
-        t.thread_id = gettid();
-        t.servo.warm_up();
-        t.faults_at_start = own_page_faults();
-        t.running.store(1, std::memory_order_release);
-        t.running.notify_one();
-        t.servo.run();
-        t.servo.publish_end(own_page_faults() - t.faults_at_start);
-        t.mailbox.ended.store(true, std::memory_order_release);
-        return nullptr;
-    }
-    void start() {
-        pthread_attr_t attributes;
-        pthread_attr_init(&attributes);
-        pthread_attr_setstacksize(&attributes, 1024 * 1024);
-        const int error = pthread_create(&handle, &attributes, &body, this);
-        pthread_attr_destroy(&attributes);
-        if (error != 0)
-            throw StartupError("starting the servo thread", std::strerror(error), "free some memory");
-        started = true;
-        running.wait(0, std::memory_order_acquire);
-    }
-    void join() {
-        started = false;
-        pthread_join(handle, nullptr);
-    }
-};
 
 void say_how_it_went(const RtRegion& region) {
     HealthTopic h{};
@@ -159,15 +104,13 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     region->scene_checksum = scene.checksum();
     tell_how_started(arguments, o, region->run_text);
     region.mark_ready();
-    std::optional<SceneBone> bone;
-    if (read_meta(scene).kind == SceneKind::drilling) bone.emplace(scene);
+    const SceneSystem system({scene, o, config, *region});
     std::optional<LinkServer> link;
-    if (!o.check) link.emplace(o.session, region.fd(), bone ? bone->fd() : -1);
+    if (!o.check) link.emplace(o.session, region.fd(), system.fd());
 
-    SceneBone* const drilled = bone ? &*bone : nullptr;
-    std::unique_ptr<ForceModel> model = load_model(scene, drilled, o, config);
+    std::unique_ptr<ForceModel> model = system.make_model(0);
     std::unique_ptr<ForceModel> second;
-    if (two_hands) second = load_second(scene, drilled, o, config);
+    if (two_hands) second = system.make_model(1);
     // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
     // ends the run in order. Static, as a signal may come after run() too.
     static ServoMailbox mailbox;
@@ -192,9 +135,9 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
     const std::string lines_on = lines ? lines->open().name : "no safety lines";
     ServoSettings settings = settings_from(config, emulated);
-    settings.bone = read_meta(scene).kind == SceneKind::drilling;
-    const std::array hands{HandParts{device.get(), model.get(), info},
-                           HandParts{device2.get(), second.get(), info2}};
+    settings.visual_paths = system.visual_paths();
+    const std::array hands{HandParts{device.get(), model.get(), info, system.drive(0)},
+                           HandParts{device2.get(), second.get(), info2, system.drive(1)}};
 
     ServoClock clock(spin_tail(config.servo));
     Servo servo({.clock = clock,
@@ -226,14 +169,12 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     }
 
     Platform platform;
-    ServoThread thread{servo,
-                       {.priority = static_cast<int>(config.servo.priority),
-                        .core = static_cast<int>(config.servo.core),
-                        .lock_memory = config.servo.lock_memory,
-                        .limit_processor_time = sleeps(config.servo)},
-                       platform,
-                       mailbox};
-    prepare_process(thread.request, platform);
+    const ScheduleRequest schedule{.priority = static_cast<int>(config.servo.priority),
+                                   .core = static_cast<int>(config.servo.core),
+                                   .lock_memory = config.servo.lock_memory,
+                                   .limit_processor_time = sleeps(config.servo)};
+    ServoThread thread(servo, schedule, platform, mailbox);
+    prepare_process(schedule, platform);
     thread.start();
     for (const std::string& finding : platform.findings) spdlog::warn("{}", finding);
     if (const std::string shared = shared_core_text(pinned_servos(), getpid()); !shared.empty())
@@ -250,19 +191,19 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (lines && (config.lines.driver != "sim" || settings.watchdogs.timing_latches)) {
         supervisor.emplace(mailbox.pulse, duration_us(config.safety.supervisor_us_max),
                            [&lines] { lines->drop(); });
-        supervisor->start(thread.thread_id);
+        supervisor->start(thread.id());
     }
 
     std::optional<SlowUpdateThread> slow_updates;
     if (hands[0].model->has_slow_update())
-        slow_updates.emplace(*hands[0].model, region->tool[0], thread.thread_id);
+        slow_updates.emplace(*hands[0].model, region->tool[0], thread.id());
 
     Housekeeping housekeeping({.session = o.session,
                                .seconds = o.seconds,
                                .arm_with_gui = o.arm_with_gui && !o.arm,
                                .path_names = paths,
-                               .servo_thread_id = thread.thread_id,
-                               .page_faults_at_start = thread.faults_at_start},
+                               .servo_thread_id = thread.id(),
+                               .page_faults_at_start = thread.faults_at_start()},
                               region, mailbox, *link);
     for (const LevelRequest& w : requests) housekeeping.order(CommandKind::set_level, w.level, w.path);
     if (o.arm) housekeeping.order(CommandKind::arm, 0.0, 0);
@@ -272,8 +213,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (two_hands) device2->relax();
     release_process(platform);
     say_how_it_went(*region);
-    if (const auto* const drill = dynamic_cast<const DrillModel*>(servo.state().hand[0].model))
-        spdlog::info("{:.1f} mm3 of bone taken", 1e9 * drill->removed_m3());
+    if (const std::string summary = system.summary(); !summary.empty()) spdlog::info("{}", summary);
     return 0;
 }
 

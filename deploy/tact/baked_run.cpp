@@ -6,9 +6,9 @@
 
 namespace tact::launch {
 
-void add_baked_run_options(CLI::App& app, std::span<const PrepOption> prep, BakedRun& baked) {
-    app.add_flag("--bake-only", baked.bake_only, "bake the scene, print its path and stop");
-    for (const PrepOption& option : prep)
+void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked) {
+    app.add_flag("--bake-only", baked.bake_only, "Bake the scene, print its path and exit");
+    for (const PassedOption& option : prep)
         app.add_option_function<std::string>(
                option.name,
                [to = &baked.prep, name = option.name](const std::string& value) {

@@ -11,11 +11,6 @@
 
 namespace tact::launch {
 
-// Passed on to tact-prep, which checks the value.
-struct PrepOption {
-    const char *name, *type, *help;
-};
-
 struct BakedRun {
     RunOptions run;
     std::vector<std::string> prep;  // options as they were typed
@@ -23,7 +18,7 @@ struct BakedRun {
 };
 
 // `baked` must outlive the parsing, and callbacks hold it by address.
-void add_baked_run_options(CLI::App& app, std::span<const PrepOption> prep, BakedRun& baked);
+void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked);
 
 // The exit code.
 int bake_and_run(const BakeRequest& request, const BakedRun& baked);

@@ -79,7 +79,7 @@ std::string Ending::text() const {
     } else {
         t = "ended with exit code " + std::to_string(number);
     }
-    if (forced) t += " after it had not heeded the request to end";
+    if (forced) t += " after it ignored the request to end";
     return t;
 }
 

@@ -6,6 +6,8 @@
 // Ending       stop() asks with SIGTERM; poll() wakes a child that is halted, and follows with SIGKILL once
 //              the grace is over. A child is reaped once and its ending kept.
 // Thread       all on one thread; the program must be single-threaded when a child is started.
+// Not shared   tact-gui has gui/base/child_job: posix_spawn(), as fork() would copy the page tables of a big program with
+//              threads; it can set neither the signal of the parent's death nor cores, which children here need.
 #pragma once
 
 #include <sys/types.h>

@@ -6,7 +6,7 @@ namespace tact::launch {
 
 void add_bench(CLI::App& app) {
     auto* const command =
-        app.add_subcommand("bench", "measure what this machine is good for (tact-bench --help)");
+        app.add_subcommand("bench", "Measure the performance of this machine (tact-bench --help)");
     command->set_help_flag();
     command->prefix_command();
     command->callback([command] { exec_program("tact-bench", command->remaining()); });

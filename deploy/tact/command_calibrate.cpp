@@ -10,7 +10,7 @@ namespace tact::launch {
 void add_calibrate(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand(
         "calibrate",
-        "measure where the stereo screen, the eyes and the hand's world are; written to --stage FILE.toml");
+        "Measure the positions of stereo screen, eyes and workspace, and write them to --stage FILE.toml");
     const auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
     command->callback([options, &exit_code] {

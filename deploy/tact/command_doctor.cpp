@@ -1,4 +1,4 @@
-// tact doctor: what of this machine is as Tact wants it, and the mend of what is not.
+// tact doctor: what of this machine is as Tact wants it, and the fix of what is not.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -29,13 +29,11 @@ int doctor(const std::string& session, bool as_json) {
 
 void add_doctor(CLI::App& app, int& exit_code) {
     auto* const command =
-        app.add_subcommand("doctor", "look at this machine; exit code 1: Tact will not run here");
+        app.add_subcommand("doctor", "Check this machine; exit code 1: Tact cannot run here");
     const auto session = std::make_shared<std::string>("default");
     const auto as_json = std::make_shared<bool>(false);
-    command->add_option("--session", *session, "name of the session")
-        ->type_name("NAME")
-        ->capture_default_str();
-    command->add_flag("--json", *as_json, "print as JSON, for programs");
+    command->add_option("--session", *session, "Session name")->type_name("NAME")->capture_default_str();
+    command->add_flag("--json", *as_json, "Print as JSON");
     command->callback([=, &exit_code] { exit_code = doctor(*session, *as_json); });
 }
 

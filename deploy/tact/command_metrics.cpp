@@ -57,28 +57,26 @@ int metrics(const MetricsOptions& o) {
 }  // namespace
 
 void add_metrics(CLI::App& app, int& exit_code) {
-    auto* const command = app.add_subcommand("metrics",
-                                             "rate, lateness, faults and levels of the controller for "
-                                             "Prometheus, until Ctrl-C, also across restarts");
+    auto* const command =
+        app.add_subcommand("metrics",
+                           "Serve rate, lateness, faults and levels of the controller to Prometheus until "
+                           "Ctrl-C, also across restarts of the controller");
     const auto o = std::make_shared<MetricsOptions>();
-    command->add_option("--session", o->session, "name of the session")
-        ->type_name("NAME")
-        ->capture_default_str();
-    command
-        ->add_option("--listen", o->address, "address that is answered at; anybody who reaches it may read")
+    command->add_option("--session", o->session, "Session name")->type_name("NAME")->capture_default_str();
+    command->add_option("--listen", o->address, "Network address to listen on; access is not restricted")
         ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", o->port, "port to listen on; 0: any free one")
+    command->add_option("--port", o->port, "Port to listen on; 0: any free port")
         ->type_name("N")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
-    command->add_option("--textfile", o->textfile, "write this file in place of answering, for node_exporter")
+    command->add_option("--textfile", o->textfile, "File to write for node_exporter, instead of listening")
         ->type_name("FILE.prom");
-    command->add_option("--every", o->every_s, "time between two files")
+    command->add_option("--every", o->every_s, "Interval between two files (s)")
         ->type_name("S")
         ->check(CLI::Range(0.2, 3600.0))
         ->capture_default_str();
-    command->add_flag("--once", o->once, "print the metrics once and end; exit code 1: no controller runs");
+    command->add_flag("--once", o->once, "Print the metrics once and exit; exit code 1: no controller runs");
     command->callback([o, &exit_code] { exit_code = metrics(*o); });
 }
 

@@ -72,19 +72,19 @@ int run_probe(const std::string& config, const std::string& root, bool as_json) 
 
 void add_probe(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand(
-        "probe", "look for devices; exit code 1: what the configuration asks for is not there or not usable");
+        "probe", "Detect devices; exit code 1: a device of the configuration is missing or not usable");
     const auto config = std::make_shared<std::string>();
     const auto root = std::make_shared<std::string>("/");
     const auto as_json = std::make_shared<bool>(false);
     command
         ->add_option(
             "--config", *config,
-            "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any")
+            "Configuration of the controller (TOML); default: etc/tact/tact.toml of the installation, if any")
         ->type_name("FILE");
-    command->add_option("--root", *root, "folder that stands for /, with its sys and dev")
+    command->add_option("--root", *root, "Folder that replaces /, with sys and dev")
         ->type_name("DIR")
         ->group("");
-    command->add_flag("--json", *as_json, "print as JSON, for programs");
+    command->add_flag("--json", *as_json, "Print as JSON");
     command->callback([=, &exit_code] { exit_code = run_probe(*config, *root, *as_json); });
 }
 

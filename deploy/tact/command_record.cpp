@@ -5,8 +5,9 @@
 namespace tact::launch {
 
 void add_record(CLI::App& app) {
-    auto* const command = app.add_subcommand(
-        "record", "every cycle of a run into an HDF5 file, crash-safe; or its last seconds; repair, tables");
+    auto* const command = app.add_subcommand("record",
+                                             "Record every servo cycle of a run, or its last seconds; repair "
+                                             "and convert recordings (tact-record)");
     command->set_help_flag();
     command->prefix_command();
     command->callback([command] { exec_program("tact-record", command->remaining()); });

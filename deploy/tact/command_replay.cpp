@@ -61,7 +61,7 @@ int show(const ReplayOptions& o) {
     }
     const Ending& drawn = *window.poll();
     if (!drawn.clean() && !(drawn.asked && !drawn.forced)) {
-        std::fprintf(stderr, "tact-gui %s\n  mend: see what it said above\n", drawn.text().c_str());
+        std::fprintf(stderr, "tact-gui %s\n  fix: see its messages above\n", drawn.text().c_str());
         return 1;
     }
     const Ending& done = *replay.poll();
@@ -73,31 +73,30 @@ int show(const ReplayOptions& o) {
 void add_replay(CLI::App& app, int& exit_code) {
     auto* const command =
         app.add_subcommand("replay",
-                           "a recorded run again, by the same code in simulated time; compares every force. "
-                           "Exit code 0: the same to the bit; 3: not");
+                           "Repeat a recorded run in simulated time with the code of the controller, and "
+                           "compare every force; exit code 0: bit-exact; 3: not");
     const auto o = std::make_shared<ReplayOptions>();
-    command->add_option("FILE", o->file, "recording of tact record, or of a run with --record")
+    command->add_option("FILE", o->file, "Recording of tact record, or of a run with --record")
         ->required()
         ->type_name("FILE.h5");
-    command->add_option("--scene", o->scene, "where the recorded scene is now")->type_name("SCENE");
-    command->add_flag("--json", o->json, "print the outcome as JSON");
+    command->add_option("--scene", o->scene, "Current path of the recorded scene")->type_name("SCENE");
+    command->add_flag("--json", o->json, "Print the result as JSON");
     auto* const shown =
-        command->add_flag("--show", o->show, "show the run in a window, at the recorded pace");
+        command->add_flag("--show", o->show, "Show the run in a window at the recorded speed");
     const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
         command->add_option(name, value, help)->type_name("X")->check(CLI::Range(low, high))->needs(shown);
     };
-    number("--from", o->from_s, 0.0, 1e7, "second of the recording at which showing begins");
-    number("--speed", o->speed, 0.01, 100.0, "factor of the recorded pace");
-    number("--seconds", o->seconds, 0.0, 1e7, "close the window after so long");
-    command->add_flag("--headless", o->headless, "draw without a screen, on an X server of its own (Xvfb)")
+    number("--from", o->from_s, 0.0, 1e7, "Time in the recording at which the display starts (s)");
+    number("--speed", o->speed, 0.01, 100.0, "Speed of the display relative to the recording");
+    number("--seconds", o->seconds, 0.0, 1e7,
+           "Time after which the window closes (s); default: at the end of the recording");
+    command->add_flag("--headless", o->headless, "Draw without a screen, on a private X server (Xvfb)")
         ->needs(shown);
-    command->add_option("--size", o->size, "size of the window in pixels")->type_name("WxH")->needs(shown);
-    command->add_option("--screenshot", o->screenshot, "picture of the window at the end")
+    command->add_option("--size", o->size, "Size of the window (pixels)")->type_name("WxH")->needs(shown);
+    command->add_option("--screenshot", o->screenshot, "Screenshot of the window at the end")
         ->type_name("FILE.png")
         ->needs(shown);
-    command
-        ->add_option("--session", o->session,
-                     "name of the session in which window and replay find each other")
+    command->add_option("--session", o->session, "Session name by which window and replay find each other")
         ->type_name("NAME")
         ->needs(shown);
     command->callback([o, &exit_code] {

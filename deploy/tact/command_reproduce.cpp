@@ -6,7 +6,7 @@ namespace tact::launch {
 
 void add_reproduce(CLI::App& app) {
     auto* const command = app.add_subcommand(
-        "reproduce", "repeat the published experiments on this machine (tact-reproduce --help)");
+        "reproduce", "Reproduce the published experiments on this machine (tact-reproduce --help)");
     command->set_help_flag();
     command->prefix_command();
     command->callback([command] { exec_program("tact-reproduce", command->remaining()); });

@@ -7,10 +7,12 @@
 namespace tact::launch {
 
 void add_run(CLI::App& app, int& exit_code) {
-    auto* const command = app.add_subcommand("run", "run a baked scene");
+    auto* const command = app.add_subcommand("run", "Run a baked scene");
     const auto options = std::make_shared<RunOptions>();
     const auto scene = std::make_shared<std::filesystem::path>();
-    command->add_option("SCENE", *scene, "file written by tact-prep")->required()->check(CLI::ExistingFile);
+    command->add_option("SCENE", *scene, "Scene file written by tact-prep")
+        ->required()
+        ->check(CLI::ExistingFile);
     add_run_options(*command, *options);
     command->callback([=, &exit_code] { exit_code = run_scene(*scene, *options); });
 }

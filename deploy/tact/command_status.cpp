@@ -9,6 +9,7 @@
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/run_report.hpp"
 #include "deploy/tact/signals.hpp"
+#include "deploy/tact/systems.hpp"
 
 namespace tact::launch {
 namespace {
@@ -20,11 +21,13 @@ struct StatusOptions {
     bool json = false, watch = false;
 };
 
-std::optional<Places> places_of(const RtRegion& region) {
+// Null where the scene file was moved since the start: the system's columns are then missing.
+std::unique_ptr<SystemRun> system_run_of(const RtRegion& region) {
     try {
-        return Places(SceneFile::open(field_text(region.scene_path, sizeof region.scene_path)));
+        const SceneFile scene = SceneFile::open(field_text(region.scene_path, sizeof region.scene_path));
+        return system_of(scene).open_run(scene);
     } catch (const std::exception&) {
-        return std::nullopt;  // moved away since; the place is then not told
+        return nullptr;
     }
 }
 
@@ -34,8 +37,8 @@ void show(const Observer& observer, bool as_json) {
         std::fputs(report_text(report).c_str(), stdout);
         return;
     }
-    const auto places = places_of(observer.region());
-    const auto sample = take_sample(observer.region(), places ? &*places : nullptr, 0.0);
+    const auto system = system_run_of(observer.region());
+    const auto sample = take_sample(observer.region(), system.get(), 0.0);
     if (!sample) return;
     std::printf("state %s: %s\nscene %s\n", report["state"].get<std::string>().c_str(),
                 report["reason"].get<std::string>().c_str(),
@@ -65,7 +68,7 @@ void show(const Observer& observer, bool as_json) {
 
 int watch(Observer& observer, bool as_json) {
     Signals signals;
-    std::optional<Places> places;
+    std::unique_ptr<SystemRun> system;
     Instant due{}, began = Monotonic::now();
     std::uint64_t generation = 0;
     bool said_waiting = false;
@@ -81,7 +84,7 @@ int watch(Observer& observer, bool as_json) {
         if (!observer.seen() || Monotonic::now() < due) continue;
         if (generation != observer.generation()) {
             generation = observer.generation();
-            places = places_of(observer.region());
+            system = system_run_of(observer.region());
             began = Monotonic::now();
         }
         said_waiting = false;
@@ -93,8 +96,7 @@ int watch(Observer& observer, bool as_json) {
             std::fflush(stdout);
             continue;
         }
-        const auto sample =
-            take_sample(observer.region(), places ? &*places : nullptr, to_s(Monotonic::now() - began));
+        const auto sample = take_sample(observer.region(), system.get(), to_s(Monotonic::now() - began));
         if (!sample) continue;
         if (lines++ % 20 == 0) std::fputs(table_header(*sample).c_str(), stdout);
         std::fputs(table_row(*sample).c_str(), stdout);
@@ -115,7 +117,7 @@ int status(const StatusOptions& o) {
         }
         ::poll(nullptr, 0, 20);
     }
-    std::fprintf(stderr, "%s\n  mend: start one with tact demo dock, or name its session with --session\n",
+    std::fprintf(stderr, "%s\n  fix: start one with tact demo dock, or name its session with --session\n",
                  observer.status_text().c_str());
     return 1;
 }
@@ -123,14 +125,13 @@ int status(const StatusOptions& o) {
 }  // namespace
 
 void add_status(CLI::App& app, int& exit_code) {
-    auto* const command =
-        app.add_subcommand("status", "how the running controller is doing; exit code 1: none runs");
+    auto* const command = app.add_subcommand(
+        "status", "Print the state and rates of the running controller; exit code 1: none runs");
     const auto o = std::make_shared<StatusOptions>();
-    command->add_option("--session", o->session, "name of the session")
-        ->type_name("NAME")
-        ->capture_default_str();
-    command->add_flag("--json", o->json, "print as JSON, for programs; with --watch one object a line");
-    command->add_flag("--watch", o->watch, "a line a second, also across restarts, until Ctrl-C");
+    command->add_option("--session", o->session, "Session name")->type_name("NAME")->capture_default_str();
+    command->add_flag("--json", o->json, "Print as JSON; with --watch one object per line");
+    command->add_flag("--watch", o->watch,
+                      "Print one line per second, also across restarts of the controller, until Ctrl-C");
     command->callback([o, &exit_code] { exit_code = status(*o); });
 }
 

@@ -1,4 +1,5 @@
-// The words that a user types behind `tact`; one file each, named command_<word>.cpp.
+// The commands of `tact` that are the same for all systems; one file each, named command_<name>.cpp. Those of one system are in
+// deploy/tact/systems.
 //
 // A command adds itself to the parser with a callback that puts the exit code into `exit_code`.
 #pragma once
@@ -7,10 +8,7 @@
 
 namespace tact::launch {
 
-void add_demo(CLI::App& app, int& exit_code);
-void add_dock(CLI::App& app, int& exit_code);
-void add_drill(CLI::App& app, int& exit_code);
-void add_touch(CLI::App& app, int& exit_code);
+void add_demo(CLI::App& app, int& exit_code);  // tact demo dock, ...
 void add_run(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_config(CLI::App& app);
@@ -21,7 +19,6 @@ void add_status(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
-void add_eval(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app);
 void add_reproduce(CLI::App& app);
 

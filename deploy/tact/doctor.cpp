@@ -152,7 +152,7 @@ Finding dma_latency(const Machine& m) {
 Finding throttling(const Machine& m) {
     const std::string text = trimmed(m.rt_runtime_us);
     if (text == "-1") return ok("throttling", "real-time threads are not throttled");
-    if (text.empty()) return ok("throttling", "the kernel tells nothing of real-time throttling");
+    if (text.empty()) return ok("throttling", "the kernel does not report real-time throttling");
     return {"throttling", FindingLevel::ok,
             "a real-time thread that never sleeps loses its core after " + text +
                 " us of every second; Tact's sleeps each cycle, --free-run under FIFO does not",
@@ -183,8 +183,8 @@ Finding clock(const Machine& m) {
     const std::string source = trimmed(m.clocksource);
     if (source == "tsc" || source == "arch_sys_counter" || source == "kvm-clock" || source.empty())
         return ok("clock",
-                  "clock source " + (source.empty() ? "not told" : source) + ": read without a system call");
-    return warn("clock", "clock source " + source + ": every look at the clock is a system call",
+                  "clock source " + (source.empty() ? "unknown" : source) + ": read without a system call");
+    return warn("clock", "clock source " + source + ": every reading of the clock is a system call",
                 "start with the kernel option clocksource=tsc");
 }
 

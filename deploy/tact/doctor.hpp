@@ -1,4 +1,4 @@
-// What of this machine helps or hinders a steady force rate, and the mend of each finding.
+// What of this machine helps or hinders a steady force rate, and the fix of each finding.
 //
 // read_machine() gathers plain texts and numbers; judge() is pure, so that texts recorded on other machines
 // test it. Levels    fail: Tact will not run here. warn: it runs, but force rate or picture will be worse.
@@ -21,7 +21,7 @@ struct Finding {
     std::string name;  // stable, for programs: "kernel", "rtprio"
     FindingLevel level = FindingLevel::ok;
     std::string says;
-    std::string fix;  // "" where nothing is to be mended
+    std::string fix;  // "" where nothing is to be fixed
 };
 
 // As the kernel tells it; "" where a file is missing.

@@ -20,10 +20,10 @@ namespace {
 
 constexpr const char* kFolderFix = "set TACT_RUNTIME_DIR to a folder of your own (mode 0700)";
 
-// The text of a StartupError as a finding: its first line says what, its second how to mend it.
+// The text of a StartupError as a finding: its first line says what, its second how to fix it.
 Finding failed(const std::string& name, const std::exception& e) {
     const std::string text = e.what();
-    const auto cut = text.find("\n  mend: ");
+    const auto cut = text.find("\n  fix: ");
     return {name, FindingLevel::fail, text.substr(0, cut),
             cut == std::string::npos ? "" : text.substr(cut + 9)};
 }
@@ -78,9 +78,9 @@ Finding display() {
     if (!x.empty() || !wayland.empty())
         return {"display", FindingLevel::ok,
                 "a window opens on " + (x.empty() ? wayland : x) +
-                    (xvfb ? "; Xvfb is there for --headless" : "; no Xvfb for --headless"),
+                    (xvfb ? "; Xvfb is installed for --headless" : "; no Xvfb for --headless"),
                 xvfb ? "" : "sudo apt-get install xvfb"};
-    if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is there for --headless", ""};
+    if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is installed for --headless", ""};
     return {"display", FindingLevel::fail, "there is no display and no Xvfb, so nothing can be drawn",
             "sudo apt-get install xvfb"};
 }

@@ -1,11 +1,12 @@
-// tact: the one name that a user types.
+// tact: the launcher.
 //
-// Exit codes  0 all went as asked; 1 an error, said on standard error with its mend, or a process that died;
+// Exit codes  0 success; 1 an error, reported on standard error with its fix, or a process that died;
 //             2 wrong usage; 130 ended by a signal before a run had begun.
 #include <cstdio>
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/station/command_station.hpp"
+#include "deploy/tact/systems.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
@@ -14,13 +15,11 @@ int main(int argc, char** argv) {
     CLI::App app{"Tact: feel density maps, structures, surfaces and bone. Start with: tact demo dock"};
     app.set_version_flag("--version", tact::program_version("tact"));
     app.require_subcommand(1);
-    app.footer("Exit codes: 0 as asked; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
+    app.footer("Exit codes: 0 success; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
     int exit_code = 0;
     using namespace tact::launch;
     add_demo(app, exit_code);
-    add_dock(app, exit_code);
-    add_drill(app, exit_code);
-    add_touch(app, exit_code);
+    for (const System& system : systems()) system.add_commands(app, exit_code);
     add_run(app, exit_code);
     add_calibrate(app, exit_code);
     add_record(app);
@@ -32,7 +31,6 @@ int main(int argc, char** argv) {
     add_probe(app, exit_code);
     add_config(app);
     add_info(app, exit_code);
-    add_eval(app, exit_code);
     add_bench(app);
     add_reproduce(app);
     if (const auto answered = tact::manual::answer(

@@ -104,18 +104,16 @@ void health(Page& page, const HealthTopic& h) {
              kNs * static_cast<double>(h.cycle_cost_max_ns));
     if (h.delay_p99_ns > 0)
         page.one("tact_device_delay_seconds", "gauge",
-                 "from the encoders to the motors, p99 of the last second",
+                 "delay from the encoders to the motors, p99 of the last second",
                  kNs * static_cast<double>(h.delay_p99_ns));
     page.about("tact_state", "gauge", "1 for the state that the controller is in");
     for (int s = 0; s <= static_cast<int>(RunState::fault); ++s)
         page.value(h.state == s ? 1.0 : 0.0, label("state", run_state_text(static_cast<RunState>(s))));
-    page.one("tact_display_attached", "gauge", "1 where a visual process is attached",
-             h.gui_attached != 0 ? 1.0 : 0.0);
-    page.one("tact_display_rate_hertz", "gauge", "pictures in the last second", h.gui_fps);
+    page.one("tact_display_attached", "gauge", "1 if a window is attached", h.gui_attached != 0 ? 1.0 : 0.0);
+    page.one("tact_display_rate_hertz", "gauge", "frames in the last second", h.gui_fps);
     if (h.gui_fps > 0.0)
-        page.one("tact_frame_time_seconds", "gauge", "mean time of a picture in the last second",
-                 1.0 / h.gui_fps);
-    page.about("tact_device_bus_errors_total", "counter", "what was wrong on the bus of a hand's device");
+        page.one("tact_frame_time_seconds", "gauge", "mean frame time in the last second", 1.0 / h.gui_fps);
+    page.about("tact_device_bus_errors_total", "counter", "errors on the bus of a haptic device");
     for (std::size_t hand = 0; hand < kHandsMax; ++hand) {
         const BusCounts& b = h.device_bus[hand];
         for (const auto& [kind, n] : {std::pair{"checksum", b.checksum},
@@ -184,7 +182,7 @@ void levels(Page& page, const LevelsTopic& l) {
     };
     each("tact_level", "fidelity of a path, 0 to 1",
          [](const PathLevel& p) { return static_cast<double>(p.level); });
-    each("tact_level_items", "what the level means: points, vertices, rays",
+    each("tact_level_items", "number of items of a path at its level: points, vertices, rays",
          [](const PathLevel& p) { return static_cast<double>(p.items); });
     each("tact_level_cost_seconds", "measured time of a path's step",
          [](const PathLevel& p) { return p.cost_s; });
@@ -192,12 +190,11 @@ void levels(Page& page, const LevelsTopic& l) {
 
 void picture(Page& page, const FrameMetrics& f) {
     const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
-    page.one("tact_frames_total", "counter", "pictures since the visual process started", count(f.frames));
-    page.one("tact_frames_late_total", "counter",
-             "pictures that came more than half a period after they were due", count(f.late));
-    if (f.due_s > 0.0)
-        page.one("tact_frame_due_seconds", "gauge", "period that a picture is due in", f.due_s);
-    page.about("tact_frame_seconds", "summary", "from picture to picture, of the last ones");
+    page.one("tact_frames_total", "counter", "frames since the window started", count(f.frames));
+    page.one("tact_frames_late_total", "counter", "frames shown more than half a period after their due time",
+             count(f.late));
+    if (f.due_s > 0.0) page.one("tact_frame_due_seconds", "gauge", "period of the display", f.due_s);
+    page.about("tact_frame_seconds", "summary", "frame time of the last frames");
     for (const auto& [q, s] :
          {std::pair{"0.5", f.p50_s}, std::pair{"0.99", f.p99_s}, std::pair{"1", f.most_s}})
         page.value(static_cast<double>(s), label("quantile", q));
@@ -214,13 +211,13 @@ void picture(Page& page, const FrameMetrics& f) {
     };
     const auto pass = [](std::size_t i) { return std::string(pass_text(static_cast<Pass>(i))); };
     const auto path = [](std::size_t i) { return std::string(visual_path_text(i)); };
-    times("tact_pass_work_seconds", "processor time of a pass of a picture", "pass", kPasses, pass, f.pass,
+    times("tact_pass_work_seconds", "processor time of one rendering pass", "pass", kPasses, pass, f.pass,
           false);
-    times("tact_pass_drawn_seconds", "time of the renderer for a pass, where it is known", "pass", kPasses,
-          pass, f.pass, true);
-    times("tact_path_work_seconds", "processor time of a picture for a visual path", "path", kVisualPaths,
-          path, f.path, false);
-    times("tact_path_drawn_seconds", "time of the renderer for a visual path, where it is known", "path",
+    times("tact_pass_drawn_seconds", "rendering time of one pass, if known", "pass", kPasses, pass, f.pass,
+          true);
+    times("tact_path_work_seconds", "processor time of a visual path per frame", "path", kVisualPaths, path,
+          f.path, false);
+    times("tact_path_drawn_seconds", "rendering time of a visual path per frame, if known", "path",
           kVisualPaths, path, f.path, true);
     page.one("tact_display_gl_objects", "gauge", "objects of the graphics driver that are kept",
              count(f.gl_objects));

@@ -109,8 +109,7 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
     if (driver == "openhaptics") {
         if (hd_library.empty())
             return {
-                section, FindingLevel::fail,
-                what + "the maker's library libHD.so is not where it is looked for",
+                section, FindingLevel::fail, what + "the manufacturer's library libHD.so was not found",
                 "install the maker's OpenHaptics and device driver, or name the file (device.hd_library)"};
         return {section, FindingLevel::ok,
                 what + hd_library + "; which arms it knows is only seen when tact-rt opens it", ""};
@@ -124,17 +123,17 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
             serials.push_back(d.serial.empty() ? "without serial" : d.serial);
     }
     if (!known)
-        return {section, FindingLevel::fail, what + "there is no such driver, or none that can be probed",
-                "tact config check FILE names the drivers there are"};
+        return {section, FindingLevel::fail, what + "no such driver, or the driver cannot be probed",
+                "tact config check FILE lists the drivers"};
     const std::string which = serial.empty() ? "" : " with serial " + serial;
     if (serials.empty())
         return {section, FindingLevel::fail,
                 what + (b.usb.visible ? "no such device" + which + " on USB"
-                                      : "no USB can be seen here, so it cannot be told whether it is there"),
+                                      : "USB is not visible here, so that the device cannot be detected"),
                 "plug it in and switch it on, or set " + section + ".driver = \"sim\"; lsusb lists the bus"};
     if (serials.size() > 1)
         return {section, FindingLevel::fail, what + "there are several: " + joined(serials),
-                "say which one by " + section + ".serial"};
+                "select one with " + section + ".serial"};
     return {section, FindingLevel::ok, what + "there is one" + which, ""};
 }
 
@@ -142,7 +141,7 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
 Finding falcon_firmware(const DeviceRequest& request) {
     if (request.firmware.empty())
         return {"firmware", FindingLevel::warn,
-                "device.firmware is not set: a Falcon that has just got its power does not start",
+                "device.firmware is not set: a Falcon does not start after power-on",
                 "set it to the file that came with the device's own software"};
     if (request.firmware_bytes <= 0)
         return {"firmware", FindingLevel::fail,
@@ -160,7 +159,7 @@ Finding can(const Buses& b, const DeviceRequest& request) {
     const std::string what = wanted ? "tracker.interface = \"" + request.tracker_interface + "\": " : "";
     const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
     if (!b.can.visible)
-        return {"can", bad, what + "this kernel has no CAN, or hides it: no interface can be seen",
+        return {"can", bad, what + "this kernel has no CAN, or no interface is visible",
                 wanted ? "sudo modprobe can_raw; in a container use the host's network" : ""};
     std::vector<std::string> names;
     const CanInterface* mine = nullptr;
@@ -171,13 +170,13 @@ Finding can(const Buses& b, const DeviceRequest& request) {
     const std::string list = names.empty() ? "no CAN interface" : "CAN interfaces: " + joined(names);
     if (!wanted) return {"can", FindingLevel::ok, list, ""};
     if (mine == nullptr)
-        return {"can", bad, what + "there is none of this name; " + list,
+        return {"can", bad, what + "no interface has this name; " + list,
                 "plug the adapter in, or set tracker.interface"};
     if (!mine->up) return {"can", bad, what + "it is down", "sudo deploy/can-up " + mine->name};
     if (request.tracker_format == "fd" && !mine->fd)
-        return {
-            "can", bad, what + "it does not do CAN FD, which tracker.format asks for",
-            "sudo deploy/can-up " + mine->name + "; if that says classic, set tracker.format = \"classic\""};
+        return {"can", bad, what + "it does not support CAN FD, which tracker.format requires",
+                "sudo deploy/can-up " + mine->name +
+                    "; if the output contains classic, set tracker.format = \"classic\""};
     return {"can", FindingLevel::ok, what + list, ""};
 }
 
@@ -199,13 +198,13 @@ Finding gpio(const Buses& b, const DeviceRequest& request) {
     const std::string list = names.empty() ? "no GPIO chip" : "GPIO chips: " + joined(names);
     if (!wanted) return {"gpio", FindingLevel::ok, list, ""};
     if (mine.empty())
-        return {"gpio", bad, what + "there is none of this label, name or path; " + list,
+        return {"gpio", bad, what + "no chip has this label, name or path; " + list,
                 "plug the adapter in, or set lines.chip"};
     if (mine.size() > 1)
         return {"gpio", bad, what + "several chips have this label; " + list, "name one by its path"};
     const std::string no = refusal(mine.front()->node);
     if (!no.empty()) return {"gpio", bad, what + no, kDeviceRightsFix};
-    return {"gpio", FindingLevel::ok, what + "there, and may be opened; " + list, ""};
+    return {"gpio", FindingLevel::ok, what + "present and accessible; " + list, ""};
 }
 
 Finding groups(const Person& p) {
@@ -236,8 +235,8 @@ std::vector<Finding> judge_devices(const Buses& buses, const DeviceRequest& requ
     if (request.driver == "falcon" || request.driver2 == "falcon") out.push_back(falcon_firmware(request));
     if (request.driver != "openhaptics" && request.driver2 != "openhaptics")
         out.push_back({"openhaptics", FindingLevel::ok,
-                       hd_library.empty() ? "the maker's library libHD.so is not where it is looked for"
-                                          : "the maker's library is there: " + hd_library,
+                       hd_library.empty() ? "the manufacturer's library libHD.so was not found"
+                                          : "manufacturer's library: " + hd_library,
                        ""});
     out.push_back(can(buses, request));
     out.push_back(gpio(buses, request));

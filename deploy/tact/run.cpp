@@ -7,19 +7,20 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/observer.hpp"
-#include "deploy/tact/place.hpp"
+#include "deploy/tact/run_children.hpp"
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/run_report.hpp"
-#include "deploy/tact/save_fit.hpp"
 #include "deploy/tact/scene_switch.hpp"
 #include "deploy/tact/servo_core.hpp"
 #include "deploy/tact/signals.hpp"
+#include "deploy/tact/systems.hpp"
 #include "deploy/tact/x_server.hpp"
 #include "ipc/base/error.hpp"
 
@@ -33,15 +34,6 @@ constexpr auto kLineEvery = std::chrono::seconds(1);
 constexpr auto kLeaveCoreEvery = std::chrono::seconds(1);
 constexpr int kHeaderEvery = 20;
 
-// What to do about a program that ended otherwise than asked.
-std::string advice(const std::string& name, const Ending& e) {
-    if (e.by_signal && e.number == SIGKILL && !e.forced)
-        return "somebody killed it, or the machine ran out of memory (dmesg shows which)";
-    if (e.by_signal) return "this is a fault of " + name + "; run it alone under gdb, or look at coredumpctl";
-    if (e.forced) return "it hung; run it alone to see where";
-    return "see what it said above";
-}
-
 class OneRun {
 public:
     // The first scene of a run is armed as soon as it is seen; one that was opened from the window waits for a person.
@@ -50,11 +42,11 @@ public:
           scene_switch_(scene_switch),
           first_(first),
           file_(SceneFile::open(scene)),
-          places_(file_),
+          system_(system_of(file_).open_run(file_)),
           observer_(options_.session) {
         facts_.scene = std::filesystem::absolute(scene);
         facts_.session = options_.session;
-        if (!options_.save.empty()) check_save(file_, options_.save);  // not after an hour of work
+        if (!options_.save.empty()) system_->check_save(options_.save);  // not after an hour of work
     }
 
     int go() {
@@ -85,9 +77,7 @@ private:
     void start() {
         if (options_.gui) prepare_display();
         ChildSettings rt;
-        rt.arguments = {facts_.scene.string(), "--session", options_.session};
-        if (first_) rt.arguments.emplace_back(options_.gui ? "--arm-with-gui" : "--arm");
-        rt.arguments.insert(rt.arguments.end(), options_.controller.begin(), options_.controller.end());
+        rt.arguments = controller_arguments(facts_.scene, options_, first_);
         rt.grace = options_.grace;
         if (!options_.record.empty()) {  // before the controller, so that it has the run from its first cycle
             ChildSettings record;
@@ -104,33 +94,9 @@ private:
         rt_.emplace("tact-rt", find_program("tact-rt", options_.programs), rt);
         if (options_.gui) {
             ChildSettings gui;
-            gui.arguments = {facts_.scene.string(), "--session", options_.session};
-            const auto window_state =
-                std::find(options_.visual.begin(), options_.visual.end(), "--window-state");
-            const bool window_state_given = window_state != options_.visual.end();
-            // What a person set in the window goes on with the next scene.
-            if (!window_state_given && scene_switch_ != nullptr)
-                gui.arguments.insert(gui.arguments.end(),
-                                     {"--window-state", scene_switch_->window_state().string()});
-            const std::filesystem::path left = window_state_given ? std::filesystem::path(window_state[1])
-                                               : scene_switch_ != nullptr ? scene_switch_->window_state()
-                                                                          : "";
-            // A desk file has a size of its own.
-            if (first_ ? options_.size_given || !window_state_given : !std::filesystem::exists(left))
-                gui.arguments.insert(gui.arguments.end(), {"--size", options_.size});
+            gui.arguments = window_arguments(facts_.scene, options_, scene_switch_, first_,
+                                             system_->window_options([this] { return scratch().path(); }));
             gui.environment = display_;
-            if (!options_.screenshot.empty())
-                gui.arguments.insert(gui.arguments.end(), {"--screenshot", options_.screenshot.string()});
-            if (options_.seconds > 0.0)
-                gui.arguments.insert(gui.arguments.end(), {"--seconds", std::to_string(options_.seconds)});
-            if (places_.meta().kind == SceneKind::drilling) {
-                facts_.trainee = scratch().path() / "drilling.json";
-                gui.arguments.insert(gui.arguments.end(), {"--report", facts_.trainee.string()});
-            }
-            if (scene_switch_ != nullptr)
-                gui.arguments.insert(gui.arguments.end(),
-                                     {"--scene-switch", scene_switch_->folder().string()});
-            gui.arguments.insert(gui.arguments.end(), options_.visual.begin(), options_.visual.end());
             gui.grace = options_.grace;
             gui_.emplace("tact-gui", find_program("tact-gui", options_.programs), gui);
         }
@@ -164,9 +130,7 @@ private:
         if (observer_.poll() == Observer::News::arrived) {
             if (!seen_at_) seen_at_ = now;
         }
-        if (observer_.seen() && !facts_.bodies_start)
-            if (const auto bodies = newest(observer_.region().bodies))
-                facts_.bodies_start = places_.bodies(*bodies);
+        if (observer_.seen()) system_->watch(observer_.region());
         if (observer_.seen() && rt_ && !rt_->poll() && now >= core_due_) leave_core(now);
         if (observer_.seen() && rt_ && !rt_->poll() && now >= sample_due_) take(now);
         judge(now);
@@ -192,7 +156,7 @@ private:
 
     void take(Instant now) {
         sample_due_ = now + kSampleEvery;
-        auto sample = take_sample(observer_.region(), &places_, to_s(now - *seen_at_));
+        auto sample = take_sample(observer_.region(), system_.get(), to_s(now - *seen_at_));
         if (!sample) return;
         if (!options_.quiet && now >= line_due_) {
             line_due_ = now + kLineEvery;
@@ -264,7 +228,7 @@ private:
             facts_.fps_median = *middle;
         }
         const RtRegion* const region = observer_.seen() ? &observer_.region() : nullptr;
-        const nlohmann::json report = run_report(region, &places_, facts_);
+        const nlohmann::json report = run_report(region, *system_, facts_);
         std::printf("the run ended: %s\n", facts_.why_ended.c_str());
         std::fputs(report_summary(report).c_str(), stdout);
         std::fflush(stdout);  // before the words of the next scene's programs, in a file too
@@ -277,22 +241,12 @@ private:
             if (std::filesystem::exists(options_.screenshot))
                 std::printf("wrote %s\n", options_.screenshot.c_str());
             else
-                std::fprintf(stderr, "there is no picture %s: the window went before its time\n",
+                std::fprintf(stderr, "no screenshot %s: the window ended too early\n",
                              options_.screenshot.c_str());
         }
-        if (!options_.save.empty()) save(region);
+        if (!options_.save.empty())
+            system_->save(region, {facts_.scene, options_.save, options_.programs}, signals_);
         return facts_.intended ? 0 : 1;
-    }
-
-    // Where the controller left the bodies, however it ended.
-    void save(const RtRegion* region) {
-        const auto bodies = region != nullptr ? newest(region->bodies) : std::nullopt;
-        const nlohmann::json poses =
-            bodies ? poses_json(*bodies, places_.structures()) : nlohmann::json::object();
-        if (!poses.contains("bodies") || poses["bodies"].empty())
-            throw StartupError("saving into " + options_.save.string(),
-                               "the controller never said where the bodies are", "see what it said above");
-        save_fit(facts_.scene, poses, options_.save, options_.programs, signals_);
     }
 
     void note(const std::string& name, const Ending& e) {
@@ -301,7 +255,7 @@ private:
         // SIGTERM before the program had its own way of ending is what was asked for.
         if (e.asked && e.by_signal && e.number == SIGTERM) return;
         facts_.intended = false;
-        std::fprintf(stderr, "%s %s\n  mend: %s\n", name.c_str(), e.text().c_str(), advice(name, e).c_str());
+        std::fprintf(stderr, "%s %s\n  fix: %s\n", name.c_str(), e.text().c_str(), advice(name, e).c_str());
     }
 
     [[nodiscard]] double samples_length() const { return to_s(ended_at() - *seen_at_); }
@@ -316,7 +270,7 @@ private:
     std::optional<std::filesystem::path> next_;
     RunDescription facts_;
     SceneFile file_;
-    Places places_;
+    std::unique_ptr<SystemRun> system_;
     Signals signals_;
     Observer observer_;
     std::optional<ScratchFolder> scratch_;  // outlives the X server that uses it
@@ -357,8 +311,8 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
         } else if (code != 0 && !came_up && !before.empty()) {
             scene_switch->refuse(
                 "opening " + now.string() +
-                ": it could not be started with the options of this run; what the programs said "
-                "is in the terminal\n  mend: close the window and start: tact run " +
+                ": it could not be started with the options of this run; the terminal shows "
+                "the messages of the programs\n  fix: close the window and start: tact run " +
                 now.string());
             now = std::exchange(before, {});
         } else {

@@ -5,60 +5,41 @@
 
 #include "deploy/tact/installed_config.hpp"
 #include "deploy/tact/probe.hpp"
+#include "deploy/tact/systems.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact::launch {
 namespace {
 
-struct Passed {
-    const char* name;
-    const char* type;
-    const char* help;
-};
-
 // The controller checks the values; here only their names are known, so that there is one place to say what
 // is right.
-constexpr Passed kController[] = {
-    {"--rate", "HZ", "servo rate"},
-    {"--law", "elastic|sensitus|fixed", "law of the governor"},
-    {"--goal", "HZ", "force rate that the governor holds"},
-    {"--picture-goal", "FPS", "frames a second below which the surface gets coarser; 0: none"},
-    {"--level", "PATH=VALUE", "fixed level of a path, e.g. docking.force=1; the law becomes fixed"},
-    {"--start-offset-a", "A", "move the first structure this far from the place its file gives it"},
-    {"--start-rotation-deg", "DEG", "turn the first structure by this angle at the start"},
-    {"--seed", "N", "random seed of the start direction and axis, and of the emulated hand"},
-    {"--copies", "N", "so many bodies of the first structure; the others stand about the map"},
-    {"--poses", "FILE.json", "start with the bodies where the report of an earlier run has them"},
+constexpr PassedOption kController[] = {
+    {"--rate", "HZ", "Servo rate (Hz)"},
+    {"--law", "elastic|sensitus|fixed", "Law of the governor, which trades accuracy for rate"},
+    {"--goal", "HZ", "Force rate that the governor holds (Hz)"},
+    {"--picture-goal", "FPS",
+     "Frame rate below which the governor draws a coarser surface (frames/s); 0: none"},
+    {"--level", "PATH=VALUE",
+     "Fixed level of one path, from 0 to 1, such as docking.force=1; sets the law to fixed"},
+    {"--seed", "N", "Random seed for the start direction and the emulated hand"},
     {"--config", "FILE.toml",
-     "configuration of the controller, TOML; default: etc/tact/tact.toml of the installation, if any"},
-    {"--core", "N", "processor core of the servo thread"},
-    {"--priority", "P", "real-time priority of the servo thread"},
-    {"--force-scale", "X", "gain of the shown force"},
-    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube", "motion of the emulated hand"},
-    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube",
-     "motion of an emulated second hand; suction-tube: beside a surgeon"},
-    {"--hand-at-mm", "X,Y", "position in mm at which an emulated surgeon works"},
-    {"--pedal", "button|line|always",
-     "switch of the burr: button of the stylus, line of a foot pedal, or always on"},
-    {"--burr-mm", "MM", "diameter of the burr"},
-    {"--burr-shape", "sphere|cylinder|cone", "shape of the burr"},
-    {"--burr-rpm", "RPM", "speed of the burr"},
-    {"--tool-radius-mm", "MM", "radius of the ball that touches a surface; 0: a point"},
-    {"--stiffness", "N/M", "stiffness of a surface"},
-    {"--friction", "MU", "friction coefficient of a surface"},
-    {"--mode", "off-brute|off-tree|chr",
-     "how the surface is searched for contacts; chr: fine around the tool"},
+     "Configuration of the controller (TOML); default: etc/tact/tact.toml of the installation, if any"},
+    {"--core", "N", "Processor core of the servo thread"},
+    {"--priority", "P", "Real-time priority of the servo thread"},
+    {"--force-scale", "X", "Gain of the displayed force"},
+    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube", "Motion of the emulated hand"},
+    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube", "Motion of a second, emulated hand"},
 };
 
-constexpr Passed kVisual[] = {
-    {"--fps-max", "FPS", "highest rate of drawing"},
-    {"--ui-scale", "X", "letters and panels so many times as large as the display asks for"},
-    {"--particles", "N", "keep this many particles over bone, to measure what they cost"},
-    {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "stereo mode of the window"},
+constexpr PassedOption kVisual[] = {
+    {"--fps-max", "FPS", "Maximum frame rate (frames/s)"},
+    {"--ui-scale", "X", "Size of text and panels relative to the display's default"},
+    {"--particles", "N", "Constant number of particles over bone, to measure their cost"},
+    {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "Stereo mode of the window"},
     {"--window-state", "FILE.toml",
-     "begin with what was set in the window, TOML, and write it at the end; it need not exist"},
-    {"--stage", "FILE.toml", "where screen, eyes and workspace are, TOML; see gui/stereo/README.md"},
-    {"--stage-screenshot", "FILE.png", "the stereo picture at the end"},
+     "Settings of the window (TOML), read at the start if the file exists and written at the end"},
+    {"--stage", "FILE.toml", "Positions of screen, eyes and workspace (TOML); see gui/stereo/README.md"},
+    {"--stage-screenshot", "FILE.png", "Screenshot of the stereo image at the end"},
 };
 
 struct PassedFlag {
@@ -66,17 +47,23 @@ struct PassedFlag {
     const char* help;
 };
 constexpr PassedFlag kVisualFlags[] = {
-    {"--traces", "begin with the traces of every servo cycle in place of the plots"},
-    {"--swap-eyes", "swap the pictures of the two eyes"},
-    {"--test-picture", "begin with the stereo test picture: are eyes, scale and tool where they should be?"},
+    {"--traces", "Start with traces of every servo cycle instead of the plots"},
+    {"--swap-eyes", "Swap the images of the two eyes"},
+    {"--test-picture", "Start with the stereo test image, which checks eyes, scale and tool"},
 };
 
-// Is the hand an emulated one that nobody has said anything about? A configuration that was typed says something; the
-// installed one where it names a device.
-bool hand_is_free(const RunOptions& options) {
-    if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return false;
-    const auto config = installed_config();
-    return config.empty() || read_device_request(config).driver.starts_with("sim");
+void add_controller_option(CLI::App& group, const PassedOption& p, RunOptions& options) {
+    group
+        .add_option_function<std::vector<std::string>>(
+            p.name,
+            [&options, name = std::string(p.name)](const std::vector<std::string>& values) {
+                for (const auto& v : values) options.controller.insert(options.controller.end(), {name, v});
+            },
+            p.help)
+        ->type_name(p.type)
+        ->expected(1)
+        ->multi_option_policy(std::string(p.name) == "--level" ? CLI::MultiOptionPolicy::TakeAll
+                                                               : CLI::MultiOptionPolicy::Throw);
 }
 
 }  // namespace
@@ -95,14 +82,10 @@ void RunOptions::forget_scene() {
     typed.reset();
 }
 
-void let_the_hand_stroke(RunOptions& options) {
-    if (hand_is_free(options)) options.add_for_scene({"--hand", "stroke"});
-}
-
-void let_the_hands_drill(RunOptions& options) {
-    if (!hand_is_free(options)) return;
-    options.add_for_scene({"--hand", "surgeon"});
-    if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "suction-tube"});
+bool hand_is_free(const RunOptions& options) {
+    if (options.has_controller_option("--hand") || options.has_controller_option("--config")) return false;
+    const auto config = installed_config();
+    return config.empty() || read_device_request(config).driver.starts_with("sim");
 }
 
 void RunOptions::settle() {
@@ -117,15 +100,14 @@ void RunOptions::settle() {
         if (screenshot.empty() && gui) screenshot = out / "run.png";
     }
     if (!gui && !screenshot.empty())
-        throw StartupError("reading the options",
-                           "--screenshot needs the visual process, and --no-gui leaves it out",
-                           "leave one of the two away; --headless draws without a screen");
+        throw StartupError("reading the options", "--screenshot needs a window, and --no-gui starts none",
+                           "remove one of the two; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
     if (!flight.empty()) flight = std::filesystem::absolute(flight);
     if (!record.empty()) record = std::filesystem::absolute(record);
     if (!record.empty() && std::filesystem::exists(record))
-        throw StartupError("recording to " + record.string(), "the file is there already",
-                           "name another one, or remove it");
+        throw StartupError("recording to " + record.string(), "the file exists already",
+                           "give another name, or remove the file");
     if (!save.empty()) save = std::filesystem::absolute(save);
     if (!screenshot.empty()) {
         screenshot = std::filesystem::absolute(screenshot);
@@ -138,63 +120,51 @@ void RunOptions::settle() {
 }
 
 void add_run_options(CLI::App& app, RunOptions& options) {
-    app.add_option("--seconds", options.seconds,
-                   "end by itself after this time; default: when the window is closed")
+    app.add_option("--seconds", options.seconds, "Length of the run (s); default: until the window is closed")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_flag("--headless", options.headless, "draw without a screen, on an X server of its own (Xvfb)");
+    app.add_flag("--headless", options.headless, "Draw without a screen, on a private X server (Xvfb)");
     app.add_flag_callback(
-        "--no-gui", [&options] { options.gui = false; }, "run the controller alone, without a window");
-    app.add_option("--screenshot", options.screenshot, "picture of the window at the end")
+        "--no-gui", [&options] { options.gui = false; }, "Run the controller alone, without a window");
+    app.add_option("--screenshot", options.screenshot, "Screenshot of the window at the end")
         ->type_name("FILE.png");
-    app.add_option("--json", options.json, "write the measurements of the run as JSON")
-        ->type_name("FILE.json");
-    app.add_option("--out", options.out, "folder for run.json, run.csv (ten rows a second) and run.png")
+    app.add_option("--json", options.json, "Report of the run (JSON)")->type_name("FILE.json");
+    app.add_option("--out", options.out, "Folder for run.json, run.csv (ten rows per second) and run.png")
         ->type_name("DIR");
     app.add_option("--save", options.save,
-                   "new folder for the placed structures, their matrices and a table, at the end of the run")
+                   "New folder for the placed structures, their matrices and a table, written at the end")
         ->type_name("DIR");
     app.add_option("--record", options.record,
-                   "new file for every cycle of the run; see tact record, tact replay")
+                   "New recording of every servo cycle; see tact record and tact replay")
         ->type_name("FILE.h5");
-    app.add_option("--flight", options.flight,
-                   "folder for the last 30 s, saved at an overrun, a fault or the window's key M")
+    app.add_option(
+           "--flight", options.flight,
+           "Folder for recordings of the last 30 s, saved at an overrun, a fault or the key M in the window")
         ->type_name("DIR");
-    app.add_option("--session", options.session, "name under which the processes find each other")
+    app.add_option("--session", options.session, "Session name by which the processes find each other")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_flag("--quiet", options.quiet, "print no table of rates");
+    app.add_flag("--quiet", options.quiet, "Do not print the table of rates");
 
-    auto* const controller = app.add_option_group("Controller", "options that go on to tact-rt");
-    for (const Passed& p : kController) {
-        controller
-            ->add_option_function<std::vector<std::string>>(
-                p.name,
-                [&options, name = std::string(p.name)](const std::vector<std::string>& values) {
-                    for (const auto& v : values) {
-                        options.controller.push_back(name);
-                        options.controller.push_back(v);
-                    }
-                },
-                p.help)
-            ->type_name(p.type)
-            ->expected(1)
-            ->multi_option_policy(std::string(p.name) == "--level" ? CLI::MultiOptionPolicy::TakeAll
-                                                                   : CLI::MultiOptionPolicy::Throw);
-    }
+    auto* const controller =
+        app.add_option_group("Controller", "Options for tact-rt; default: the value in the configuration");
+    for (const PassedOption& p : kController) add_controller_option(*controller, p, options);
+    for (const System& system : systems())
+        for (const PassedOption& p : system.controller_options)
+            add_controller_option(*controller, p, options);
     controller->add_flag_callback(
         "--free-run", [&options] { options.controller.emplace_back("--free-run"); },
-        "as many force updates as the processor gives, in place of --rate");
+        "Update the force as often as the processor allows, instead of at --rate");
 
-    auto* const visual = app.add_option_group("Window", "options that go on to tact-gui");
-    visual->add_option("--size", options.size, "size of the window in pixels")
+    auto* const visual = app.add_option_group("Window", "Options for tact-gui");
+    visual->add_option("--size", options.size, "Size of the window (pixels)")
         ->type_name("WxH")
         ->each([&options](const std::string&) { options.size_given = true; })
         ->capture_default_str();
     for (const PassedFlag& p : kVisualFlags)
         visual->add_flag_callback(
             p.name, [&options, name = p.name] { options.visual.emplace_back(name); }, p.help);
-    for (const Passed& p : kVisual)
+    for (const PassedOption& p : kVisual)
         visual
             ->add_option_function<std::string>(
                 p.name,

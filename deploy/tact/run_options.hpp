@@ -42,14 +42,14 @@ struct RunOptions {
     void settle();
 };
 
-// A surface moves nobody: without a device and without another wish, the emulated hand strokes it.
-void let_the_hand_stroke(RunOptions& options);
+// Is the hand an emulated one for which no motion was chosen? A configuration that was typed chooses, the installed one where
+// it names a device.
+[[nodiscard]] bool hand_is_free(const RunOptions& options);
 
-// And bone: a surgeon with a burr, and a hand with a suction tube.
-void let_the_hands_drill(RunOptions& options);
-
-// Where they open the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
-inline constexpr const char* kMastoidMm = "-4.5,0";
+// Passed on to tact-rt, tact-gui or tact-prep, which check the value.
+struct PassedOption {
+    const char *name, *type, *help;
+};
 
 void add_run_options(CLI::App& app, RunOptions& options);
 

@@ -1,18 +1,34 @@
 #include "deploy/tact/run_record.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string_view>
 
+#include "deploy/tact/system_run.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact::launch {
 namespace {
 
+constexpr const char* kPlaced[] = {"offset_a", "angle_deg", "bone_taken_mm3"};
+
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+
+// Empty where the system has no such value.
+std::string own_text(const Sample& s, std::string_view column) {
+    for (const OwnValue& v : s.own) {
+        if (column != v.column) continue;
+        std::array<char, 48> text{};
+        std::snprintf(text.data(), text.size(), "%.*f", v.decimals, v.value);
+        return text.data();
+    }
+    return {};
+}
 
 }  // namespace
 
-std::optional<Sample> take_sample(const RtRegion& region, const Places* places, double t_s) {
+std::optional<Sample> take_sample(const RtRegion& region, const SystemRun* system, double t_s) {
     const auto health = newest(region.health);
     if (!health) return std::nullopt;
     Sample s;
@@ -30,12 +46,7 @@ std::optional<Sample> take_sample(const RtRegion& region, const Places* places, 
         if (const auto particles = level_at(*levels, kParticlesPathIndex))
             s.level_particles = particles->level;
     }
-    if (const auto drill = newest(region.drill))
-        s.taken_m3 = static_cast<double>(drill->removed_levels) * drill->level_m3;
-    if (const auto bodies = newest(region.bodies); bodies && places != nullptr) {
-        const auto all = places->bodies(*bodies);
-        if (all && bodies->active < all->size()) s.offset = places->offset((*all)[bodies->active]);
-    }
+    if (system != nullptr) system->sample(region, s);
     return s;
 }
 
@@ -43,8 +54,10 @@ std::string table_header(const Sample& s) {
     const std::string first =
         "                      force ----- lateness us -----\n"
         "  t s  state             Hz     p50     p99     max  overruns";
-    if (s.taken_m3) return first + "      rays   fps  level picture, force, particles  bone taken\n";
-    return first + "  vertices   fps  level mesh, force   from the file's place\n";
+    return first +
+           (s.particles ? "      rays   fps  level picture, force, particles"
+                        : "  vertices   fps  level mesh, force") +
+           s.heading + "\n";
 }
 
 std::string table_row(const Sample& s) {
@@ -56,22 +69,29 @@ std::string table_row(const Sample& s) {
                   us(h.lateness_p99_ns), us(h.lateness_max_ns), static_cast<unsigned long long>(h.overruns),
                   h.gui_vertices, h.gui_fps, s.level_picture, s.level_force);
     std::string text = line.data();
-    line[0] = 0;
-    if (s.taken_m3)
-        std::snprintf(line.data(), line.size(), ",       %4.2f  %7.1f mm3", s.level_particles,
-                      1e9 * *s.taken_m3);
-    else if (s.offset)
-        std::snprintf(line.data(), line.size(), "   %7.2f A %6.2f deg", s.offset->distance_a,
-                      s.offset->angle_deg);
-    return text + line.data() + "\n";
+    if (s.particles) {
+        std::snprintf(line.data(), line.size(), ",       %4.2f", s.level_particles);
+        text += line.data();
+    }
+    return text + s.line_end + "\n";
 }
 
 std::string samples_csv(const std::vector<Sample>& samples) {
+    // The first three columns of systems have their place in the file since its beginning; others follow at the end.
+    std::vector<std::string> more;
+    for (const Sample& s : samples)
+        for (const OwnValue& v : s.own)
+            if (std::find(std::begin(kPlaced), std::end(kPlaced), std::string_view(v.column)) ==
+                    std::end(kPlaced) &&
+                std::find(more.begin(), more.end(), v.column) == more.end())
+                more.emplace_back(v.column);
     std::string text =
         "t_s,state,force_rate_hz,goal_hz,lateness_p50_us,lateness_p99_us,lateness_max_us,cycle_cost_p50_us,"
         "overruns,"
         "gui_fps,gui_vertices,vertices_asked,level_picture,level_force,points,offset_a,angle_deg,"
-        "level_particles,bone_taken_mm3\n";
+        "level_particles,bone_taken_mm3";
+    for (const std::string& column : more) text += "," + column;
+    text += '\n';
     for (const Sample& s : samples) {
         std::array<char, 320> line{};
         const HealthTopic& h = s.health;
@@ -82,18 +102,10 @@ std::string samples_csv(const std::vector<Sample>& samples) {
                       us(h.cycle_cost_p50_ns), static_cast<unsigned long long>(h.overruns), h.gui_fps,
                       h.gui_vertices, s.vertices_asked, s.level_picture, s.level_force, s.points);
         text += line.data();
-        if (s.offset) {
-            std::snprintf(line.data(), line.size(), "%.4f,%.4f,", s.offset->distance_a, s.offset->angle_deg);
-            text += line.data();
-        } else {
-            text += ",,";
-        }
+        text += own_text(s, kPlaced[0]) + "," + own_text(s, kPlaced[1]) + ",";
         std::snprintf(line.data(), line.size(), "%.4f,", s.level_particles);
-        text += line.data();
-        if (s.taken_m3) {
-            std::snprintf(line.data(), line.size(), "%.3f", 1e9 * *s.taken_m3);
-            text += line.data();
-        }
+        text += line.data() + own_text(s, kPlaced[2]);
+        for (const std::string& column : more) text += "," + own_text(s, column);
         text += '\n';
     }
     return text;

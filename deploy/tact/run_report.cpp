@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/observer.hpp"
-#include "deploy/tact/report_drilling.hpp"
+#include "deploy/tact/systems.hpp"
 #include "ipc/base/device_notice.hpp"
-#include "ipc/base/units.hpp"
 #include "ipc/topics/frames_json.hpp"
 #include "ipc/topics/text.hpp"
 #include "ipc/version/version.hpp"
@@ -97,70 +96,6 @@ json head(const RtRegion& region) {
             {"distortion", h->distortion}};
 }
 
-json offset_json(const Offset& o) { return {{"offset_a", o.distance_a}, {"angle_deg", o.angle_deg}}; }
-
-json fit_numbers(const Places& places, const std::vector<BodyAt>& bodies, const BodyAt& judged) {
-    json j = offset_json(places.offset(judged));
-    const auto fit = places.fit(bodies);
-    j["cc_zero"] = fit ? json(fit->cc_zero) : json(nullptr);
-    j["cc_mean"] = fit ? json(fit->cc_mean) : json(nullptr);
-    j["mean_density_sigma"] = fit ? json(fit->mean_density_sigma) : json(nullptr);
-    j["fraction_inside"] = fit ? json(fit->fraction_inside) : json(nullptr);
-    j["region_voxels"] = fit ? json(fit->region_voxels) : json(nullptr);
-    return j;
-}
-
-std::optional<std::vector<BodyAt>> bodies_of(const RtRegion& region, const Places& places) {
-    const auto topic = newest(region.bodies);
-    return topic ? places.bodies(*topic) : std::nullopt;
-}
-
-// What tact-rt --poses reads.
-json bodies_report(const RtRegion& region, const Places& places) {
-    const auto bodies = bodies_of(region, places);
-    if (!bodies) return nullptr;
-    json all = json::array();
-    for (const BodyAt& b : *bodies) {
-        const Vec3 p_a = b.T_model_body.p_m / kAngstromM;
-        const Quat& q = b.T_model_body.q;
-        json j = offset_json(places.offset(b));
-        j["id"] = b.id;
-        j["structure"] = b.structure;
-        j["name"] = places.structures()[b.structure].name;
-        j["pos_model_a"] = {p_a.x(), p_a.y(), p_a.z()};
-        j["quat_model_body_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
-        j["fixed"] = b.fixed;
-        j["in_hand"] = b.in_hand;
-        all.push_back(j);
-    }
-    return all;
-}
-
-// Offsets are those of the body in the hand, or of the first; the fit is that of all together.
-json fit_report(const RtRegion& region, const Places& places, const RunDescription& description) {
-    const auto bodies = bodies_of(region, places);
-    if (!bodies || bodies->empty()) return nullptr;
-    const auto in_hand =
-        std::find_if(bodies->begin(), bodies->end(), [](const BodyAt& b) { return b.in_hand; });
-    const BodyAt judged = in_hand != bodies->end() ? *in_hand : bodies->front();
-    json j = fit_numbers(places, *bodies, judged);
-    j["body"] = places.structures()[judged.structure].name;
-    j["body_id"] = judged.id;
-    j["region"] = kFitRegion;
-    j["resolution_a"] =
-        places.meta().resolution_m > 0.0 ? json(places.meta().resolution_m * 1e10) : json(nullptr);
-    j["voxel_a"] = places.grid().spacing_m.maxCoeff() * 1e10;
-    if (description.bodies_start) {
-        const auto& start = *description.bodies_start;
-        const auto same =
-            std::find_if(start.begin(), start.end(), [&](const BodyAt& b) { return b.id == judged.id; });
-        if (same != start.end()) j["at_start"] = fit_numbers(places, start, *same);
-    }
-    const std::vector<BodyAt> file = places.file_bodies();
-    j["at_file_place"] = fit_numbers(places, file, file[judged.structure]);
-    return j;
-}
-
 json ending_json(const Ending& e) {
     return {{"exit_code", e.by_signal ? json(nullptr) : json(e.number)},
             {"signal", e.by_signal ? json(e.number) : json(nullptr)},
@@ -220,13 +155,12 @@ json controller_report(const RtRegion& region) {
     return j;
 }
 
-json run_report(const RtRegion* region, const Places* places, const RunDescription& description) {
+json run_report(const RtRegion* region, const SystemRun& system, const RunDescription& description) {
     json j = region != nullptr ? controller_report(*region) : json::object();
-    if (region != nullptr && places != nullptr) {
-        j["bodies"] = bodies_report(*region, *places);
-        j["fit"] = fit_report(*region, *places, description);
-        if (json drilling = drilling_report(*region, description.trainee); drilling.is_object())
-            j["drilling"] = std::move(drilling);
+    if (region != nullptr) {
+        j["bodies"] = json::array();  // stable keys: every report has them
+        j["fit"] = nullptr;
+        system.report(*region, j);
     }
     if (j.contains("gui")) {
         // The controller's last word is from when the window was closing.
@@ -262,32 +196,15 @@ std::string report_summary(const json& r) {
             number(r["force_rate_hz"]), number(l["p50"]), number(l["p99"]), number(l["p999"]),
             number(l["max"]), number(r["servo"]["overruns"]));
         if (r["servo"]["free_running"].get<bool>())
-            add("free running; of each step's work %.0f %% done anew in the last 0.1 s, %.0f %% at least; "
-                "rested "
-                "%.0f %% of the time\n",
+            add("free running; recomputed fraction %.0f %% in the last 0.1 s, minimum %.0f %%; idle %.0f %% "
+                "of the time\n",
                 100.0 * number(r["servo"]["fresh"]["mean"]), 100.0 * number(r["servo"]["fresh"]["least"]),
                 100.0 * number(r["servo"]["rested"]));
         add("servo thread: %.0f allocations, %.0f locks, %.0f page faults; %s\n",
             number(r["servo"]["allocations"]), number(r["servo"]["locks"]), number(r["servo"]["page_faults"]),
             r["servo"]["schedule"].get<std::string>().c_str());
     }
-    if (r.contains("drilling")) text += drilling_summary(r["drilling"]);
-    if (r.contains("fit") && r["fit"].is_object()) {
-        const json& f = r["fit"];
-        if (f.contains("at_start"))
-            add("structure: from %.2f A, %.1f deg off the place of its file to %.2f A, %.1f deg\n",
-                number(f["at_start"]["offset_a"]), number(f["at_start"]["angle_deg"]), number(f["offset_a"]),
-                number(f["angle_deg"]));
-        if (f["cc_zero"].is_number())
-            add("fit: correlation about zero %.4f, about the mean %.4f (at the place of the file: %.4f, "
-                "%.4f; %s)\n",
-                number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
-                number(f["at_file_place"]["cc_mean"]), kFitRegion);
-        else
-            text +=
-                "fit: not computed, because the resolution of the map is not known (tact dock "
-                "--resolution-a)\n";
-    }
+    for (const System& system : systems()) text += system.summary(r);
     return text;
 }
 

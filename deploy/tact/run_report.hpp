@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "deploy/tact/child.hpp"
-#include "deploy/tact/place.hpp"
+#include "deploy/tact/system_run.hpp"
 #include "ipc/topics/regions.hpp"
 
 namespace tact::launch {
@@ -19,17 +19,15 @@ namespace tact::launch {
 struct RunDescription {
     std::filesystem::path scene;
     std::string session;
-    double length_s = 0.0;                            // the controller was seen
-    std::string why_ended;                            // "the time is over", "the window was closed", ...
-    bool intended = false;                            // all went as asked
-    std::map<std::string, Ending> endings;            // by program
-    std::optional<std::vector<BodyAt>> bodies_start;  // when the controller was first seen
-    std::filesystem::path trainee;                    // of drilling: what the window wrote; empty: nothing
-    std::optional<double> fps_median;                 // over the looks at a window that was drawing
+    double length_s = 0.0;                  // the controller was seen
+    std::string why_ended;                  // "the time is over", "the window was closed", ...
+    bool intended = false;                  // all went as asked
+    std::map<std::string, Ending> endings;  // by program
+    std::optional<double> fps_median;       // over the looks at a window that was drawing
 };
 
-// places: null where the scene is not known. Computes the fit, which may take a second.
-nlohmann::json run_report(const RtRegion* region, const Places* places, const RunDescription& description);
+// May take a second, where the system computes something (docking: the fit).
+nlohmann::json run_report(const RtRegion* region, const SystemRun& system, const RunDescription& description);
 
 // A controller's state alone, for `tact status`.
 nlohmann::json controller_report(const RtRegion& region);

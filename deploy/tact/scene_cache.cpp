@@ -89,7 +89,7 @@ std::filesystem::path baked_scene(const BakeRequest& request) {
     if (asked) return {};
     if (!ending.clean())
         throw StartupError("baking the scene", "tact-prep " + ending.text(),
-                           "see what it said above; tact-prep --help");
+                           "see its messages above; tact-prep --help");
     if (!std::filesystem::exists(scene, ignored))
         throw StartupError("baking the scene", "tact-prep wrote no file " + scene.string(),
                            "check the space in the cache folder");

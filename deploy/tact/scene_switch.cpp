@@ -39,7 +39,7 @@ void SceneSwitch::refuse(const std::string& why) {
     try {
         refuse_scene(folder(), why);
     } catch (const StartupError& e) {
-        std::fprintf(stderr, "tact: the window could not be told: %s\n", e.what());
+        std::fprintf(stderr, "tact: could not notify the window: %s\n", e.what());
     }
 }
 

@@ -1,5 +1,5 @@
-// The window's wish for another scene, looked at before anything is ended for it: a scene that cannot be opened is refused
-// in words, and the one that runs goes on.
+// The window's request for another scene, checked before any program ends for it: a scene that cannot be opened is refused with a
+// message, and the current one continues.
 //
 // Input    another process' (ipc/scene/file/scene_switch): bounded, and the scene is checked as a whole
 // Thread   the launcher's one

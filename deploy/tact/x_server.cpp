@@ -63,7 +63,7 @@ void write_cookie(const std::filesystem::path& path) {
     if (fd >= 0) close(fd);
     if (!ok)
         throw StartupError("writing " + path.string(), std::strerror(why),
-                           "free some space or mend the permissions");
+                           "free some space or fix the permissions");
 }
 
 // True once the server writes its display number, which it does when it listens.
@@ -106,7 +106,7 @@ XServer::XServer(const std::filesystem::path& scratch, int width, int height)
         const int log_fd = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
         if (log_fd < 0 || pipe2(number.data(), O_CLOEXEC) != 0)
             throw StartupError("starting Xvfb", std::strerror(errno),
-                               "free some space or mend the permissions of " + scratch.string());
+                               "free some space or fix the permissions of " + scratch.string());
         ChildSettings settings;
         settings.arguments = {display_,
                               "-displayfd",

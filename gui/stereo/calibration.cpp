@@ -111,7 +111,7 @@ void Calibration::follow_mark() {
     using State = RestWindow::State;
     for (const auto& [window, what] : {std::pair{&wand_, "the wand"}, std::pair{&stylus_, "the stylus"}})
         if (window->state() == State::failed) {
-            say(window->words(what));
+            say(window->text(what));
             wand_.stop();
             stylus_.stop();
             return;

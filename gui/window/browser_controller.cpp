@@ -97,7 +97,7 @@ void BrowserController::drop(const std::vector<std::string>& files, BrowserState
         return say(state, Grade::watch, "An import is under way: cancel it, or drop again when it is done.");
     Dropped meant = meaning_of(files);
     if (!meant.scene.empty()) return open_scene(meant.scene, state);
-    if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + kDroppedKinds);
+    if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + dropped_kinds_text());
     start_import(std::move(meant), state);
 }
 

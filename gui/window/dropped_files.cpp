@@ -4,13 +4,49 @@
 #include <cctype>
 #include <filesystem>
 
+#include "ipc/scene/file/scene_kinds.hpp"
+
 namespace tact {
 namespace {
 
-RawKind raw_kind(const std::string& file) {
+struct RawKind {
+    const SceneKindRow* system = nullptr;  // null: no system reads it
+    std::size_t type = 0;                  // in system->raw
+};
+
+bool is_scene(const std::string& file) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) return RawKind::scan;  // of DICOM files or pictures
-    return file_kind(file);
+    if (std::filesystem::is_directory(file, ignored)) return false;
+    std::string ending = std::filesystem::path(file).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending == ".tact";
+}
+
+template <class Fits>
+RawKind first_kind(Fits&& fits) {
+    for (const SceneKindRow& system : scene_kinds())
+        for (std::size_t i = 0; i < system.raw.size(); ++i)
+            if (fits(system.raw[i])) return {&system, i};
+    return {};
+}
+
+RawKind kind_of_name(const std::string& file) {
+    std::string name = std::filesystem::path(file).filename().string();
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (name.ends_with(".gz")) name.resize(name.size() - 3);
+    const std::string ending = std::filesystem::path(name).extension().string();
+    return first_kind([&](const RawFileType& type) {
+        return std::find(type.endings.begin(), type.endings.end(), ending) != type.endings.end();
+    });
+}
+
+RawKind kind_of_folder() {
+    return first_kind([](const RawFileType& type) { return type.folder_of != nullptr; });
+}
+
+RawKind kind_of(const std::string& file) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(file, ignored) ? kind_of_folder() : kind_of_name(file);
 }
 
 // A file's name for a line of words: no control characters, and what is long keeps its beginning and its ending.
@@ -31,50 +67,32 @@ std::string shown_name(const std::string& file) {
 
 }  // namespace
 
-const char* const kDroppedKinds =
-    "What can be dropped: a scene (.tact); a map (.mrc .map .ccp4 .rec .situs) together with its structures "
-    "(.pdb "
-    ".cif); a mesh (.ply .obj .stl .off); a scan (.nrrd .nhdr .nii .mhd .mha, or a folder of DICOM files or "
-    "pictures).";
-
-RawKind file_kind(const std::string& file) {
-    std::string name = std::filesystem::path(file).filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.ends_with(".tact")) return RawKind::scene;
-    if (name.ends_with(".gz")) name.resize(name.size() - 3);
-    const std::string ending = std::filesystem::path(name).extension().string();
-    struct Endings {
-        RawKind kind;
-        std::vector<std::string> endings;
-    };
-    static const Endings kEndings[] = {
-        {RawKind::map, {".mrc", ".map", ".ccp4", ".rec", ".situs", ".sit"}},
-        {RawKind::structure, {".pdb", ".ent", ".cif", ".mmcif"}},
-        {RawKind::mesh, {".ply", ".obj", ".stl", ".off"}},
-        {RawKind::scan, {".nrrd", ".nhdr", ".nii", ".mhd", ".mha"}},
-    };
-    for (const Endings& e : kEndings)
-        if (std::find(e.endings.begin(), e.endings.end(), ending) != e.endings.end()) return e.kind;
-    return RawKind::none;
+const std::string& dropped_kinds_text() {
+    static const std::string text = [] {
+        std::string all = "What can be dropped: a scene (.tact)";
+        for (const SceneKindRow& system : scene_kinds()) {
+            for (const RawFileType& type : system.raw) {
+                all +=
+                    (&type == system.raw.data() ? "; " : " together with ") + std::string(type.phrase) + " (";
+                for (const char* const ending : type.endings)
+                    all += (ending == type.endings.front() ? "" : " ") + std::string(ending);
+                if (type.folder_of != nullptr) all += ", or a folder of " + std::string(type.folder_of);
+                all += ")";
+            }
+        }
+        return all + ".";
+    }();
+    return text;
 }
 
-const char* raw_kind_text(RawKind kind) {
-    switch (kind) {
-        case RawKind::scene:
-            return "scene";
-        case RawKind::map:
-            return "map";
-        case RawKind::structure:
-            return "structure";
-        case RawKind::mesh:
-            return "mesh";
-        case RawKind::scan:
-            return "scan";
-        case RawKind::none:
-            break;
-    }
-    return "";
+const char* raw_file_text(const std::string& name) {
+    const RawKind kind = kind_of_name(name);
+    return kind.system != nullptr ? kind.system->raw[kind.type].name : "";
+}
+
+const char* raw_folder_text() {
+    const RawKind kind = kind_of_folder();
+    return kind.system != nullptr ? kind.system->raw[kind.type].name : "";
 }
 
 Dropped meaning_of(const std::vector<std::string>& files) {
@@ -86,52 +104,49 @@ Dropped meaning_of(const std::vector<std::string>& files) {
     if (files.empty()) return no("There is no file.");
     if (files.size() > kDroppedMost)
         return no("Too many files at once: a map and 16 structures are the most.");
-    std::vector<std::string> maps, structures, others;
+    const SceneKindRow* system = nullptr;
+    std::vector<std::vector<std::string>> by_type;
     for (const std::string& file : files) {
-        // Words of a command: an option must not be made of a name.
+        // Arguments of a command: an option must not be made of a name.
         if (file.empty() || file.front() != '/') return no("A file has no absolute path.");
-        switch (raw_kind(file)) {
-            case RawKind::none:
-                return no("'" + std::filesystem::path(file).filename().string() +
-                          "' is of no kind that Tact reads: its ending says what a file is.");
-            case RawKind::map:
-                maps.push_back(file);
-                break;
-            case RawKind::structure:
-                structures.push_back(file);
-                break;
-            default:
-                others.push_back(file);
+        if (is_scene(file)) {
+            if (files.size() > 1) return no("One scene at a time, without other files.");
+            out.scene = file;
+            return out;
         }
+        const RawKind kind = kind_of(file);
+        if (kind.system == nullptr)
+            return no("'" + std::filesystem::path(file).filename().string() +
+                      "' is of no kind that Tact reads: its ending says what a file is.");
+        if (system != nullptr && system != kind.system)
+            return no("These files belong to different systems: give those of one at a time.");
+        system = kind.system;
+        by_type.resize(system->raw.size());
+        by_type[kind.type].push_back(file);
     }
-    if (maps.empty() && structures.empty()) {
-        if (others.size() > 1) return no("One scene, mesh or scan at a time.");
-        const RawKind kind = raw_kind(others[0]);
-        if (kind == RawKind::scene)
-            out.scene = others[0];
-        else
-            out.import = {kind == RawKind::mesh ? "touch" : "drill", others[0]};
-        return out;
+    out.import = {system->command};
+    for (std::size_t i = 0; i < by_type.size(); ++i) {
+        const RawFileType& type = system->raw[i];
+        if (by_type[i].empty()) return no(type.missing);
+        if (by_type[i].size() > type.files_max)
+            return no(type.files_max == 1 ? std::string("One ") + type.name + " at a time."
+                                          : "At most " + std::to_string(type.files_max) +
+                                                " files of the type " + type.name + ".");
+        out.import.insert(out.import.end(), by_type[i].begin(), by_type[i].end());
     }
-    if (!others.empty()) return no("A map and its structures cannot come together with other files.");
-    if (maps.size() != 1 || structures.empty())
-        return no(maps.empty()       ? "A structure needs the map that it is docked into: give both together."
-                  : maps.size() == 1 ? "A map needs a structure to dock into it: give both together."
-                                     : "One map at a time.");
-    out.import = {"dock", maps[0]};
-    out.import.insert(out.import.end(), structures.begin(), structures.end());
     return out;
 }
 
 std::string meaning_text(const Dropped& meant) {
     if (!meant.scene.empty()) return "Open " + shown_name(meant.scene) + ".";
     if (meant.import.empty()) return meant.trouble;
-    const std::string& command = meant.import[0];
+    std::string action;
+    for (const SceneKindRow& system : scene_kinds())
+        if (meant.import[0] == system.command) action = system.action;
     const std::string first = shown_name(meant.import[1]);
-    if (command == "touch") return "Touch " + first + ".";
-    if (command == "drill") return "Drill " + first + ".";
+    if (meant.import.size() == 2) return action + " " + first + ".";
     const std::size_t more = meant.import.size() - 3;
-    return "Dock " + shown_name(meant.import[2]) +
+    return action + " " + shown_name(meant.import[2]) +
            (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) + " into " + first + ".";
 }
 

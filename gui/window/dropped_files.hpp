@@ -1,7 +1,7 @@
 // What files mean that a person drops onto the window or marks in a list: a scene to open, or raw data that `tact` bakes
 // into one.
 //
-// By their endings alone; what is in them is for tact-prep to say.  Fails by words.  Thread any.
+// By their endings alone, which ipc/scene/file/scene_kinds lists; what is in them is for tact-prep to say.  Fails by words.  Thread any.
 #pragma once
 
 #include <string>
@@ -12,18 +12,17 @@ namespace tact {
 inline constexpr std::size_t kDroppedMost = 17;  // a map and as many structures as a scene holds
 
 // What can be dropped, as a sentence.
-extern const char* const kDroppedKinds;
+[[nodiscard]] const std::string& dropped_kinds_text();
 
-enum class RawKind { none, scene, map, structure, mesh, scan };
-// Of a file, by the ending of its name; no disk is asked.
-[[nodiscard]] RawKind file_kind(const std::string& name);
-[[nodiscard]] const char* raw_kind_text(RawKind kind);  // "map", ...; none: empty
+// The type of a raw file ("map", "mesh", ...) by the ending of its name, empty where no system reads it; no disk is asked.
+[[nodiscard]] const char* raw_file_text(const std::string& name);
+// Of a folder that stands for one file: of DICOM files or pictures.
+[[nodiscard]] const char* raw_folder_text();
 
 struct Dropped {
-    std::string scene;  // to open
-    std::vector<std::string>
-        import;           // words of `tact`: {"dock", MAP, MODEL...}, {"touch", MESH}, {"drill", SCAN}
-    std::string trouble;  // what cannot be done, why, and what to do instead
+    std::string scene;                // to open
+    std::vector<std::string> import;  // arguments of `tact`: {"dock", MAP, MODEL...}, {"touch", MESH}, ...
+    std::string trouble;              // what cannot be done, why, and what to do instead
 };
 
 [[nodiscard]] Dropped meaning_of(const std::vector<std::string>& files);

@@ -4,8 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "gui/window/png.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/image/png.hpp"
 
 namespace tact {
 namespace {
@@ -54,7 +54,7 @@ void PictureFiles::save_now(const Image& window) {
 
 void PictureFiles::write(const std::filesystem::path& path, const Image& image) {
     try {
-        write_png(path, image);
+        write_png(path, image.width_px, image.height_px, image.rgb);
         spdlog::info("wrote {}", path.string());
     } catch (const StartupError& e) {
         spdlog::error("{}", e.what());

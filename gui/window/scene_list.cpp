@@ -125,8 +125,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         } else if (path.extension() == ".tact") {
             scenes.push_back(path);
         } else if (it->is_regular_file(ignored)) {
-            const RawKind kind = file_kind(name);
-            if (kind != RawKind::none && kind != RawKind::scene)
+            if (raw_file_text(name)[0] != '\0')
                 raw.push_back(path);
             else if (!dicom && opened++ < kOpenedMost)
                 dicom = is_dicom(path);
@@ -143,7 +142,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
     };
     if (folder.has_parent_path() && folder.parent_path() != folder) add_folder(folder.parent_path(), "..");
     if (dicom) {
-        SceneRow row = raw_row_of(folder, raw_kind_text(RawKind::scan), now_unix_s);
+        SceneRow row = raw_row_of(folder, raw_folder_text(), now_unix_s);
         row.name = "This folder, of DICOM files";
         row.size.clear();
         out.rows.push_back(std::move(row));
@@ -157,8 +156,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
     for (std::size_t i = 0; i < folders_shown; ++i) add_folder(folders[i], folders[i].filename().string());
     for (std::size_t i = 0; i < scenes_shown; ++i) out.rows.push_back(scene_row_of(scenes[i], 0, now_unix_s));
     for (std::size_t i = 0; i < raw_shown; ++i)
-        out.rows.push_back(
-            raw_row_of(raw[i], raw_kind_text(file_kind(raw[i].filename().string())), now_unix_s));
+        out.rows.push_back(raw_row_of(raw[i], raw_file_text(raw[i].filename().string()), now_unix_s));
     if (out.trouble.empty() &&
         (folders.size() + scenes.size() + raw.size() > kFolderRowsMost || looked_at > kLookedAtMost))
         out.trouble = "Not all of this folder is shown: it holds too much.";

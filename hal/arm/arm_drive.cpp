@@ -7,14 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/shortened.hpp"
+
 namespace tact {
 
 namespace {
-
-Vec3 shortened(const Vec3& v, double max) noexcept {
-    const double size = v.stableNorm();
-    return size > max ? Vec3(v * (max / size)) : v;
-}
 
 // Each joint of the gimbal has a limit of its own; the torque is shortened as a whole until all hold.
 double torque_share(const Joint6& tau, const Vec3& max) noexcept {

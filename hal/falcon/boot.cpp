@@ -71,9 +71,9 @@ void Boot::enter(BootState state, Instant now) noexcept {
     heard_ = 0;
 }
 
-bool Boot::set(std::span<const FtdiRequest> line, Instant now) noexcept {
-    const bool taken =
-        std::all_of(line.begin(), line.end(), [this](const FtdiRequest& r) { return bus_->control(r); });
+bool Boot::set(std::span<const usb::VendorRequest> line, Instant now) noexcept {
+    const bool taken = std::all_of(line.begin(), line.end(),
+                                   [this](const usb::VendorRequest& r) { return bus_->control(r); });
     if (!taken) fail(BootFault::line, now);
     return taken;
 }

@@ -42,7 +42,7 @@ public:
     static constexpr Duration kEchoMax = std::chrono::seconds(1);
     static constexpr unsigned kAsks = 5, kAsksAfterLoad = 50, kHellos = 30, kAttempts = 3;
 
-    explicit Boot(FtdiBus& bus) : bus_(&bus) {}
+    explicit Boot(usb::Bus& bus) : bus_(&bus) {}
 
     // Before the first start().
     void give(std::vector<std::byte> firmware) { firmware_ = std::move(firmware); }
@@ -63,11 +63,11 @@ private:
     void ask(Instant now, unsigned tries) noexcept;
     void load(Instant now) noexcept;
     void fail(BootFault fault, Instant now) noexcept;
-    bool set(std::span<const FtdiRequest> line, Instant now) noexcept;
+    bool set(std::span<const usb::VendorRequest> line, Instant now) noexcept;
     void say(std::span<const std::byte> bytes, Instant now) noexcept;
     void echo(std::byte byte, Instant now) noexcept;
 
-    FtdiBus* bus_;
+    usb::Bus* bus_;
     std::vector<std::byte> firmware_;
     ReplyStream stream_;
     Reply reply_;

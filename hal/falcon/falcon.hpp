@@ -15,14 +15,13 @@
 // Thread    open() and destruction on the main one; read() and write() on the servo's, memory only
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "hal/api/haptic_device.hpp"
 #include "hal/arm/velocity.hpp"
 #include "hal/falcon/pump.hpp"
+#include "hal/usb/pump_thread.hpp"
 #include "ipc/base/fifo.hpp"
 
 namespace tact {
@@ -46,7 +45,7 @@ public:
     static constexpr Duration kFindMax = std::chrono::seconds(5);  // it is just being plugged or switched on
 
     explicit Falcon(const FalconSettings& settings);
-    Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> bus);
+    Falcon(const FalconSettings& settings, std::unique_ptr<usb::Bus> bus);
     ~Falcon() override;
     Falcon(const Falcon&) = delete;
     Falcon& operator=(const Falcon&) = delete;
@@ -62,8 +61,6 @@ private:
     void find();
     void wait_for_first_reply();
     void say(const std::string& text) const;
-    void start_thread();
-    void live() noexcept;
     [[nodiscard]] DeviceInfo describe() const;
 
     void latch(DeviceNotice fault) noexcept;
@@ -75,11 +72,10 @@ private:
 
     FalconSettings settings_;
     falcon::Kinematics legs_;
-    std::unique_ptr<falcon::FtdiBus> bus_;
+    std::unique_ptr<usb::Bus> bus_;
     std::unique_ptr<falcon::Pump> pump_;
     std::string serial_;
-    std::thread thread_;
-    std::atomic<bool> leave_{false};
+    usb::PumpThread thread_;
     bool opened_ = false;
 
     // Of the servo's thread.

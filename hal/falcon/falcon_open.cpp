@@ -1,30 +1,20 @@
 // What happens on the main thread: finding the device, its firmware, the pump's thread.
-#include <pthread.h>
-#include <signal.h>
-
 #include <cstdio>
 
 #include "hal/falcon/falcon.hpp"
+#include "hal/usb/bus_fault.hpp"
 #include "ipc/base/error.hpp"
-#include "ipc/base/rights.hpp"
 
 namespace tact {
 
 using falcon::BootFault;
 using falcon::Link;
-using phantom::BusFault;
-using phantom::BusFinding;
+using usb::BusFault;
+using usb::BusFinding;
 
 namespace {
 
 constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, written up to three times
-constexpr Duration kFlushMax = std::chrono::milliseconds(50);
-
-// What a moment may mend: udev gives the rights a little after the plug.
-bool passes(BusFault fault) noexcept {
-    return fault == BusFault::missing || fault == BusFault::denied || fault == BusFault::busy ||
-           fault == BusFault::not_ready;
-}
 
 [[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
     const std::string what = "opening the Falcon" + (serial.empty() ? "" : " " + serial);
@@ -40,13 +30,8 @@ bool passes(BusFault fault) noexcept {
                                "say which one by device.serial in the configuration");
         case BusFault::twins:
             throw StartupError(what, "two have this serial", "plug in one of them");
-        case BusFault::denied:
-            throw StartupError(what, "this user may not open it (" + found.detail + ")", kDeviceRightsFix);
-        case BusFault::busy:
-            throw StartupError(what, "another program has it (" + found.detail + ")",
-                               "end that program; lsof names it");
         default:
-            throw StartupError(what, found.detail, "unplug it and plug it in again; see dmesg");
+            usb::refuse_open(what, found);
     }
 }
 
@@ -65,7 +50,7 @@ bool passes(BusFault fault) noexcept {
 
 Falcon::Falcon(const FalconSettings& settings) : Falcon(settings, falcon::make_ftdi_bus()) {}
 
-Falcon::Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> bus)
+Falcon::Falcon(const FalconSettings& settings, std::unique_ptr<usb::Bus> bus)
     : settings_(settings),
       legs_(settings.geometry),
       bus_(std::move(bus)),
@@ -73,8 +58,7 @@ Falcon::Falcon(const FalconSettings& settings, std::unique_ptr<falcon::FtdiBus> 
 
 Falcon::~Falcon() {
     relax();
-    leave_.store(true, std::memory_order_relaxed);
-    if (thread_.joinable()) thread_.join();
+    thread_.stop();
     pump_->close();
 }
 
@@ -84,7 +68,11 @@ DeviceInfo Falcon::open() {
     find();
     wait_for_first_reply();
     opened_ = true;
-    if (settings_.thread) start_thread();
+    if (settings_.thread) {
+        const std::string refused =
+            thread_.start(*pump_, *bus_, "falcon", "the Falcon's bus", settings_.pump_priority);
+        if (!refused.empty()) say(refused);
+    }
     return describe();
 }
 
@@ -100,7 +88,7 @@ void Falcon::find() {
         const BusFinding found = pump_->open();
         serial_ = found.serial;
         if (found.fault == BusFault::none) return;
-        if (!passes(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
+        if (!usb::may_pass(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
         if (!said) say("waiting a few seconds for the Falcon: it is not there, or not ready yet");
         said = true;
         static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
@@ -134,26 +122,6 @@ DeviceInfo Falcon::describe() const {
     info.stiffness_n_m_max = kStiffnessNM;
     info.position_step_m = legs_.position_step_m();
     return info;
-}
-
-void Falcon::start_thread() {
-    // The new thread inherits a mask that lets no signal in: they belong to main.
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { live(); });
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    const std::string refused =
-        raise_to_fifo(thread_.native_handle(), "the Falcon's bus", settings_.pump_priority);
-    if (!refused.empty()) say(refused);
-}
-
-void Falcon::live() noexcept {
-    pthread_setname_np(pthread_self(), "falcon");
-    while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
-    const Instant end = bus_->now() + kFlushMax;
-    do pump_->round(std::chrono::milliseconds(1));
-    while (!pump_->quiet() && bus_->now() < end);
 }
 
 }  // namespace tact

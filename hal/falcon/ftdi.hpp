@@ -1,24 +1,19 @@
-// The USB serial converter in the Falcon (FTDI, full speed), as the pump sees it: the bus of hal/phantom with
-// the converter's own requests. One implementation speaks libusb, one is made of memory for tests.
+// The USB serial converter in the Falcon (FTDI, full speed), as the pump sees it: a bus of hal/usb whose
+// vendor requests set the converter.
 //
 // Events   of kind `packet`: bytes of the line, at most 62, without the converter's two status bytes; what it
 //          says came damaged is `receive_failed` and not given
 // Source   of requests and status: the Linux kernel's ftdi_sio.h; of the settings that the Falcon wants: libnifalcon
-// Thread   as UsbBus says; control() waits for the device, so never on the servo's
+// Thread   as usb::Bus says; control() waits for the device, so never on the servo's
 #pragma once
 
 #include <array>
 #include <memory>
 
-#include "hal/phantom/usb_bus.hpp"
+#include "hal/usb/bus.hpp"
+#include "hal/usb/device_kind.hpp"
 
 namespace tact::falcon {
-
-struct FtdiRequest {
-    std::uint8_t request = 0;
-    std::uint16_t value = 0;
-    bool operator==(const FtdiRequest&) const = default;
-};
 
 namespace ftdi {
 
@@ -26,13 +21,13 @@ inline constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xcb48;
 inline constexpr std::size_t kPacketBytes = 64, kStatusBytes = 2;
 inline constexpr std::size_t kPieceBytes = kPacketBytes - kStatusBytes;
 
-inline constexpr FtdiRequest kForgetIn{0, 1}, kForgetOut{0, 2};  // what waits in the converter
-inline constexpr FtdiRequest kDtrLow{1, 0x0100}, kDtrHigh{1, 0x0101}, kRtsLow{1, 0x0200};
-inline constexpr FtdiRequest kNoFlowControl{2, 0};
+inline constexpr usb::VendorRequest kForgetIn{0, 1}, kForgetOut{0, 2};  // what waits in the converter
+inline constexpr usb::VendorRequest kDtrLow{1, 0x0100}, kDtrHigh{1, 0x0101}, kRtsLow{1, 0x0200};
+inline constexpr usb::VendorRequest kNoFlowControl{2, 0};
 // 3 MHz by the value; its two high bits add a fraction: 01 is a half.
-inline constexpr FtdiRequest kBaud9600{3, 0x4138}, kBaud143k{3, 21}, kBaud1500k{3, 2};
-inline constexpr FtdiRequest k8n1{4, 8};
-inline constexpr FtdiRequest kLatency1ms{9, 1},
+inline constexpr usb::VendorRequest kBaud9600{3, 0x4138}, kBaud143k{3, 21}, kBaud1500k{3, 2};
+inline constexpr usb::VendorRequest k8n1{4, 8};
+inline constexpr usb::VendorRequest kLatency1ms{9, 1},
     kLatency16ms{9, 16};  // until a packet that is not full is sent
 
 // For the loader in the Falcon; DTR starts it anew.
@@ -41,21 +36,11 @@ inline constexpr std::array kBootLine{kForgetIn,      kForgetOut, kLatency16ms, 
 inline constexpr std::array kLoadLine{kDtrLow, kBaud143k};
 inline constexpr std::array kRunLine{kLatency1ms, kBaud1500k, k8n1, kNoFlowControl, kForgetIn, kForgetOut};
 
-struct Piece {
-    std::span<const std::byte> bytes;
-    bool damaged = false;  // overrun, parity, framing, break; or not even the status is there
-};
-[[nodiscard]] Piece piece_of(std::span<const std::byte> packet) noexcept;
+[[nodiscard]] usb::Piece piece_of(std::span<const std::byte> packet) noexcept;
 
 }  // namespace ftdi
 
-class FtdiBus : public phantom::UsbBus {
-public:
-    // False: the device did not take it.
-    virtual bool control(const FtdiRequest& request) noexcept = 0;
-};
-
 // The bus of this machine.
-[[nodiscard]] std::unique_ptr<FtdiBus> make_ftdi_bus();
+[[nodiscard]] std::unique_ptr<usb::Bus> make_ftdi_bus();
 
 }  // namespace tact::falcon

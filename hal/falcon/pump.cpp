@@ -6,10 +6,6 @@
 namespace tact::falcon {
 
 using phantom::AmplifierState;
-using phantom::BusEvent;
-using phantom::BusEventKind;
-using phantom::BusFault;
-using phantom::BusFinding;
 
 namespace {
 
@@ -33,23 +29,19 @@ std::string summary(const PumpCounts& c) {
            ", connected again " + std::to_string(c.reconnects);
 }
 
-Pump::Pump(FtdiBus& bus, std::string serial, double rad_per_count)
-    : bus_(bus),
-      serial_(std::move(serial)),
+Pump::Pump(usb::Bus& bus, std::string serial, double rad_per_count)
+    : link_(bus, std::move(serial)),
       boot_(bus),
       counts_per_s_(kLegRadS / rad_per_count),
       amplifier_(0, kMost) {}
 
 std::uint32_t Pump::us() noexcept {
-    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_ns(bus_.now())) / 1000U);
+    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_ns(link_.bus().now())) / 1000U);
 }
 
-BusFinding Pump::open() {
-    BusFinding found = bus_.open(serial_);
-    if (found.fault == BusFault::none) {
-        if (serial_.empty()) serial_ = found.serial;  // from now on this one
-        connected(bus_.now(), false);
-    }
+usb::BusFinding Pump::open() {
+    usb::BusFinding found = link_.open();
+    if (found.fault == usb::BusFault::none) connected(link_.bus().now(), false);
     return found;
 }
 
@@ -58,35 +50,20 @@ void Pump::connected(Instant now, bool anew) noexcept {
     news_.boot_fault = BootFault::none;
     news_.reply.homed = 0;
     news_.on = news_.tripped = false;
-    sending_ = due_ = stalled_ = known_ = moved_ = false;
+    sending_ = due_ = known_ = moved_ = false;
     owed_ = unanswered_ = far_ = 0;
     amplifier_ = phantom::Amplifier(0, kMost);  // off: enable has to be seen low first
     sequence_ = 0;
     boot_.start(now, anew);
-    publish();
-}
-
-void Pump::reopen(Instant now) noexcept {
-    if (now < retry_at_) return;
-    retry_at_ = now + kReopenEvery;
-    BusFinding found;
-    try {
-        found = bus_.open(serial_);
-    } catch (...) {
-        return;  // out of memory for a moment: tried again
-    }
-    if (found.fault != BusFault::none) return;
-    ++news_.counts.reconnects;
-    connected(now, false);
+    publish(news_);
 }
 
 void Pump::lose(Instant now) noexcept {
-    bus_.close();
+    link_.lose(now);
     news_.link = Link::closed;
     news_.reply.homed = 0;
     news_.on = news_.tripped = false;
     sending_ = moved_ = false;
-    retry_at_ = now + kReopenEvery;
 }
 
 bool Pump::quiet() const noexcept { return news_.link != Link::open || (!moved_ && !sending_); }
@@ -94,10 +71,10 @@ bool Pump::quiet() const noexcept { return news_.link != Link::open || (!moved_ 
 Duration Pump::patience() const noexcept {
     constexpr Duration kLong = std::chrono::milliseconds(1);  // the watchdog is looked at that often
     if (news_.link != Link::open || owed_ > 0) return kLong;
-    const Instant now = bus_.now();
-    const Duration since = now - ordered_at_, interval(interval_ns_), idle = asked_at_ + kIdle - now;
-    const bool still = since > 20 * interval;  // the servo
-    return std::clamp(still ? idle : std::min(idle, interval - since), kPoll, kLong);
+    const Instant now = link_.bus().now();
+    const Duration since = now - ordered_at(), idle = asked_at_ + kIdle - now;
+    const bool still = since > 20 * interval();  // the servo
+    return std::clamp(still ? idle : std::min(idle, interval() - since), kPoll, kLong);
 }
 
 void Pump::follow_boot(Instant now) noexcept {
@@ -105,7 +82,7 @@ void Pump::follow_boot(Instant now) noexcept {
     news_.boot_fault = boot_.fault();
     if (boot_.state() == BootState::failed) {
         news_.link = Link::refused;
-        retry_at_ = now + 10 * kReopenEvery;  // then all of it again
+        restart_at_ = now + 10 * kReopenEvery;  // then all of it again
         return;
     }
     if (boot_.state() != BootState::done) return;
@@ -133,12 +110,7 @@ void Pump::take_order(Instant now) noexcept {
         due_ = true;
     }
     PumpOrder order;
-    const std::uint64_t written = mailbox_->order.count();
-    if (written == orders_seen_ || !mailbox_->order.read(order)) return;
-    orders_seen_ = written;
-    const std::int64_t passed = order.written_at_ns - to_ns(ordered_at_);
-    if (passed > 0) interval_ns_ = std::clamp<std::int64_t>(passed, 50'000, 2'000'000);
-    ordered_at_ = std::min(instant_from_ns(order.written_at_ns), now);
+    if (!fetch(order, now)) return;
     if (order.generation != news_.generation || order.relaxed != relaxed_seen_) return;
     apply(order.enable, order.heartbeat, order.torque);
     answers_ns_ = order.answers_ns;
@@ -163,7 +135,7 @@ void Pump::send_due(Instant now) noexcept {
     const bool free = owed_ == 0 && (due_ || now - asked_at_ >= kIdle);
     if (sending_ || (!urgent && !free)) return;
     const std::uint8_t colour = !homed() ? led::kRed : news_.on ? led::kGreen : led::kBlue;
-    if (!bus_.send(encode(Request{torque, colour, true}))) return;
+    if (!link_.bus().send(encode(Request{torque, colour, true}))) return;
     sending_ = true;
     due_ = false;
     moved_ = !zero;
@@ -181,7 +153,7 @@ void Pump::look_at_replies(Instant now) noexcept {
     stream_.reset();
     sent_answers_ns_ = last_answers_ns_ = 0;
     // What comes now was asked for too long ago.
-    if (!bus_.control(ftdi::kForgetIn) || ++unanswered_ >= kUnansweredMax) lose(now);
+    if (!link_.bus().control(ftdi::kForgetIn) || ++unanswered_ >= kUnansweredMax) lose(now);
 }
 
 // Before they are homed counts mean nothing, and jump when they begin to.
@@ -240,67 +212,50 @@ void Pump::take_bytes(std::span<const std::byte> bytes, Instant at) noexcept {
     sent_answers_ns_ = last_answers_ns_ = 0;
 }
 
-void Pump::take(const BusEvent& event) noexcept {
+void Pump::take(const usb::BusEvent& event) noexcept {
     if (news_.link == Link::closed) return;
     switch (event.kind) {
-        case BusEventKind::packet:
+        case usb::BusEventKind::packet:
             return take_bytes(
                 std::span(event.bytes).first(std::min<std::size_t>(event.size, event.bytes.size())),
                 event.at);
-        case BusEventKind::sent:
+        case usb::BusEventKind::sent:
             sending_ = false;
             return;
-        case BusEventKind::send_failed:
+        case usb::BusEventKind::send_failed:
             sending_ = false;
             moved_ = true;  // what the motors have is not known: the next zero is said again
             ++news_.counts.transfers_failed;
             return;
-        case BusEventKind::receive_failed:
+        case usb::BusEventKind::receive_failed:
             ++news_.counts.transfers_failed;
             return;
-        case BusEventKind::stalled:
+        case usb::BusEventKind::stalled:
             ++news_.counts.stalls;
             sending_ = false;
-            stalled_ = true;
             return;
-        case BusEventKind::gone:
+        case usb::BusEventKind::gone:
             return lose(event.at);
     }
 }
 
-void Pump::count_second(Instant now) noexcept {
-    if (now - second_at_ < std::chrono::seconds(1)) return;
-    second_at_ = now;
-    const std::uint64_t bad = news_.counts.bad() - second_bad_, taken = news_.counts.taken - second_taken_;
-    news_.last_second_bad = bad * 20 > bad + taken;
-    second_bad_ = news_.counts.bad();
-    second_taken_ = news_.counts.taken;
-}
-
-void Pump::publish() noexcept { mailbox_->news.publish(news_); }
-
 void Pump::round(Duration patience) noexcept {
-    const Instant now = bus_.now();
-    if (news_.link == Link::closed) reopen(now);
-    if (news_.link == Link::refused && now >= retry_at_) lose(now);
+    const Instant now = link_.bus().now();
+    if (news_.link == Link::closed && link_.reopen(now)) {
+        ++news_.counts.reconnects;
+        connected(now, false);
+    }
+    if (news_.link == Link::refused && now >= restart_at_) lose(now);
     if (news_.link == Link::starting) follow_boot(now);
     if (news_.link == Link::open) send_due(now);
-    for (std::size_t n = 0; n < kBatchesMax; ++n) {
-        const std::size_t count =
-            std::min(bus_.wait(events_, n == 0 ? patience : Duration{0}), events_.size());
-        for (const BusEvent& event : std::span(events_).first(count)) take(event);
-        if (count < events_.size()) break;
-    }
-    if (stalled_) {
-        stalled_ = false;
-        if (!bus_.clear_stall()) lose(bus_.now());
-    }
-    const Instant after = bus_.now();
+    const bool stalled = link_.drain(patience, [this](const usb::BusEvent& event) { take(event); });
+    if (stalled && news_.link != Link::closed && !link_.bus().clear_stall()) lose(link_.bus().now());
+    const Instant after = link_.bus().now();
     if (news_.link == Link::starting) follow_boot(after);
     if (news_.link == Link::open) look_at_replies(after);
     if (news_.link == Link::open) send_due(after);
-    count_second(after);
-    publish();
+    if (seconds_.over(after, news_.counts.bad(), news_.counts.taken)) news_.last_second_bad = seconds_.bad();
+    publish(news_);
 }
 
 }  // namespace tact::falcon

@@ -14,13 +14,13 @@
 // Thread    round() on one; read(), write() on the servo's; relax() on any
 #pragma once
 
-#include <atomic>
-#include <memory>
+#include <string>
 
 #include "hal/falcon/boot.hpp"
 #include "hal/falcon/kinematics.hpp"
 #include "hal/phantom/amplifier.hpp"
-#include "ipc/shm/latest.hpp"
+#include "hal/usb/pump_link.hpp"
+#include "hal/usb/pump_mail.hpp"
 
 namespace tact::falcon {
 
@@ -62,46 +62,33 @@ struct PumpOrder {
     std::int64_t written_at_ns = 0;
 };
 
-class Pump {
+class Pump : public usb::PumpMail<PumpNews, PumpOrder> {
 public:
-    static constexpr Duration kReopenEvery = std::chrono::milliseconds(200);
+    static constexpr Duration kReopenEvery = usb::PumpLink::kReopenEvery;
     static constexpr Duration kIdle = std::chrono::microseconds(1500);
     static constexpr Duration kReplyMax = std::chrono::milliseconds(8);
     static constexpr Duration kPoll = std::chrono::microseconds(50);  // for an order that is due
     static constexpr unsigned kUnansweredMax = 50, kFarMax = 3;
     static constexpr double kLegRadS = 60.0;  // twice what a quick hand makes of a leg
-    static constexpr std::size_t kBatch = 16, kBatchesMax = 4;
 
-    Pump(FtdiBus& bus, std::string serial, double rad_per_count);
+    Pump(usb::Bus& bus, std::string serial, double rad_per_count);
 
     // Before open().
     void give(std::vector<std::byte> firmware) { boot_.give(std::move(firmware)); }
 
     // Start-up: one try to open the bus. From then on round() keeps it open.
-    [[nodiscard]] phantom::BusFinding open();
+    [[nodiscard]] usb::BusFinding open();
     // What is due, then what comes within about `patience`.
     void round(Duration patience) noexcept;
     [[nodiscard]] Duration patience() const noexcept;
     // No torque on the wire, or no wire.
     [[nodiscard]] bool quiet() const noexcept;
-    void close() noexcept { bus_.close(); }
-
-    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mailbox_->news.read(news); }
-    void write(const PumpOrder& order) noexcept TACT_RT { mailbox_->order.publish(order); }
-    void relax() noexcept TACT_RT { relaxed_.fetch_add(1, std::memory_order_acq_rel); }
-    [[nodiscard]] std::uint32_t relaxed() const noexcept TACT_RT {
-        return relaxed_.load(std::memory_order_acquire);
-    }
+    void close() noexcept { link_.bus().close(); }
 
 private:
-    struct Mail {
-        Latest<PumpNews> news;
-        Latest<PumpOrder> order;
-    };
     [[nodiscard]] std::uint32_t us() noexcept;
     [[nodiscard]] bool homed() const noexcept { return news_.reply.homed == kHomedAll; }
     void connected(Instant now, bool anew) noexcept;
-    void reopen(Instant now) noexcept;
     void lose(Instant now) noexcept;
     void follow_boot(Instant now) noexcept;
     void look_at_replies(Instant now) noexcept;
@@ -109,35 +96,27 @@ private:
     void take_order(Instant now) noexcept;
     void send_due(Instant now) noexcept;
     [[nodiscard]] Torque3 torque() const noexcept;
-    void take(const phantom::BusEvent& event) noexcept;
+    void take(const usb::BusEvent& event) noexcept;
     void take_bytes(std::span<const std::byte> bytes, Instant at) noexcept;
     void take_reply(Reply reply, Instant at) noexcept;
     [[nodiscard]] bool possible(const Reply& reply, Instant at) const noexcept;
-    void count_second(Instant now) noexcept;
-    void publish() noexcept;
 
-    FtdiBus& bus_;
-    std::string serial_;
+    usb::PumpLink link_;
+    usb::BadSeconds seconds_;
     Boot boot_;
     double counts_per_s_;  // the most that a leg makes
-    std::unique_ptr<Mail> mailbox_ = std::make_unique<Mail>();
-    std::atomic<std::uint32_t> relaxed_{0};
 
     PumpNews news_;
     ReplyStream stream_;
     phantom::Amplifier amplifier_;
     std::uint32_t sequence_ = 0, relaxed_seen_ = 0;
-    std::uint64_t orders_seen_ = 0;
     unsigned owed_ = 0;  // replies
     unsigned unanswered_ = 0, far_ = 0;
-    bool sending_ = false, due_ = false, known_ = false, stalled_ = false;
+    bool sending_ = false, due_ = false, known_ = false;
     bool moved_ = false;    // there is torque on the wire
     bool doubted_ = false;  // what the encoders call their marks, until one of them has none
-    Instant asked_at_{}, taken_at_{}, retry_at_{}, second_at_{}, ordered_at_{};
-    std::int64_t interval_ns_ = 1'000'000;
+    Instant asked_at_{}, taken_at_{}, restart_at_{};
     std::int64_t answers_ns_ = 0, sent_answers_ns_ = 0, last_answers_ns_ = 0;
-    std::uint64_t second_taken_ = 0, second_bad_ = 0;
-    std::array<phantom::BusEvent, kBatch> events_{};
 };
 
 }  // namespace tact::falcon

@@ -2,10 +2,11 @@
 
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 
 #include <algorithm>
 #include <utility>
+
+#include "ipc/base/quiet_thread.hpp"
 
 namespace tact {
 
@@ -20,12 +21,7 @@ PumpedLines::~PumpedLines() {
 LinesInfo PumpedLines::open() {
     if (thread_.joinable()) return info_;
     info_ = worker_.open();
-    // The new thread inherits a mask that lets no signal in: they belong to main.
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { live(); });
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    thread_ = start_quiet_thread([this] { live(); });
     return info_;
 }
 

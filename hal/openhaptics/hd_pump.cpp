@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/shortened.hpp"
+
 namespace tact::hd {
 
 namespace {
@@ -18,11 +20,6 @@ bool within(const Vec3& v, double most) noexcept { return v.allFinite() && v.cwi
 bool rotation(const Eigen::Matrix3d& r) noexcept {
     return r.allFinite() && r.cwiseAbs().maxCoeff() < 2.0 && r.determinant() > 0.0 &&
            (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kRotationError;
-}
-
-Vec3 shortened(const Vec3& v, double most) noexcept {
-    const double size = v.stableNorm();
-    return size > most ? Vec3(v * (most / size)) : v;
 }
 
 }  // namespace

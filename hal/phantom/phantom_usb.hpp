@@ -13,10 +13,8 @@
 // Thread    open() and destruction on the main one; read() and write() on the servo's, memory only
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "hal/api/haptic_device.hpp"
 #include "hal/arm/arm_kinematics.hpp"
@@ -24,6 +22,7 @@
 #include "hal/arm/velocity.hpp"
 #include "hal/phantom/arm_watch.hpp"
 #include "hal/phantom/usb_pump.hpp"
+#include "hal/usb/pump_thread.hpp"
 #include "ipc/base/fifo.hpp"
 
 namespace tact {
@@ -45,7 +44,7 @@ public:
 
     // The board on the bus of this machine, through libusb.
     explicit PhantomUsb(const PhantomUsbSettings& settings);
-    PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phantom::UsbBus> bus);
+    PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<usb::Bus> bus);
     ~PhantomUsb() override;
     PhantomUsb(const PhantomUsb&) = delete;
     PhantomUsb& operator=(const PhantomUsb&) = delete;
@@ -62,8 +61,6 @@ private:
     void find_board();
     void wait_for_first_state();
     void say(const std::string& text) const;
-    void start_thread();
-    void live() noexcept;
     [[nodiscard]] DeviceInfo describe() const;
     [[nodiscard]] std::string versions() const;
 
@@ -80,10 +77,9 @@ private:
     Calibration calibration_;
     ArmVelocity velocity_;
     phantom::ArmWatch watch_;
-    std::unique_ptr<phantom::UsbBus> bus_;
+    std::unique_ptr<usb::Bus> bus_;
     std::unique_ptr<phantom::UsbPump> pump_;
-    std::thread thread_;
-    std::atomic<bool> leave_{false};
+    usb::PumpThread thread_;
     bool opened_ = false;
 
     // Of the servo's thread.

@@ -1,37 +1,27 @@
 // What happens on the main thread: finding the board, the first words with it, the pump's thread.
-#include <pthread.h>
-#include <signal.h>
-
 #include <algorithm>
 #include <cstdio>
 
-#include "hal/phantom/libusb_bus.hpp"
 #include "hal/phantom/phantom_usb.hpp"
+#include "hal/probe/known_devices.hpp"
+#include "hal/usb/bus_fault.hpp"
+#include "hal/usb/libusb_bus.hpp"
 #include "ipc/base/error.hpp"
-#include "ipc/base/rights.hpp"
 
 namespace tact {
 
-using phantom::BusFault;
-using phantom::BusFinding;
 using phantom::Link;
 using phantom::LinkRefusal;
+using usb::BusFault;
+using usb::BusFinding;
 
 namespace {
 
 constexpr Duration kFirstMax =
     std::chrono::seconds(2);  // until its first state, or for ten states that are just not too old
-constexpr Duration kFlushMax = std::chrono::milliseconds(50);
 
 std::string name_of(const std::string& serial) {
     return serial.empty() ? "the arm's USB board" : "the arm's USB board " + serial;
-}
-
-// What may still become a board that can be opened: it is being plugged, udev has not set its rights yet, the
-// program before this one is ending.
-bool passes(BusFault fault) noexcept {
-    return fault == BusFault::missing || fault == BusFault::denied || fault == BusFault::not_ready ||
-           fault == BusFault::busy;
 }
 
 std::string awaited(const BusFinding& found, const std::string& serial) {
@@ -57,25 +47,21 @@ std::string awaited(const BusFinding& found, const std::string& serial) {
         case BusFault::twins:
             throw StartupError(what, "two boards have this serial",
                                "give each board a serial of its own; until then plug in one of them");
-        case BusFault::denied:
-            throw StartupError(what, "this user may not open it (" + found.detail + ")", kDeviceRightsFix);
-        case BusFault::busy:
-            throw StartupError(what, "another program has it (" + found.detail + ")",
-                               "end that program; lsof names it");
         case BusFault::slow:
             throw StartupError(what, "it is at full speed, whose frames are a millisecond long",
                                "plug it into a port of USB 2 high speed, without a slow hub between");
         default:
-            throw StartupError(what, found.detail, "unplug it and plug it in again; see dmesg");
+            usb::refuse_open(what, found);
     }
 }
 
 }  // namespace
 
 PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings)
-    : PhantomUsb(settings, phantom::make_libusb_bus()) {}
+    : PhantomUsb(settings,
+                 usb::make_libusb_bus({.interface = probe::kPhantomInterface, .high_speed = true})) {}
 
-PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phantom::UsbBus> bus)
+PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<usb::Bus> bus)
     : settings_(settings),
       arm_(arm_parameters(settings.arm)),
       calibration_(arm_.parameters()),
@@ -87,8 +73,7 @@ PhantomUsb::PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<phant
 
 PhantomUsb::~PhantomUsb() {
     relax();
-    leave_.store(true, std::memory_order_relaxed);
-    if (thread_.joinable()) thread_.join();
+    thread_.stop();
     pump_->close();
 }
 
@@ -97,7 +82,11 @@ DeviceInfo PhantomUsb::open() {
     find_board();
     wait_for_first_state();
     opened_ = true;
-    if (settings_.thread) start_thread();
+    if (settings_.thread) {
+        const std::string refused =
+            thread_.start(*pump_, *bus_, "usb", "the arm's USB", settings_.pump_priority);
+        if (!refused.empty()) say(refused);
+    }
     return describe();
 }
 
@@ -112,7 +101,7 @@ void PhantomUsb::find_board() {
     while (true) {
         const BusFinding found = pump_->open();
         if (found.fault == BusFault::none) return;
-        if (!passes(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
+        if (!usb::may_pass(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
         if (found.fault != said) say(awaited(found, settings_.serial));
         said = found.fault;
         static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
@@ -165,25 +154,6 @@ DeviceInfo PhantomUsb::describe() const {
     info.stiffness_n_m_max = p.stiffness_n_m_max;
     info.position_step_m = arm_.position_step_m(p.calibration_rad);
     return info;
-}
-
-void PhantomUsb::start_thread() {
-    // The new thread inherits a mask that lets no signal in: they belong to main.
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { live(); });
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    const std::string refused =
-        raise_to_fifo(thread_.native_handle(), "the arm's USB", settings_.pump_priority);
-    if (!refused.empty()) say(refused);
-}
-
-void PhantomUsb::live() noexcept {
-    pthread_setname_np(pthread_self(), "usb");
-    while (!leave_.load(std::memory_order_relaxed)) pump_->round(pump_->patience());
-    const Instant end = bus_->now() + kFlushMax;
-    while (!pump_->quiet() && bus_->now() < end) pump_->round(std::chrono::milliseconds(1));
 }
 
 }  // namespace tact

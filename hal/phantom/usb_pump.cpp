@@ -11,48 +11,28 @@ constexpr unsigned kUnansweredMax = 10;
 
 }  // namespace
 
-BusFinding UsbPump::open() {
-    BusFinding found = bus_.open(serial_);
-    if (found.fault == BusFault::none) {
-        if (serial_.empty()) serial_ = found.serial;  // from now on this one
-        connected(bus_.now());
-    }
+usb::BusFinding UsbPump::open() {
+    usb::BusFinding found = link_.open();
+    if (found.fault == usb::BusFault::none) connected(link_.bus().now());
     return found;
 }
 
 void UsbPump::connected(Instant now) noexcept {
     news_.link = Link::asking;
     news_.refusal = LinkRefusal::none;
-    known_ = sending_ = relax_sending_ = stalled_ = false;
+    known_ = sending_ = relax_sending_ = false;
     query_due_ = true;
     unanswered_ = 0;
     heard_at_ = asked_at_ = now;
     relaxed_sent_ = relaxed();  // whatever was on is off: the board lost its link or is new
-    publish();
-}
-
-void UsbPump::reopen(Instant now) noexcept {
-    if (now < retry_at_) return;
-    retry_at_ = now + kReopenEvery;
-    BusFinding found;
-    try {
-        found = bus_.open(serial_);
-    } catch (...) {
-        return;  // out of memory for a moment: tried again
-    }
-    if (found.fault != BusFault::none) return;
-    ++news_.counts.reconnects;
-    connected(now);
+    publish(news_);
 }
 
 void UsbPump::lose(Instant now) noexcept {
-    bus_.close();
+    link_.lose(now);
     news_.link = Link::closed;
     sending_ = relax_sending_ = known_ = false;
-    retry_at_ = now + kReopenEvery;
 }
-
-void UsbPump::close() noexcept { bus_.close(); }
 
 bool UsbPump::quiet() const noexcept {
     return news_.link == Link::closed || news_.link == Link::refused ||
@@ -62,14 +42,13 @@ bool UsbPump::quiet() const noexcept {
 Duration UsbPump::patience() const noexcept {
     constexpr Duration kLong = std::chrono::milliseconds(5);
     if (news_.link != Link::open) return kLong;
-    const Duration since = bus_.now() - instant_from_ns(written_at_ns_);
-    const Duration interval(interval_ns_);
-    if (since > 20 * interval) return std::chrono::milliseconds(1);  // the servo stands still
-    return std::clamp(interval - since, kPoll, kLong);
+    const Duration since = link_.bus().now() - ordered_at();
+    if (since > 20 * interval()) return std::chrono::milliseconds(1);  // the servo stands still
+    return std::clamp(interval() - since, kPoll, kLong);
 }
 
 void UsbPump::send(const Command& command, const PumpOrder& order) noexcept {
-    if (!bus_.send(encode(command))) return;
+    if (!link_.bus().send(encode(command))) return;
     sending_ = true;
     sent_[command.sequence % kRing] = {command.sequence, order.state_us, command.enable, order.state_us != 0,
                                        command.current_ma};
@@ -81,7 +60,7 @@ void UsbPump::send(const Command& command, const PumpOrder& order) noexcept {
 void UsbPump::send_due(Instant now) noexcept {
     if (sending_ || news_.link == Link::closed || news_.link == Link::refused) return;
     if (query_due_) {
-        if (!bus_.send(encode(Query{}))) return;
+        if (!link_.bus().send(encode(Query{}))) return;
         sending_ = true;
         query_due_ = false;
         asked_at_ = now;
@@ -100,12 +79,7 @@ void UsbPump::send_due(Instant now) noexcept {
         return;
     }
     PumpOrder order;
-    const std::uint64_t written = mailbox_->order.count();
-    if (written == orders_seen_ || !mailbox_->order.read(order)) return;
-    orders_seen_ = written;
-    const std::int64_t passed = order.written_at_ns - written_at_ns_;
-    if (passed > 0) interval_ns_ = std::clamp<std::int64_t>(passed, 50'000, 2'000'000);
-    written_at_ns_ = order.written_at_ns;
+    if (!fetch(order, now)) return;
     if (order.generation != news_.generation || order.relaxed != relaxed()) return;
     c.heartbeat = order.heartbeat;
     c.enable = order.enable;
@@ -114,20 +88,17 @@ void UsbPump::send_due(Instant now) noexcept {
 }
 
 void UsbPump::count_second(Instant now) noexcept {
-    if (now - second_at_ < std::chrono::seconds(1)) return;
-    second_at_ = now;
-    const std::uint64_t bad = news_.counts.bad() - second_bad_, taken = news_.counts.taken - second_taken_;
-    news_.last_second_bad = bad * 20 > bad + taken;
+    if (!seconds_.over(now, news_.counts.bad(), news_.counts.taken)) return;
+    news_.last_second_bad = seconds_.bad();
     if (news_.last_second_bad) ++news_.counts.bad_seconds;
-    second_bad_ = news_.counts.bad();
-    second_taken_ = news_.counts.taken;
 }
 
-void UsbPump::publish() noexcept { mailbox_->news.publish(news_); }
-
 void UsbPump::round(Duration patience) noexcept {
-    const Instant now = bus_.now();
-    if (news_.link == Link::closed) reopen(now);
+    const Instant now = link_.bus().now();
+    if (news_.link == Link::closed && link_.reopen(now)) {
+        ++news_.counts.reconnects;
+        connected(now);
+    }
     if (news_.link == Link::open && now - heard_at_ > silence_) {
         news_.link = Link::asking;
         query_due_ = true;
@@ -137,19 +108,11 @@ void UsbPump::round(Duration patience) noexcept {
         if (++unanswered_ > kUnansweredMax) lose(now);
     }
     send_due(now);
-    for (std::size_t n = 0; n < kBatchesMax; ++n) {
-        const std::size_t count =
-            std::min(bus_.wait(events_, n == 0 ? patience : Duration{0}), events_.size());
-        for (const BusEvent& event : std::span(events_).first(count)) take(event);
-        if (count < events_.size()) break;
-    }
-    if (stalled_) {
-        stalled_ = false;
-        if (!bus_.clear_stall()) lose(bus_.now());
-    }
-    send_due(bus_.now());
-    count_second(bus_.now());
-    publish();
+    const bool stalled = link_.drain(patience, [this](const usb::BusEvent& event) { take(event); });
+    if (stalled && news_.link != Link::closed && !link_.bus().clear_stall()) lose(link_.bus().now());
+    send_due(link_.bus().now());
+    count_second(link_.bus().now());
+    publish(news_);
 }
 
 }  // namespace tact::phantom

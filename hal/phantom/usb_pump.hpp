@@ -12,15 +12,13 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <memory>
 #include <string>
 
 #include "hal/phantom/packets.hpp"
 #include "hal/phantom/pump_counts.hpp"
-#include "hal/phantom/usb_bus.hpp"
 #include "hal/tracker/tracker_clock.hpp"
-#include "ipc/shm/latest.hpp"
+#include "hal/usb/pump_link.hpp"
+#include "hal/usb/pump_mail.hpp"
 
 namespace tact::phantom {
 
@@ -56,88 +54,67 @@ struct PumpOrder {
     std::int64_t written_at_ns = 0;
 };
 
-class UsbPump {
+class UsbPump : public usb::PumpMail<PumpNews, PumpOrder> {
 public:
-    static constexpr Duration kReopenEvery = std::chrono::milliseconds(200);
+    static constexpr Duration kReopenEvery = usb::PumpLink::kReopenEvery;
     static constexpr Duration kAskEvery = std::chrono::milliseconds(100);
     static constexpr Duration kSilence = std::chrono::milliseconds(50);  // or longer: see below
     static constexpr Duration kPoll = std::chrono::microseconds(50);     // for a command that is due
     static constexpr Duration kWatchdogMax = std::chrono::milliseconds(100);
     static constexpr std::uint32_t kBehindMax = 5;
-    static constexpr std::size_t kBatch = 16;
-    static constexpr std::size_t kBatchesMax = 4;
 
     // A board that lets the force stand for longer than watchdog_max without a servo is refused. One that sent no
     // state for `silence` is asked again: not sooner than its states are too old, since questions displace commands.
-    UsbPump(UsbBus& bus, std::string serial, Duration watchdog_max = kWatchdogMax,
+    UsbPump(usb::Bus& bus, std::string serial, Duration watchdog_max = kWatchdogMax,
             Duration silence = kSilence)
-        : bus_(bus), serial_(std::move(serial)), watchdog_max_(watchdog_max), silence_(silence) {}
+        : link_(bus, std::move(serial)), watchdog_max_(watchdog_max), silence_(silence) {}
 
     // Start-up: one try to open the bus. From then on round() keeps it open.
-    [[nodiscard]] BusFinding open();
+    [[nodiscard]] usb::BusFinding open();
     // What is due, then what comes within about `patience`.
     void round(Duration patience) noexcept;
     // How long the next round may wait: until a command is due.
     [[nodiscard]] Duration patience() const noexcept;
     // The motors are off on the wire, or there is no wire.
     [[nodiscard]] bool quiet() const noexcept;
-    void close() noexcept;
-
-    [[nodiscard]] bool read(PumpNews& news) const noexcept TACT_RT { return mailbox_->news.read(news); }
-    void write(const PumpOrder& order) noexcept TACT_RT { mailbox_->order.publish(order); }
-    void relax() noexcept TACT_RT { relaxed_.fetch_add(1, std::memory_order_acq_rel); }
-    [[nodiscard]] std::uint32_t relaxed() const noexcept TACT_RT {
-        return relaxed_.load(std::memory_order_acquire);
-    }
+    void close() noexcept { link_.bus().close(); }
 
 private:
-    struct Mail {
-        Latest<PumpNews> news;
-        Latest<PumpOrder> order;
-    };
     struct Sent {
         std::uint32_t sequence = 0, state_us = 0;
         bool enable = false, answers = false;
         std::array<std::int16_t, 6> current_ma{};
     };
 
-    void reopen(Instant now) noexcept;
     void connected(Instant now) noexcept;
     void lose(Instant now) noexcept;
     void send_due(Instant now) noexcept;
     void send(const Command& command, const PumpOrder& order) noexcept;
-    void take(const BusEvent& event) noexcept;
-    void take_packet(const BusEvent& event) noexcept;
+    void take(const usb::BusEvent& event) noexcept;
+    void take_packet(const usb::BusEvent& event) noexcept;
     void take_info(const Info& info, Instant at) noexcept;
     void take_state(const State& state, Instant at) noexcept;
     void look_at_seen(Instant at) noexcept;
     void count_second(Instant now) noexcept;
-    void publish() noexcept;
 
-    UsbBus& bus_;
-    std::string serial_;
+    usb::PumpLink link_;
+    usb::BadSeconds seconds_;
     Duration watchdog_max_, silence_;
-    std::unique_ptr<Mail> mailbox_ = std::make_unique<Mail>();
-    std::atomic<std::uint32_t> relaxed_{0};
 
     PumpNews news_;
     SequenceGate gate_;
     SequenceGate::Counts before_;  // of the connections before this one
     TrackerClock board_clock_{std::chrono::milliseconds(50)};
-    Instant taken_at_{}, heard_at_{}, asked_at_{}, retry_at_{}, second_at_{};
+    Instant taken_at_{}, heard_at_{}, asked_at_{};
     std::uint32_t sequence_ = 0, relaxed_sent_ = 0, heartbeat_ = 0;
-    std::uint64_t orders_seen_ = 0;
-    std::uint64_t second_taken_ = 0, second_bad_ = 0;
     std::uint8_t board_refused_ = 0;
     unsigned unanswered_ = 0;
     bool sending_ = false, known_ = false;  // known: Info came over this connection
-    bool query_due_ = false, relax_sending_ = false, stalled_ = false;
+    bool query_due_ = false, relax_sending_ = false;
     std::uint32_t relax_wanted_ = 0;
-    std::int64_t written_at_ns_ = 0, interval_ns_ = 1'000'000;
     static constexpr std::size_t kRing = 64;
     std::array<Sent, kRing> sent_{};
     std::uint32_t seen_ = 0;
-    std::array<BusEvent, kBatch> events_{};
 };
 
 }  // namespace tact::phantom

@@ -20,7 +20,7 @@ void UsbPump::take_info(const Info& info, Instant at) noexcept {
     if (news_.link != Link::asking) return;  // an answer to a question asked twice
     heard_at_ = at;
     unanswered_ = 0;
-    const bool same_serial = serial_.empty() || text_of(info.serial) == serial_;
+    const bool same_serial = link_.serial().empty() || text_of(info.serial) == link_.serial();
     news_.refusal = common_version(Query{}, info) != kVersion ? LinkRefusal::version
                     : !same_serial                            ? LinkRefusal::serial
                     : !possible(info, watchdog_max_)          ? LinkRefusal::metrics
@@ -99,7 +99,7 @@ void UsbPump::take_state(const State& state, Instant at) noexcept {
     look_at_seen(at);
 }
 
-void UsbPump::take_packet(const BusEvent& event) noexcept {
+void UsbPump::take_packet(const usb::BusEvent& event) noexcept {
     if (event.size > event.bytes.size()) {
         ++news_.counts.refused[static_cast<std::size_t>(PacketFault::size)];
         return;
@@ -116,28 +116,27 @@ void UsbPump::take_packet(const BusEvent& event) noexcept {
     ++news_.counts.refused[static_cast<std::size_t>(was_info ? other : fault)];
 }
 
-void UsbPump::take(const BusEvent& event) noexcept {
+void UsbPump::take(const usb::BusEvent& event) noexcept {
     if (news_.link == Link::closed) return;
     switch (event.kind) {
-        case BusEventKind::packet:
+        case usb::BusEventKind::packet:
             return take_packet(event);
-        case BusEventKind::sent:
+        case usb::BusEventKind::sent:
             if (relax_sending_) relaxed_sent_ = relax_wanted_;
             sending_ = relax_sending_ = false;
             return;
-        case BusEventKind::send_failed:
+        case usb::BusEventKind::send_failed:
             sending_ = relax_sending_ = false;
             ++news_.counts.transfers_failed;
             return;
-        case BusEventKind::receive_failed:
+        case usb::BusEventKind::receive_failed:
             ++news_.counts.transfers_failed;
             return;
-        case BusEventKind::stalled:
+        case usb::BusEventKind::stalled:
             ++news_.counts.stalls;
             sending_ = relax_sending_ = false;
-            stalled_ = true;
             return;
-        case BusEventKind::gone:
+        case usb::BusEventKind::gone:
             return lose(event.at);
     }
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "hal/phantom/usb_bus.hpp"
+#include "hal/usb/bus.hpp"
 
 namespace tact::polhem {
 
@@ -15,7 +15,7 @@ class HidPort {
 public:
     virtual ~HidPort() = default;
     // Empty serial: the only board there is. Anything but `none` leaves it closed.
-    virtual phantom::BusFinding open(const std::string& serial) = 0;
+    virtual usb::BusFinding open(const std::string& serial) = 0;
     virtual void close() noexcept = 0;
     // Waits for at most so long for a report: its size, 0 where none came, or kPortGone. Closed, it only waits.
     virtual int read(std::span<std::byte> into, Duration patience) noexcept = 0;

@@ -15,8 +15,8 @@
 
 namespace tact::polhem {
 
-using phantom::BusFault;
-using phantom::BusFinding;
+using usb::BusFault;
+using usb::BusFinding;
 
 namespace {
 

@@ -15,8 +15,8 @@ namespace tact::polhem {
 inline constexpr std::uint16_t kVendor = 0x16c0, kProduct = 0x0486;
 
 // The board of that serial (empty: the only one) and its node; pure, for tests.
-[[nodiscard]] phantom::BusFinding find_board(const probe::Bus<probe::UsbDevice>& usb,
-                                             const std::string& serial, std::string& node);
+[[nodiscard]] usb::BusFinding find_board(const probe::Bus<probe::UsbDevice>& usb, const std::string& serial,
+                                         std::string& node);
 
 class HidrawPort final : public HidPort {
 public:
@@ -26,7 +26,7 @@ public:
     HidrawPort(const HidrawPort&) = delete;
     HidrawPort& operator=(const HidrawPort&) = delete;
 
-    phantom::BusFinding open(const std::string& serial) override;
+    usb::BusFinding open(const std::string& serial) override;
     void close() noexcept override;
     int read(std::span<std::byte> into, Duration patience) noexcept override;
     bool write(std::span<const std::byte> report) noexcept override;

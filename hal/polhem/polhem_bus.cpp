@@ -4,10 +4,10 @@
 
 namespace tact::polhem {
 
-using phantom::BusEvent;
-using phantom::BusEventKind;
-using phantom::BusFault;
-using phantom::BusFinding;
+using usb::BusEvent;
+using usb::BusEventKind;
+using usb::BusFault;
+using usb::BusFinding;
 
 namespace {
 
@@ -43,7 +43,7 @@ BusFinding PolhemBus::open(const std::string& serial) {
     counts32_.reset();
     sequence_ = 0;
     fails_ = 0;
-    first_ = queued_ = 0;
+    events_.clear();
     open_ = true;
     return found;
 }
@@ -52,20 +52,11 @@ void PolhemBus::close() noexcept {
     if (open_) static_cast<void>(port_->write(encode(OutReport{})));
     open_ = moved_ = false;
     port_->close();
-    queued_ = 0;
+    events_.clear();
 }
 
 void PolhemBus::push(BusEventKind kind, std::span<const std::byte> bytes) noexcept {
-    if (queued_ == kEvents) {  // nobody fetched them: the oldest goes
-        first_ = (first_ + 1) % kEvents;
-        --queued_;
-    }
-    BusEvent& e = events_[(first_ + queued_++) % kEvents];
-    e = {};
-    e.kind = kind;
-    e.at = port_->now();
-    e.size = static_cast<std::uint8_t>(std::min(bytes.size(), e.bytes.size()));
-    std::copy_n(bytes.begin(), e.size, e.bytes.begin());
+    events_.push(kind, port_->now(), bytes);
 }
 
 void PolhemBus::answer() noexcept {
@@ -136,7 +127,8 @@ void PolhemBus::take(std::span<const std::byte> bytes) noexcept {
 std::size_t PolhemBus::wait(std::span<BusEvent> events, Duration patience) noexcept {
     if (open_) guard();
     // The watchdog is looked at every millisecond, however long the caller would wait.
-    Duration left = queued_ > 0 ? Duration{0} : std::min<Duration>(patience, std::chrono::milliseconds(1));
+    Duration left =
+        !events_.empty() ? Duration{0} : std::min<Duration>(patience, std::chrono::milliseconds(1));
     std::array<std::byte, kReportBytesMax + 1> bytes{};
     if (!open_) static_cast<void>(port_->read({}, left));  // waits
     for (std::size_t n = 0; open_ && n < kReportsMax; ++n) {
@@ -152,12 +144,7 @@ std::size_t PolhemBus::wait(std::span<BusEvent> events, Duration patience) noexc
         take(std::span(bytes).first(std::min<std::size_t>(static_cast<std::size_t>(size), bytes.size())));
     }
     if (open_) guard();
-    std::size_t given = 0;
-    for (; given < events.size() && queued_ > 0; ++given, --queued_) {
-        events[given] = events_[first_];
-        first_ = (first_ + 1) % kEvents;
-    }
-    return given;
+    return events_.fetch(events);
 }
 
 }  // namespace tact::polhem

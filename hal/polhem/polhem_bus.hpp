@@ -8,7 +8,7 @@
 //           harmless here: after silence the currents stay zero. The former is what remains when the whole
 //           process stands still: a force may stand for half a second. Wire an emergency stop.
 // Currents  of a state are those that were commanded, since the board measures none
-// Thread    as UsbBus says
+// Thread    as usb::Bus says
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@
 #include <string>
 
 #include "hal/phantom/amplifier.hpp"
-#include "hal/phantom/usb_bus.hpp"
 #include "hal/polhem/hid_port.hpp"
 #include "hal/polhem/reports.hpp"
+#include "hal/usb/event_queue.hpp"
 
 namespace tact::polhem {
 
@@ -26,7 +26,7 @@ struct PolhemCounts {
     std::uint64_t reports = 0, refused = 0, written = 0, write_failed = 0;
 };
 
-class PolhemBus final : public phantom::UsbBus {
+class PolhemBus final : public usb::Bus {
 public:
     static constexpr std::uint16_t kCurrentMaxMa = 3000;  // the smaller of the boards' two sizes
     static constexpr unsigned kWriteFailsMax = 20;        // in a row: it is as good as gone
@@ -36,9 +36,9 @@ public:
     PolhemBus(const PolhemBus&) = delete;
     PolhemBus& operator=(const PolhemBus&) = delete;
 
-    phantom::BusFinding open(const std::string& serial) override;
+    usb::BusFinding open(const std::string& serial) override;
     void close() noexcept override;
-    std::size_t wait(std::span<phantom::BusEvent> events, Duration patience) noexcept override;
+    std::size_t wait(std::span<usb::BusEvent> events, Duration patience) noexcept override;
     bool send(std::span<const std::byte> packet) noexcept override;
     bool clear_stall() noexcept override { return true; }
     Instant now() noexcept override { return port_->now(); }
@@ -48,7 +48,7 @@ public:
 private:
     static constexpr std::size_t kEvents = 16;
 
-    void push(phantom::BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept;
+    void push(usb::BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept;
     void answer() noexcept;
     void take(std::span<const std::byte> bytes) noexcept;
     bool tell() noexcept;
@@ -60,8 +60,7 @@ private:
     Unwrapped counts32_;
     PolhemCounts counts_;
     std::string serial_;
-    std::array<phantom::BusEvent, kEvents> events_{};
-    std::size_t first_ = 0, queued_ = 0;
+    usb::EventQueue<kEvents> events_;
     std::uint32_t sequence_ = 0, time_us_ = 0;
     std::uint16_t boot_ = 0;
     unsigned fails_ = 0;

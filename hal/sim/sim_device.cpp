@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "ipc/base/shortened.hpp"
+
 namespace tact {
 
 namespace {
@@ -17,11 +19,6 @@ constexpr double kVelocityCutHz =
 Vec3 stepped(const Vec3& v, double step) noexcept {
     return {std::round(v.x() / step) * step, std::round(v.y() / step) * step,
             std::round(v.z() / step) * step};
-}
-
-Vec3 shortened(const Vec3& v, double max) noexcept {
-    const double size = v.stableNorm();
-    return size > max ? Vec3(v * (max / size)) : v;
 }
 
 DeviceInfo premium() {

@@ -2,11 +2,11 @@
 
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 
 #include <utility>
 
 #include "hal/tracker/socket_can.hpp"
+#include "ipc/base/quiet_thread.hpp"
 
 namespace tact {
 
@@ -29,12 +29,7 @@ TrackerInfo CanTracker::open() {
     if (!thread_.joinable()) {
         source_->open();
         reader_.opened();
-        // The new thread inherits a mask that lets no signal in: they belong to main.
-        sigset_t all, before;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before);
-        thread_ = std::thread([this] { live(); });
-        pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        thread_ = start_quiet_thread([this] { live(); });
     }
     TrackerInfo info;
     info.name = "tracker on " + name_;

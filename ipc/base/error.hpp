@@ -1,6 +1,6 @@
 // The one exception of start-up, preparation and the launcher. Never thrown on the servo path.
 //
-// Text    what was attempted and on what, why it failed, and what mends it; in that order. Words of a
+// Text    what was attempted and on what, why it failed, and what fixes it; in that order. Words of a
 //         hostile file may be part of it: control characters but the end of a line become '?', so that none
 //         ends the text early or speaks to a terminal.
 // Caught  once, in main(), which prints what() and exits with 1.
@@ -19,7 +19,7 @@ inline std::string last_error() { return std::system_category().message(errno); 
 class StartupError : public std::runtime_error {
 public:
     StartupError(const std::string& attempt, const std::string& why, const std::string& fix)
-        : std::runtime_error(shown(attempt + ": " + why + "\n  mend: " + fix)) {}
+        : std::runtime_error(shown(attempt + ": " + why + "\n  fix: " + fix)) {}
 
 private:
     static std::string shown(std::string text) {

@@ -27,7 +27,7 @@ enum class RunReason : std::uint8_t {
     overruns,
     too_late,
     gui_silent,
-    model_failed,
+    model_failed,  // not given any more; kept, as recordings number the reasons
     emergency_stop,
     stop_channels,  // the two of the emergency stop disagree
     dead_man,

@@ -17,11 +17,9 @@
 
 namespace tact {
 
-// Makes the folder where there is none.
-inline void write_whole_file(const std::filesystem::path& path, const std::string& content) {
-    constexpr const char* kFix = "free some space, mend the permissions, or give another path";
-    std::error_code failed;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+// In a folder that exists.
+inline void replace_file(const std::filesystem::path& path, const std::string& content) {
+    constexpr const char* kFix = "free some space, correct the permissions, or give another path";
     std::string temporary = path.string() + ".XXXXXX";
     const int fd = mkostemp(temporary.data(), O_CLOEXEC);
     if (fd < 0) throw StartupError("writing " + path.string(), last_error(), kFix);
@@ -40,6 +38,13 @@ inline void write_whole_file(const std::filesystem::path& path, const std::strin
     if (ok) why = errno;
     unlink(temporary.c_str());
     throw StartupError("writing " + path.string(), std::system_category().message(why), kFix);
+}
+
+// Makes the folder where there is none.
+inline void write_whole_file(const std::filesystem::path& path, const std::string& content) {
+    std::error_code failed;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);
+    replace_file(path, content);
 }
 
 }  // namespace tact

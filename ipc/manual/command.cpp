@@ -95,6 +95,8 @@ std::string placeholder(const CLI::Option& option, const Argument& a, const std:
     return all;
 }
 
+}  // namespace
+
 Argument read_argument(CLI::Option& option) {
     Argument a;
     a.positional = option.get_positional();
@@ -129,6 +131,8 @@ Argument read_argument(CLI::Option& option) {
                  (!a.positional && option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll);
     return a;
 }
+
+namespace {
 
 void read_arguments(CLI::App& app, Command& command, Group& group) {
     const bool one = app.get_require_option_min() == 1 && app.get_require_option_max() == 1;

@@ -32,6 +32,7 @@ struct Command {
     bool passes_on = false;  // another program takes the rest of the command line
 };
 
+Argument read_argument(CLI::Option& option);
 // Options and commands of the empty group are left out, as --help does.
 Command read_command(CLI::App& app, std::vector<std::string> words);
 

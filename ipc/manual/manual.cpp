@@ -9,6 +9,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/manual/command.hpp"
 #include "ipc/manual/completion.hpp"
+#include "ipc/manual/help.hpp"
 #include "ipc/manual/page.hpp"
 
 namespace tact::manual {
@@ -33,6 +34,7 @@ void write_pages(const Command& command, const std::vector<File>& files,
 
 std::optional<int> answer(CLI::App& app, const std::string& program, int argc, const char* const* argv,
                           const std::vector<File>& files) {
+    use_help_formatter(app);
     const std::string_view asked = argc > 1 ? argv[1] : "";
     const bool pages_asked = asked == "--manual" && argc == 3;
     if (!pages_asked && !(asked == "--completion" && argc == 2)) return std::nullopt;

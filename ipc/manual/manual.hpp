@@ -3,6 +3,8 @@
 //   --manual DIR   writes the man pages of the program and of its commands to DIR
 //   --completion   prints the data that deploy/manual/completion.bash completes with
 //
+// It also makes --help print values, ranges and defaults as the man pages do (help.hpp).
+//
 // Runs on   start-up, before the command line is parsed; costs two string comparisons otherwise
 #pragma once
 

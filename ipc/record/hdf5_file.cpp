@@ -1,6 +1,6 @@
 // SWMR ("single writer, multiple readers") is what makes a killed writer harmless: from H5Fstart_swmr_write on the
 // library orders its writes so that the file makes sense at any instant, and what was flushed is there. A kill leaves a mark in
-// the superblock, and maybe a superblock that has an older end of the file; open_abandoned() mends both as h5clear does.
+// the superblock, and maybe a superblock that has an older end of the file; open_abandoned() fixes both as h5clear does.
 #include "ipc/record/hdf5_file.hpp"
 
 #include <hdf5.h>

@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-// A living recorder holds a shared lock; so do readers, but they are no hindrance where nothing is to be mended.
+// A living recorder holds a shared lock; so do readers, but they are no hindrance where nothing is to be fixed.
 void refuse_a_living_writers(const std::filesystem::path& path) {
     const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.valid() && flock(file.get(), LOCK_EX | LOCK_NB) != 0)

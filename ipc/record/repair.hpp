@@ -3,7 +3,7 @@
 // Does     takes away the mark of the writer, cuts all columns of a table to one length and the hands to the cycles, and
 //          writes down that it did (attributes end = 2, repaired_rows_cut).
 // Refuses  a file that a living recorder writes.
-// Fails by StartupError naming file, reason and mend.
+// Fails by StartupError naming file, reason and fix.
 #pragma once
 
 #include <cstdint>

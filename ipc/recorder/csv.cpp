@@ -83,7 +83,7 @@ const std::string& row_of(Row& row, const RecordedStep& s, std::uint32_t hands, 
 
 std::uint64_t write_csv(const CsvSettings& settings, const std::function<bool()>& stop) {
     if (std::filesystem::exists(settings.file))
-        throw StartupError("writing '" + settings.file.string() + "'", "the file is there already",
+        throw StartupError("writing '" + settings.file.string() + "'", "the file exists already",
                            "name another one, or remove it");
     RecordingReader reader(settings.recording);
     const std::uint32_t hands = reader.about().start.hands;

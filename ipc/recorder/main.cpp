@@ -146,44 +146,45 @@ int run_request(Requests& w) {
 }
 
 void describe(CLI::App& app, Requests& w) {
-    auto* const what = app.add_option_group("What", "what to do");
-    what->add_option("file", w.file, "new file for every cycle, e.g. run.h5")->type_name("FILE.h5");
+    auto* const what = app.add_option_group(
+        "What", "Action: record to a file (default), keep a flight recorder, repair or convert");
+    what->add_option("file", w.file, "New recording of every servo cycle, such as run.h5")
+        ->type_name("FILE.h5");
     what->add_option("--flight", w.folder,
-                     "keep the last seconds in memory, and write them to this folder at an overrun, a fault, "
-                     "the window's key M "
-                     "or SIGUSR1")
+                     "Folder for flights: the last seconds, kept in memory and saved at an overrun, a fault, "
+                     "the key M in the window or SIGUSR1")
         ->type_name("DIR");
     what->add_option("--repair", w.repair,
-                     "open a recording whose recorder was killed, and print what was lost")
+                     "Recording to repair after its recorder was killed; prints the data that were lost")
         ->type_name("FILE.h5");
     auto* const csv =
-        what->add_option("--csv", w.table, "write this recording as a table of text to --output")
-            ->type_name("FILE.h5");
+        what->add_option("--csv", w.table, "Recording to convert into a table (CSV)")->type_name("FILE.h5");
     what->require_option(1);
-    app.add_option("--session", w.settings.session, "name under which the controller is found")
+    app.add_option("--session", w.settings.session, "Session name of the controller")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--seconds", w.settings.seconds, "end after so long; 0: when the controller ends")
+    app.add_option("--seconds", w.settings.seconds,
+                   "Length of the recording (s); 0: until the controller ends")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--wait", w.settings.wait_s, "seconds to wait for a controller; 0: as long as it takes")
+    app.add_option("--wait", w.settings.wait_s, "Time to wait for a controller (s); 0: no limit")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--length", w.length_s, "length of a flight")
+    app.add_option("--length", w.length_s, "Length of a flight (s)")
         ->type_name("S")
         ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
-    app.add_option("--keep", w.flight.files_max, "number of flights to keep; older ones are removed")
+    app.add_option("--keep", w.flight.files_max, "Number of flights to keep; older flights are removed")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     auto* const output =
-        app.add_option("-o,--output", w.output, "the table to write")->type_name("FILE.csv")->needs(csv);
+        app.add_option("-o,--output", w.output, "Table to write (CSV)")->type_name("FILE.csv")->needs(csv);
     csv->needs(output);
-    app.add_option("--every", w.csv.every, "write one row for so many cycles")
+    app.add_option("--every", w.csv.every, "Number of cycles per row of the table")
         ->check(CLI::Range(1, 1000000))
         ->needs(csv);
-    app.add_flag("--json", w.json, "print the outcome as JSON");
-    app.add_flag("--quiet", w.quiet, "print only the outcome and errors");
+    app.add_flag("--json", w.json, "Print the result as JSON");
+    app.add_flag("--quiet", w.quiet, "Print only the result and errors");
     app.set_version_flag("--version", program_version("tact-record"));
 }
 
@@ -193,11 +194,11 @@ int main(int argc, char** argv) {
     Requests w;
     w.settings.program = program_version("tact-record");
     CLI::App app{
-        "tact-record: writes what a controller's rings hold into an HDF5 file.\n"
-        "Ctrl-C ends the recording; kill -9 loses at most a second."};
+        "tact-record: records every servo cycle of a controller to an HDF5 file.\nCtrl-C ends the recording; "
+        "kill -9 loses at most a second."};
     app.footer(
-        "Exit codes: 0 as asked: the recording is whole, or the file was repaired or needed no repair; "
-        "1 error, or the disk was nearly full: the recording up to then is whole; 2 wrong usage.");
+        "Exit codes: 0 success: the recording is complete, or the file was repaired or needed no repair; 1 "
+        "error, or the disk was nearly full: the recording up to then is complete; 2 wrong usage.");
     describe(app, w);
     if (const auto answered = manual::answer(app, "tact-record", argc, argv)) return *answered;
     try {

@@ -15,7 +15,7 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
                        const std::function<void(const RecorderProgress&)>& progress) {
     RecorderOutcome outcome;
     if (std::filesystem::exists(settings.file))
-        throw StartupError("recording to '" + settings.file.string() + "'", "the file is there already",
+        throw StartupError("recording to '" + settings.file.string() + "'", "the file exists already",
                            "name another one, or remove it");
     Watched watched(settings.session, LinkRole::recorder);
     if (!await(watched, {settings.session, settings.wait_s, settings.stop}, say)) return outcome;
@@ -60,9 +60,8 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
         writer.close();
     } catch (const RecordError& e) {
         writer.abandon();
-        throw StartupError(
-            "recording to '" + settings.file.string() + "'", e.what(),
-            "make space and record anew; what was written so far opens after tact record --repair");
+        throw StartupError("recording to '" + settings.file.string() + "'", e.what(),
+                           "make space and record again; tact record --repair opens the data written so far");
     }
     return outcome;
 }

@@ -33,6 +33,10 @@ enum class CommandKind : std::uint16_t {
     mark,  // nothing but the event that it is done: a flight recorder keeps what led here
 };
 inline constexpr CommandKind kLastCommand = CommandKind::mark;
+// The force model carries it out, and may refuse it; all others concern the loop.
+[[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
+    return kind >= CommandKind::select_body && kind <= CommandKind::set_detail_filter;
+}
 
 enum class CommandResult : std::uint16_t {
     none,

@@ -52,10 +52,10 @@ nlohmann::ordered_json bench() {
 
 std::function<void()> add_bench(CLI::App& app, CLI::App*& command) {
     command = app.add_subcommand("bench",
-                                 "speed of simplification, in millions of triangles per second, and its "
-                                 "error on two rings, RMS in % of their diagonal");
+                                 "Measure the speed of mesh simplification (million triangles/s) and its "
+                                 "error (RMS, % of the diagonal)");
     const auto as_json = std::make_shared<bool>(false);
-    command->add_flag("--json", *as_json, "print as JSON, for programs");
+    command->add_flag("--json", *as_json, "Print as JSON");
     return [as_json] {
         const nlohmann::ordered_json numbers = bench();
         if (*as_json) {

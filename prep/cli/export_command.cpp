@@ -29,21 +29,21 @@ void run_export(const ExportRequest& request) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-    CLI::App* const command = app.add_subcommand(
-        "export", "placed structures as PDB or mmCIF files, matrices and a table; inputs stay as they are");
+    CLI::App* const command = app.add_subcommand("export",
+                                                 "Write placed structures as PDB or mmCIF files, with "
+                                                 "matrices and a table; input files stay unchanged");
     const auto request = std::make_shared<ExportRequest>();
-    command->add_option("scene", request->scene, "a baked scene")->required();
-    command->add_option("--poses", request->poses, "JSON with the places of bodies, as run.json has them")
+    command->add_option("scene", request->scene, "Baked docking scene")->required();
+    command->add_option("--poses", request->poses, "Poses of the bodies (JSON), in the format of run.json")
         ->type_name("FILE.json")
         ->required();
-    command
-        ->add_option("-o,--output", request->options.folder, "folder to write to; made where it is not there")
+    command->add_option("-o,--output", request->options.folder, "Folder to write to, created if absent")
         ->type_name("DIR")
         ->required();
     command->add_flag("--combined", request->options.combined,
-                      "also all bodies in one file, each chain with an id of its own");
+                      "Also write all bodies to one file, with a unique id per chain");
     command->add_flag("--force", request->options.force,
-                      "write over files that are there (never over the structures the scene was baked from)");
+                      "Overwrite existing files, except the structures from which the scene was baked");
     command->callback([request] { run_export(*request); });
 }
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
-#include "prep/cli/console.hpp"
-#include "prep/cli/target.hpp"
+#include "prep/console/console.hpp"
+#include "prep/console/target.hpp"
 #include "prep/mesh/mesh_folds.hpp"
 #include "prep/mesh/simplify_to_keep.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
@@ -36,8 +36,7 @@ void simplify_file(const SimplifyOptions& o) {
     const ImportedMesh in = import_mesh(o.in, part(progress, 0.0, 0.2));
     const TriangleMesh mesh = cleaned(in.mesh);
     if (mesh.triangles() == 0)
-        throw StartupError("simplify " + o.in, "each of its triangles has two equal corners",
-                           "export it again");
+        throw StartupError("simplify " + o.in, "every triangle has two equal corners", "export it again");
     const double read_s = seconds_since(begin);
     const auto start = std::chrono::steady_clock::now();
     const Kept kept = simplify_to_keep(mesh, o.settings, part(progress, 0.2, 0.98));
@@ -69,39 +68,40 @@ void simplify_file(const SimplifyOptions& o) {
                 o.out.c_str(), result.mesh.vertices(), result.mesh.triangles(), static_cast<double>(error),
                 folds, simplify_s);
     if (result.mesh.vertices() > o.settings.vertices_min)
-        std::printf("It cannot have fewer without changing what hangs together%s.\n",
-                    o.settings.pair_distance > 0.0 ? "" : "; --pair-distance 1 lets parts join and vanish");
+        std::printf(
+            "Fewer vertices would change the topology of the mesh%s.\n",
+            o.settings.pair_distance > 0.0 ? "" : "; --pair-distance 1 allows parts to join and vanish");
 }
 
 }  // namespace
 
 std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     const auto o = std::make_shared<SimplifyOptions>();
-    command = app.add_subcommand("simplify", "a triangle mesh with fewer vertices, by pair contraction");
-    command->add_option("mesh", o->in, "PLY, OBJ, STL or OFF, also .gz")->required();
-    command->add_option("-o,--output", o->out, "the PLY file to write")->required()->type_name("FILE.ply");
-    command->add_option("--vertices", o->settings.vertices_min, "most vertices to leave")
+    command = app.add_subcommand("simplify", "Simplify a triangle mesh by pair contraction");
+    command->add_option("mesh", o->in, "Triangle mesh: PLY, OBJ, STL or OFF, also .gz")->required();
+    command->add_option("-o,--output", o->out, "PLY file to write")->required()->type_name("FILE.ply");
+    command->add_option("--vertices", o->settings.vertices_min, "Maximum number of vertices of the result")
         ->required()
         ->check(CLI::Range(1U, 1U << 28U));
     command
-        ->add_option(
-            "--boundary-weight", o->settings.boundary_weight,
-            "f: how much borders count against the surface (the published method has 1000; default: 100, and "
-            "on open meshes of up to 20000 triangles the best of four that are tried)")
+        ->add_option("--boundary-weight", o->settings.boundary_weight,
+                     "Weight of boundary edges relative to the surface (published method: 1000; default: "
+                     "100, on open meshes of "
+                     "up to 20000 triangles the best of four values)")
         ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option(
             "--pair-distance", o->settings.pair_distance,
-            "also contract vertices without an edge that are nearer than this many mean edge lengths")
+            "Maximum distance of vertices without a common edge that are contracted too (mean edge lengths)")
         ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
     command
-        ->add_option(
-            "--relax", o->settings.relax_rounds,
-            "rounds of moving what is left nearer to the original; 0: none (default: 1, and up to 40 "
-            "where a mesh with borders has few vertices)")
+        ->add_option("--relax", o->settings.relax_rounds,
+                     "Number of rounds that move the remaining vertices towards the original surface; 0: "
+                     "none (default: 1, up to 40 "
+                     "for open meshes with few vertices)")
         ->check(CLI::Range(0U, 100U));
-    command->add_flag("--json", o->json, "print what was done as JSON");
+    command->add_flag("--json", o->json, "Print the result as JSON");
     return [o] { simplify_file(*o); };
 }
 

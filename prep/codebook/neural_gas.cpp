@@ -69,7 +69,7 @@ Atoms make_atoms(const Structure& s) {
         if (!p.allFinite() || !(m >= 0.0)) {
             throw StartupError("building the codebook of '" + s.name + "'",
                                "atom " + std::to_string(i) + " has no finite place or no mass",
-                               "mend the structure");
+                               "fix the structure");
         }
         atoms.at.push_back(p);
         atoms.mass.push_back(m);

@@ -254,7 +254,7 @@ void check_targets(const std::vector<std::pair<fs::path, std::string>>& files,
                 throw StartupError(kAttempt, path.string() + " is the file that the scene was baked from",
                                    "give another folder with -o");
         if (!force && (fs::exists(path, ignored) || fs::is_symlink(path, ignored)))
-            throw StartupError(kAttempt, path.string() + " is there already",
+            throw StartupError(kAttempt, path.string() + " exists already",
                                "give another folder with -o, or --force to write over it");
     }
 }

@@ -68,7 +68,7 @@ std::vector<PlacedBody> read_poses(std::string_view text, const std::string& nam
             fail("quat_model_body_xyzw has not the length 1");
         body.T_model_body.q.normalize();
         if (std::any_of(bodies.begin(), bodies.end(), [&](const PlacedBody& o) { return o.id == body.id; }))
-            fail("its id " + std::to_string(body.id) + " is there already");
+            fail("its id " + std::to_string(body.id) + " exists already");
         bodies.push_back(body);
     }
     return bodies;

@@ -2,7 +2,7 @@
 //
 // Frame    model: the axes and the origin that the file's structures have; metres (files are in ångström).
 // Checks   sizes, byte order and geometry before anything is allocated; every value finite. See README.md.
-// Fails by StartupError naming the file, the place in it, the reason and the mend.
+// Fails by StartupError naming the file, the place in it, the reason and the fix.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ImportedMap {
     DensityGrid grid;
     std::string format;              // "MRC/CCP4 mode 2, little endian"
     std::string origin_rule;         // which header fields placed voxel (0,0,0), in words
-    std::vector<std::string> notes;  // what was mended or converted on the way, in words
+    std::vector<std::string> notes;  // what was fixed or converted on the way, in words
 };
 
 ImportedMap import_map(const std::filesystem::path& path);

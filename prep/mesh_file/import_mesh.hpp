@@ -9,7 +9,7 @@
 // Memory   12 bytes a vertex and 12 a triangle, told before they are taken; STL 16 a vertex more while it
 //          joins corners. The file is mapped, not held; one that is packed is unpacked into memory, no more
 //          than 4 GiB.  Thread  any but the servo's.
-// Fails by StartupError naming the file, the line or element, the reason and the mend.
+// Fails by StartupError naming the file, the line or element, the reason and the fix.
 #pragma once
 
 #include <cstdint>

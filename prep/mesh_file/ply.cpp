@@ -69,7 +69,7 @@ public:
                 header_.bytes = std::min(scan_.place(), source_.bytes.size());
                 return header_;
             } else if (key != "comment" && key != "obj_info" && !key.empty()) {
-                refuse("an unknown word in the header");
+                refuse("an unknown keyword in the header");
             }
         }
         refuse("the header has no end");

@@ -3,7 +3,7 @@
 // Kept     the first model; heavy atoms of polymers, ligands and ions. Dropped: hydrogens, waters, and of
 //          alternate locations all but the one with the highest occupancy (the first among equals).
 // Frame    see ipc/scene/density/structure.hpp: body frame about the centre of mass, metres.
-// Fails by StartupError naming the file, the line or row, the reason and the mend.
+// Fails by StartupError naming the file, the line or row, the reason and the fix.
 #pragma once
 
 #include <cstddef>

@@ -209,7 +209,7 @@ void read_dicom_pixels(const DicomSlice& s, std::span<float> pixels) {
         format = image.GetPixelFormat();
         if (image.GetNumberOfDimensions() < 2 || image.GetDimension(0) != s.columns ||
             image.GetDimension(1) != s.rows || format.GetSamplesPerPixel() != 1)
-            fail("its pixels are not as its header says");
+            fail("its pixels contradict its header");
         const std::size_t size = pixels.size() * format.GetPixelSize();
         if (format.GetPixelSize() < 1 || format.GetPixelSize() > 4 || image.GetBufferLength() != size)
             fail("it has " + std::to_string(image.GetBufferLength()) + " bytes of pixels instead of " +

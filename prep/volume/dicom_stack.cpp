@@ -63,7 +63,7 @@ void check_pictures(const DicomGroup& g, const std::string& attempt) {
             fail(name + " has " + std::to_string(s.frames) + " frames in one file, which is not read",
                  "save the series as one file a slice, or as NRRD or NIfTI");
         if (!s.placed)
-            fail(name + " does not say where its slice lies (image position, orientation, pixel spacing)",
+            fail(name + " has no slice position (image position, orientation, pixel spacing)",
                  "export the original slices again, with their positions");
         if (s.samples != 1 || s.photometric != "MONOCHROME2")
             fail(name + " is a picture of kind \"" + s.photometric.substr(0, 16) + "\", not of grey values",
@@ -138,7 +138,7 @@ bool cone_beam(const std::string& maker) {
 
 Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt) {
     if (slices.empty())
-        throw StartupError(attempt, "there is no DICOM picture in it",
+        throw StartupError(attempt, "it contains no DICOM image",
                            "give the folder of a series, or another format");
     // The same list in whatever order the folder is read.
     std::sort(slices.begin(), slices.end(), [](const DicomSlice& a, const DicomSlice& b) {

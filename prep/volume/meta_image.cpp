@@ -37,7 +37,7 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
     if (sizes.size() != 3) in.fail("DimSize has not three numbers");
     for (std::size_t a = 0; a < 3; ++a) h.axes.size[a] = in.whole(sizes[a], "DimSize");
     const std::string_view spacing = of({"elementspacing", "elementsize"});
-    if (spacing.empty()) in.fail("it does not say how far its voxels are apart (ElementSpacing)");
+    if (spacing.empty()) in.fail("it has no voxel spacing (ElementSpacing)");
     const auto steps = numbers(spacing, 3, "ElementSpacing");
     const std::string_view matrix = of({"transformmatrix", "rotation", "orientation"});
     h.axes.oriented = !matrix.empty();
@@ -68,7 +68,7 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
     if (yes(of({"compresseddata"}))) h.packing = RawPacking::deflate;
     const std::string_view skip = of({"headersize"});
     const std::string_view file = of({"elementdatafile"});
-    if (file.empty()) in.fail("it does not say where its voxels are (ElementDataFile)");
+    if (file.empty()) in.fail("it does not name the file of its voxels (ElementDataFile)");
     if (HeaderText::lower(file) == "local")
         h.offset = in.position();
     else

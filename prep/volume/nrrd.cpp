@@ -94,8 +94,7 @@ void nrrd_axes(const HeaderText& in, const NrrdFields& f, double unit_mm, ScanAx
     } else {
         axes.oriented = false;
         const auto words = HeaderText::words(spacings);
-        if (words.size() != 3)
-            in.fail("it does not say how far its voxels are apart (spacings, space directions)");
+        if (words.size() != 3) in.fail("it has no voxel spacing (spacings, space directions)");
         for (std::size_t a = 0; a < 3; ++a) {
             axes.step_mm[a] = Vec3::Zero();
             axes.step_mm[a][static_cast<int>(a)] = unit_mm * std::abs(in.number(words[a], "a spacing"));
@@ -139,7 +138,7 @@ RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double
     h.label = nrrd_labels(in, f);
     const std::string endian = HeaderText::lower(f.of("endian"));
     if (endian.empty() && h.type != RawType::i8 && h.type != RawType::u8)
-        in.fail("it does not say its byte order");
+        in.fail("it does not declare its byte order");
     h.big_endian = endian == "big";
     const std::string encoding = HeaderText::lower(f.of("encoding"));
     if (encoding == "gzip" || encoding == "gz")

@@ -1,12 +1,11 @@
 #include "prep/volume/png_stack.hpp"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cstring>
 #include <map>
 
 #include "ipc/base/error.hpp"
+#include "ipc/image/png.hpp"
 
 namespace tact {
 namespace {
@@ -14,24 +13,22 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kStackMax = Scan::kEdgeMax;
 
-struct PngPicture {
-    png_image image{};
-    PngPicture(const fs::path& path, const std::string& attempt) {
-        image.version = PNG_IMAGE_VERSION;
-        if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
-            throw StartupError(attempt, path.filename().string() + ": " + image.message,
-                               "export the pictures again");
+// What libpng reports of the file `name` of a folder becomes a StartupError.
+template <class Use>
+auto use_png(const fs::path& folder, const std::string& name, const std::string& attempt, Use&& use) {
+    try {
+        PngReader picture(folder / name);
+        return use(picture);
+    } catch (const PngError& e) {
+        throw StartupError(attempt, name + ": " + e.what(), "export the pictures again");
     }
-    PngPicture(const PngPicture&) = delete;
-    PngPicture& operator=(const PngPicture&) = delete;
-    ~PngPicture() { png_image_free(&image); }
-};
+}
 
 }  // namespace
 
 std::vector<std::string> stack_order(std::vector<std::string> names, const std::string& attempt) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError(attempt, why, "give a folder of pictures of one stack, numbered without gaps");
+        throw StartupError(attempt, why, "give a folder with the images of one stack, numbered without gaps");
     };
     std::map<std::uint64_t, std::string> by_number;
     std::string word;
@@ -43,14 +40,14 @@ std::vector<std::string> stack_order(std::vector<std::string> names, const std::
         if (begin == end || end - begin > 9) fail(name + " has no number before .png, or a very long one");
         if (by_number.empty()) word = name.substr(0, begin);
         if (name.compare(0, begin, word) != 0 || begin != word.size())
-            fail("pictures of two names are in it: " + by_number.begin()->second + " and " + name);
+            fail("it contains images with two names: " + by_number.begin()->second + " and " + name);
         const std::uint64_t number = std::stoull(name.substr(begin, end - begin));
         const auto [at, fresh] = by_number.emplace(number, name);
         if (!fresh) fail(at->second + " and " + name + " have the same number");
         if (by_number.size() > kStackMax)
-            fail("there are more than " + std::to_string(kStackMax) + " pictures");
+            fail("there are more than " + std::to_string(kStackMax) + " images");
     }
-    if (by_number.empty()) fail("there is no .png picture in it");
+    if (by_number.empty()) fail("it contains no .png image");
     std::vector<std::string> order;
     std::uint64_t expected = by_number.begin()->first;
     for (auto& [number, name] : by_number) {
@@ -64,7 +61,7 @@ std::vector<std::string> stack_order(std::vector<std::string> names, const std::
 }
 
 PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
-    const std::string attempt = "read the pictures in " + folder.string();
+    const std::string attempt = "read the images in " + folder.string();
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
@@ -72,11 +69,10 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
     PngStack stack;
     ScanAxes axes;
     bool colour = false;
-    {
-        const PngPicture first(folder / names[0], attempt);
-        axes.size = {first.image.width, first.image.height, names.size()};
-        colour = (first.image.format & (PNG_FORMAT_FLAG_COLOR | PNG_FORMAT_FLAG_COLORMAP)) != 0;
-    }
+    use_png(folder, names[0], attempt, [&](const PngReader& first) {
+        axes.size = {first.width_px(), first.height_px(), names.size()};
+        colour = first.colour();
+    });
     for (int a = 0; a < 3; ++a) axes.step_mm[static_cast<std::size_t>(a)][a] = spacing_mm[a];
     std::vector<std::uint32_t> order;
     stack.scan = scan_of(axes, attempt, order);
@@ -87,17 +83,15 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
                        wide = stack.scan.columns,
                        high = stack.scan.rows](std::uint32_t slice, std::span<float> pixels) {
         const std::string& name = names.at(slice);
-        PngPicture picture(folder / name, attempt);
-        if (picture.image.width != wide || picture.image.height != high)
-            throw StartupError(attempt,
-                               name + " is " + std::to_string(picture.image.width) + " x " +
-                                   std::to_string(picture.image.height) + " pixels, others are " +
-                                   std::to_string(wide) + " x " + std::to_string(high),
-                               "give a folder of pictures of one stack");
-        picture.image.format = palette ? PNG_FORMAT_RGBA : PNG_FORMAT_GRAY;
-        std::vector<png_byte> bytes(PNG_IMAGE_SIZE(picture.image));
-        if (png_image_finish_read(&picture.image, nullptr, bytes.data(), 0, nullptr) == 0)
-            throw StartupError(attempt, name + ": " + picture.image.message, "export the pictures again");
+        const auto bytes = use_png(folder, name, attempt, [&](PngReader& picture) {
+            if (picture.width_px() != wide || picture.height_px() != high)
+                throw StartupError(attempt,
+                                   name + " is " + std::to_string(picture.width_px()) + " x " +
+                                       std::to_string(picture.height_px()) + " pixels, others are " +
+                                       std::to_string(wide) + " x " + std::to_string(high),
+                                   "give a folder of pictures of one stack");
+            return picture.read(palette ? PngFormat::rgba : PngFormat::grey);
+        });
         if (!palette) {
             std::copy(bytes.begin(), bytes.end(), pixels.begin());
             return;
@@ -115,7 +109,7 @@ PngStack read_png_stack(const fs::path& folder, const Vec3& spacing_mm) {
                 if (found == palette->rgba.end() && palette->rgba.size() == 256)
                     throw StartupError(attempt,
                                        name + ": there are more than 256 colours, so they are no labels",
-                                       "save labels without smoothing, or a grey picture");
+                                       "save labels without smoothing, or a grey image");
                 last = bits;
                 last_number = static_cast<float>(found - palette->rgba.begin());
                 if (found == palette->rgba.end()) palette->rgba.push_back(rgba);

@@ -54,7 +54,7 @@ Scan scan_of(const ScanAxes& axes, const std::string& attempt, std::vector<std::
     for (std::size_t a = 0; a < 3; ++a) {
         const std::uint64_t n = axes.size[a];
         if (n == 0 || n > Scan::kEdgeMax)
-            fail("it says it is " + std::to_string(axes.size[0]) + " x " + std::to_string(axes.size[1]) +
+            fail("it declares " + std::to_string(axes.size[0]) + " x " + std::to_string(axes.size[1]) +
                      " x " + std::to_string(axes.size[2]) + " voxels; 1 to " +
                      std::to_string(Scan::kEdgeMax) + " along an axis can be",
                  "crop it, or check the file");
@@ -63,10 +63,10 @@ Scan scan_of(const ScanAxes& axes, const std::string& attempt, std::vector<std::
         if (!(step >= kStepMinMm && step <= kStepMaxMm))
             fail("from a voxel to the next along axis " + std::to_string(a) + " it is " +
                      std::to_string(step) + " mm; 0.001 to 100 can be",
-                 "give --unit, or mend the spacing in the file");
+                 "give --unit, or fix the spacing in the file");
         if (!(std::abs(axes.origin_mm[static_cast<int>(a)]) <= kFarMm))
             fail("it lies " + std::to_string(axes.origin_mm[static_cast<int>(a)]) + " mm away",
-                 "mend the origin in the file");
+                 "fix the origin in the file");
     }
     if (voxels > kVoxelsMax) fail("it says it has " + std::to_string(voxels) + " voxels", "crop it");
     const Vec3 u = axes.step_mm[0].normalized(), v = axes.step_mm[1].normalized(), n = u.cross(v);

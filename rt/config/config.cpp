@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <sstream>
 #include <variant>
@@ -36,10 +35,6 @@ std::vector<std::string> sim_hand_names(const char* besides = nullptr) {
     std::vector<std::string> names(kSimHandNames.begin(), kSimHandNames.end());
     if (besides != nullptr) names.emplace_back(besides);
     return names;
-}
-
-Pedal pedal_named(const std::string& name) {
-    return name == "line" ? Pedal::line : name == "always" ? Pedal::always : Pedal::button;
 }
 
 std::vector<std::string> device_names(const char* besides = nullptr) {
@@ -245,12 +240,6 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.model_max = duration_us(c.servo.model_us_max);
     s.force_scale = c.shape.force_scale;
     s.damping_n_s_m = c.shape.damping_n_s_m;
-    s.drives.burr_rad_s = c.drilling.burr_rpm * 2.0 * std::numbers::pi / 60.0;
-    s.drives.irrigation_m3_s = c.drilling.irrigation_ml_min * 1e-6 / 60.0;
-    s.drives.burr = pedal_named(c.drilling.pedal);
-    s.drives.irrigation_always = c.drilling.irrigation == "always";
-    s.drives.suction_m3_s = c.drilling.suction_l_min * 1e-3 / 60.0;
-    s.drives.suction = pedal_named(c.drilling.suction);
     s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
     s.watchdogs.late_max = duration_us(c.safety.late_us_max);
     s.watchdogs.overruns_max = static_cast<std::uint32_t>(c.safety.overruns_max);

@@ -1,7 +1,7 @@
 // The configuration of tact-rt: one TOML file, read into one struct whose defaults are the documentation.
 //
 // Units    as the keys say; converted to SI once, in settings_from().
-// Fails by StartupError naming file, line, key, what is wrong and the mend: unknown keys, wrong types and
+// Fails by StartupError naming file, line, key, what is wrong and the fix: unknown keys, wrong types and
 //          impossible values are errors. deploy/tact.toml shows every key, held to it by a test.
 // Thread   start-up only
 #pragma once

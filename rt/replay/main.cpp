@@ -42,10 +42,10 @@ struct Requests {
 class Stage {
 public:
     Stage(const Requests& w, Replay& replay)
-        : link_(w.session, replay.region().fd(), replay.bone_fd()), speed_(w.speed), from_s_(w.from_s) {
+        : link_(w.session, replay.region().fd(), replay.shared_fd()), speed_(w.speed), from_s_(w.from_s) {
         const Instant begin = Monotonic::now();
-        while (!there_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
-        if (!there_ && stop_asked == 0)
+        while (!attached_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
+        if (!attached_ && stop_asked == 0)
             throw StartupError("showing a replay in session '" + w.session + "'", "no window came",
                                "start it with tact replay --show, or tact-gui --session " + w.session);
         if (const RecordedStep* const first = replay.upcoming()) {
@@ -59,31 +59,32 @@ public:
         const double at_s = static_cast<double>(next.now_ns - begin_ns_) * 1e-9 - from_s_;
         if (at_s < 0.0) {
             begun_ = Monotonic::now();
-            return there_;
+            return attached_;
         }
-        if (Monotonic::now() - attended_ > std::chrono::milliseconds(10)) attend(0);
+        if (Monotonic::now() - served_ > std::chrono::milliseconds(10)) attend(0);
         const Instant due = begun_ + Duration(static_cast<std::int64_t>(1e9 * at_s / speed_));
-        while (there_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1)) attend(1);
-        return there_;
+        while (attached_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1))
+            attend(1);
+        return attached_;
     }
 
     // What was last stays in the window until it is closed.
     void hold() {
-        while (there_ && stop_asked == 0) attend(50);
+        while (attached_ && stop_asked == 0) attend(50);
     }
 
 private:
     void attend(int timeout_ms) {
         const LinkServer::News news = link_.poll(timeout_ms);
-        if (news.gui_arrived) there_ = true;
-        if (news.gui_left) there_ = false;
-        attended_ = Monotonic::now();
+        if (news.gui_arrived) attached_ = true;
+        if (news.gui_left) attached_ = false;
+        served_ = Monotonic::now();
     }
     LinkServer link_;
     double speed_, from_s_;
-    bool there_ = false;
+    bool attached_ = false;
     std::int64_t begin_ns_ = 0;
-    Instant begun_{}, attended_{};
+    Instant begun_{}, served_{};
 };
 
 void print_json(const Requests& w, const Replay& replay) {
@@ -166,25 +167,25 @@ int main(int argc, char** argv) {
     Requests w;
     std::string file, scene;
     CLI::App app{
-        "tact-replay: does a recorded run again with the controller's own code, and compares every force"};
-    app.add_option("file", file, "recording of tact record")->required()->type_name("FILE.h5");
-    app.add_option("--scene", scene, "where the recorded scene is now")->type_name("SCENE");
+        "tact-replay: repeats a recorded run with the code of the controller, and compares every force"};
+    app.add_option("file", file, "Recording of tact record")->required()->type_name("FILE.h5");
+    app.add_option("--scene", scene, "Current path of the recorded scene")->type_name("SCENE");
     auto* show =
-        app.add_flag("--show", w.show, "show the run at the recorded pace, in the window of the session");
-    app.add_option("--session", w.session, "name of the session of the window")
+        app.add_flag("--show", w.show, "Show the run at the recorded speed in the window of the session");
+    app.add_option("--session", w.session, "Session name of the window")
         ->type_name("NAME")
         ->capture_default_str()
         ->needs(show);
-    app.add_option("--from", w.from_s, "seconds into the recording at which showing begins")
+    app.add_option("--from", w.from_s, "Time in the recording at which the display starts (s)")
         ->check(CLI::Range(0.0, 1e7))
         ->needs(show);
-    app.add_option("--speed", w.speed, "factor of the recorded pace")
+    app.add_option("--speed", w.speed, "Speed of the display relative to the recording")
         ->check(CLI::Range(0.01, 100.0))
         ->needs(show);
-    app.add_flag("--json", w.json, "print the outcome as JSON");
+    app.add_flag("--json", w.json, "Print the result as JSON");
     app.footer(
-        "Exit codes: 0 the same to the bit; 1 error; 2 wrong usage; 3 not the same, or the recording lacks "
-        "something that an exact replay needs.");
+        "Exit codes: 0 bit-exact; 1 error; 2 wrong usage; 3 not bit-exact, or the recording lacks data that "
+        "an exact replay needs.");
     app.set_version_flag("--version", program_version("tact-replay"));
     if (const auto answered = manual::answer(app, "tact-replay", argc, argv)) return *answered;
     try {

@@ -1,19 +1,17 @@
-// Why it is exact: a cycle is a function of its inputs and of what the cycles before left (rt/loop). The recording has every
+// Why it is exact: a cycle is a function of its inputs and of what the cycles before left (rt/servo). The recording has every
 // input; the models are built by the code that built them, from a scene of the same checksum. Where a model asked for another one,
-// built aside, it is built here too, and handed over in the step in which the servo took it.
+// built aside, it is built here too, and passed on in the step in which the servo took it.
 #include "rt/replay/replay.hpp"
 
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
 #include "ipc/base/error.hpp"
-#include "ipc/scene/file/scene_meta.hpp"
-#include "rt/start/start_model.hpp"
+#include "rt/replay/recorded_scene.hpp"
 
 namespace tact {
 namespace {
@@ -89,45 +87,6 @@ bool same_bits(const double (&a)[3], const Vec3& b) {
     return true;
 }
 
-// The file that a person names, or the one of the recorded name that has the recorded checksum: beside the recording, in
-// this folder, or among the scenes that `tact` baked. Recordings of before 2026-11-23 have a path.
-SceneFile open_scene(const RecordingReader::About& about, const ReplaySettings& settings) {
-    namespace fs = std::filesystem;
-    if (!settings.scene.empty()) {
-        SceneFile scene = SceneFile::open(settings.scene);
-        if (scene.checksum() != about.scene_checksum)
-            throw StartupError("replaying on '" + scene.name() + "'",
-                               "this is another scene than the recorded one",
-                               "name the recorded one with --scene, or bake it again as it was");
-        return scene;
-    }
-    const fs::path recorded(about.scene_path), name = recorded.filename();
-    std::vector<fs::path> places{settings.recording.parent_path() / name, name};
-    if (recorded.is_absolute()) places.insert(places.begin(), recorded);
-    const char* const cache = std::getenv("XDG_CACHE_HOME");
-    const char* const home = std::getenv("HOME");
-    if (cache != nullptr && *cache == '/')
-        places.push_back(fs::path(cache) / "tact" / name);
-    else if (home != nullptr && *home == '/')
-        places.push_back(fs::path(home) / ".cache" / "tact" / name);
-    bool another = false;
-    for (const fs::path& place : places) {
-        std::error_code unknown;
-        if (name.empty() || !fs::is_regular_file(place, unknown)) continue;
-        try {
-            SceneFile scene = SceneFile::open(place);
-            if (scene.checksum() == about.scene_checksum) return scene;
-        } catch (const StartupError&) {  // no scene: as good as another one
-        }
-        another = true;
-    }
-    throw StartupError(
-        "finding the recorded scene '" + name.string() + "'",
-        another ? "what has its name is another scene than the recorded one"
-                : "it is neither beside the recording, nor in this folder, nor among the baked ones",
-        "name the recorded one with --scene, or bake it again as it was");
-}
-
 }  // namespace
 
 void ReplayClock::give(std::span<const std::int64_t> looks_ns, Duration shift) noexcept {
@@ -138,7 +97,8 @@ void ReplayClock::give(std::span<const std::int64_t> looks_ns, Duration shift) n
 }
 
 Replay::Replay(const ReplaySettings& settings)
-    : reader_(settings.recording), scene_(open_scene(reader_.about(), settings)) {
+    : reader_(settings.recording),
+      scene_(open_recorded_scene(reader_.about(), settings.recording, settings.scene)) {
     const RecordingReader::About& about = reader_.about();
     if (!about.known)
         throw StartupError("replaying '" + settings.recording.string() + "'",
@@ -148,7 +108,7 @@ Replay::Replay(const ReplaySettings& settings)
         obstacle_ = "it begins in the middle of a run, at step " + std::to_string(about.first_step) +
                     ": what the models and the safety chain remembered then is not known";
     build_models();
-    there_is_ = reader_.next(step_);
+    has_step_ = reader_.next(step_);
 }
 
 Replay::~Replay() {
@@ -181,21 +141,19 @@ void Replay::build_models() {
     std::memcpy(region_->scene_path, path.data(), std::min(path.size(), sizeof region_->scene_path - 1));
     region_->scene_checksum = scene_.checksum();
     region_.mark_ready();
-    const SceneMeta meta = read_meta(scene_);
-    if (meta.kind == SceneKind::drilling) bone_.emplace(scene_);
-    SceneBone* const bone = bone_ ? &*bone_ : nullptr;
-    std::unique_ptr<ForceModel> model = load_model(scene_, bone, options_, config_);
+    system_.emplace(SystemInput{scene_, options_, config_, *region_});
+    std::unique_ptr<ForceModel> model = system_->make_model(0);
     std::unique_ptr<ForceModel> second;
-    if (about.start.hands > 1) second = load_second(scene_, bone, options_, config_);
+    if (about.start.hands > 1) second = system_->make_model(1);
 
     std::vector<HandParts> hands;
     for (std::uint32_t i = 0; i < about.start.hands; ++i) {
         const DeviceInfo info = info_of(about.start.device[i]);
         devices_.push_back(std::make_unique<ReplayDevice>(info));
-        hands.push_back({devices_[i].get(), i == 0 ? model.get() : second.get(), info});
+        hands.push_back({devices_[i].get(), i == 0 ? model.get() : second.get(), info, system_->drive(i)});
     }
     ServoSettings settings = settings_from(config_, (about.start.flags & kStartEmulated) != 0);
-    settings.bone = meta.kind == SceneKind::drilling;
+    settings.visual_paths = system_->visual_paths();
     servo_.emplace(ServoParts{.clock = clock_,
                               .hands = hands,
                               .region = *region_,
@@ -209,7 +167,7 @@ void Replay::build_models() {
 
 void Replay::build_model_aside() {
     if (!mailbox_.build.take()) {
-        if (obstacle_.empty()) obstacle_ = "a model was handed over that nobody had asked for here";
+        if (obstacle_.empty()) obstacle_ = "a model was passed on that nobody had asked for here";
         return;
     }
     std::unique_ptr<ForceModel> made = mailbox_.build.like().rebuild(mailbox_.build.bodies());
@@ -261,7 +219,7 @@ void Replay::give_step() {
 }
 
 void Replay::do_step() {
-    if (!there_is_) return;
+    if (!has_step_) return;
     const bool dry = (step_.cycle.flags & kCycleDry) != 0;
     if (last_step_ != 0 && step_.cycle.step != last_step_ + 1 && obstacle_.empty())
         obstacle_ = std::to_string(step_.cycle.step - last_step_ - 1) + " steps before step " +
@@ -286,7 +244,7 @@ void Replay::do_step() {
         servo_->cycle();
     mailbox_.model.collect().reset();
     compare();
-    there_is_ = reader_.next(step_);
+    has_step_ = reader_.next(step_);
 }
 
 void Replay::note(std::uint32_t hand, const char* what, const double (&recorded)[3], const Vec3& replayed) {
@@ -322,9 +280,8 @@ void Replay::compare() {
               static_cast<double>(s.timestamps)));
     if (different_) ++result_.different;
     result_.force_n_most = std::max(result_.force_n_most, s.hand[0].shown_world.force_n.norm());
-    result_.removed_levels = 0;
-    for (std::uint32_t i = 0; i < s.hands; ++i)
-        result_.removed_levels += s.hand[i].model->drill().removed_levels;
+    DrillTopic drill{};
+    if (region_->drill.read(drill)) result_.removed_levels = drill.removed_levels;
 }
 
 }  // namespace tact

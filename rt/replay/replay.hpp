@@ -21,8 +21,8 @@
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/shm/region.hpp"
 #include "rt/servo/servo.hpp"
-#include "rt/start/scene_bone.hpp"
 #include "rt/start/start_options.hpp"
+#include "rt/start/systems.hpp"
 
 namespace tact {
 
@@ -72,14 +72,14 @@ public:
     [[nodiscard]] const std::string& obstacle() const { return obstacle_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
     // The step that do_step() would do; null: there is none any more.
-    [[nodiscard]] const RecordedStep* upcoming() const { return there_is_ ? &step_ : nullptr; }
+    [[nodiscard]] const RecordedStep* upcoming() const { return has_step_ ? &step_ : nullptr; }
     void do_step();
     // Before the first step: added to every instant.
     void shift_by(Duration shift) { shift_ = shift; }
     [[nodiscard]] const ReplayResult& result() const { return result_; }
     [[nodiscard]] const Servo& servo() const { return *servo_; }
     [[nodiscard]] OwnedRegion<RtRegion>& region() { return region_; }
-    [[nodiscard]] int bone_fd() const { return bone_ ? bone_->fd() : -1; }
+    [[nodiscard]] int shared_fd() const { return system_->fd(); }  // of the system's own region; -1: none
 
 private:
     void build_models();
@@ -96,7 +96,7 @@ private:
     StartOptions options_;
     RtConfig config_;
     OwnedRegion<RtRegion> region_;
-    std::optional<SceneBone> bone_;
+    std::optional<SceneSystem> system_;
     ReplayClock clock_;
     ServoMailbox mailbox_;
     CycleScript script_;
@@ -104,7 +104,7 @@ private:
     ReplayLines lines_;
     std::optional<Servo> servo_;
     RecordedStep step_;
-    bool there_is_ = false, started_ = false, different_ = false;
+    bool has_step_ = false, started_ = false, different_ = false;
     std::uint64_t last_step_ = 0;
     ReplayResult result_;
 };

@@ -31,7 +31,6 @@ struct WatchdogInput {
     bool overran = false;  // the cycle before this one
     bool device_lost = false;
     bool device_fault = false;
-    bool model_failed = false;
     bool force_finite = true;
     RunReason lines = RunReason::none;  // what the safety lines stop for
     Duration lines_age{0};
@@ -55,7 +54,6 @@ public:
         if (in.device_lost) return {RunReason::device_lost, 0.0};
         if (in.device_fault) return {RunReason::device_fault, 0.0};
         if (!in.force_finite) return {RunReason::force_not_finite, 0.0};
-        if (in.model_failed) return {RunReason::model_failed, 0.0};
         const Duration age = in.now - in.sample_taken_at;
         if (age > settings_.sample_age_max) return {RunReason::sample_stale, to_us(age)};
         if (mild) return {in.lines, to_us(in.lines_age)};

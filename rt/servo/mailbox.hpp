@@ -1,7 +1,7 @@
-// What the servo thread and the house thread tell each other, inside tact-rt. Neither ever waits.
+// Mailbox between the servo thread and the housekeeping thread, inside tact-rt. Neither ever waits.
 //
-// house -> servo   orders (validated commands), what the GUI reported, a new force model, the stop signal
-// servo -> house   the old force model, a request to build another, a snapshot at a fault, that it has ended
+// To the servo      orders (validated commands), the report of the visual process, a new force model, the stop signal
+// To housekeeping   the old force model, a request to build another, a snapshot at a fault, the end of the run
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What the servo thread counts about itself. Constant time per cycle; percentiles once a second.
+// Statistics of the servo thread. Constant time per cycle; percentiles once a second.
 #pragma once
 
 #include <algorithm>
@@ -62,9 +62,9 @@ public:
         *this = {};
         begun_at_ = now;
     }
-    void add(double fresh) noexcept TACT_RT {
-        sum_ += fresh;
-        now_least_ = std::min(now_least_, fresh);
+    void add(double recomputed) noexcept TACT_RT {
+        sum_ += recomputed;
+        now_least_ = std::min(now_least_, recomputed);
         ++n_;
     }
     void rested(Duration d) noexcept TACT_RT { rest_ += d; }
@@ -111,13 +111,13 @@ public:
     }
     void spent(Duration d) noexcept TACT_RT { window_cost_.add(d); }
     void delayed(Duration d) noexcept TACT_RT { window_delay_.add(d); }
-    // True once a second, with new figures.
+    // True once a second, with new metrics.
     bool second_over(Instant now) noexcept TACT_RT {
         if (now - second_at_ < std::chrono::seconds(1)) {
-            if (!whole_second_) metrics = look();
+            if (!whole_second_) metrics = evaluate();
             return false;
         }
-        metrics = look();
+        metrics = evaluate();
         whole_second_ = true;
         window_lateness_.clear();
         window_cost_.clear();
@@ -132,7 +132,7 @@ public:
     WindowMetrics metrics;       // of the last whole second; before the first, so far
 
 private:
-    [[nodiscard]] WindowMetrics look() const noexcept {
+    [[nodiscard]] WindowMetrics evaluate() const noexcept {
         const auto ns = [](std::uint64_t v) { return static_cast<std::int64_t>(v); };
         return {ns(window_lateness_.percentile_ns(0.5)),
                 ns(window_lateness_.percentile_ns(0.99)),

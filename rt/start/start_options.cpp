@@ -10,96 +10,97 @@ namespace tact {
 
 void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     app.set_version_flag("--version", program_version("tact-rt"));
-    auto* const scene = app.add_option("scene", o.scene, "baked scene, from tact-prep");
+    auto* const scene = app.add_option("scene", o.scene, "Scene file written by tact-prep");
     auto* const check =
         app.add_option("--check-config", o.check_config,
-                       "check this configuration without a scene and without a device, then exit")
+                       "Configuration (TOML) to check without a scene and without a device; exits afterwards")
             ->type_name("FILE.toml")
             ->excludes(scene);
-    app.add_flag("--json", o.json, "with --check-config: as JSON, with the value of every key")->needs(check);
+    app.add_flag("--json", o.json, "Print the result of --check-config as JSON, with the value of every key")
+        ->needs(check);
     app.callback([&o] {
         if (o.scene.empty() && o.check_config.empty()) throw CLI::RequiredError("scene");
     });
-    app.add_option("--session", o.session, "name under which the other programs find this one")
+    app.add_option("--session", o.session,
+                   "Session name by which the other programs find this one; default: default")
         ->type_name("NAME");
-    app.add_option("--config", o.config, "TOML file; deploy/tact.toml (/etc/tact/tact.toml) shows every key")
+    app.add_option("--config", o.config,
+                   "Configuration (TOML); deploy/tact.toml (/etc/tact/tact.toml) lists every key")
         ->type_name("FILE.toml");
-    app.add_option("--seconds", o.seconds, "end after this time; 0: run until a signal")
+    app.add_option("--seconds", o.seconds, "Length of the run (s); 0: until a signal")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    auto* rate =
-        app.add_option("--rate", v.rate_hz, "servo rate")->type_name("HZ")->check(CLI::Range(10.0, 20000.0));
-    app.add_flag("--free-run", v.free_run, "as many updates as the processor gives")->excludes(rate);
-    app.add_option("--law", v.law, "law of the governor")->type_name("elastic|sensitus|fixed");
-    app.add_option("--goal", v.goal_hz, "force rate that the governor holds")
+    auto* rate = app.add_option("--rate", v.rate_hz, "Servo rate (Hz)")
+                     ->type_name("HZ")
+                     ->check(CLI::Range(10.0, 20000.0));
+    app.add_flag("--free-run", v.free_run, "Update the force as often as the processor allows")
+        ->excludes(rate);
+    app.add_option("--law", v.law, "Law of the governor, which trades accuracy for rate")
+        ->type_name("elastic|sensitus|fixed");
+    app.add_option("--goal", v.goal_hz, "Force rate that the governor holds (Hz)")
         ->type_name("HZ")
         ->check(CLI::Range(1.0, 1e7));
     app.add_option("--picture-goal", v.display_goal_hz,
-                   "frames a second below which the surface gets coarser; 0: none")
+                   "Frame rate below which the governor draws a coarser surface (frames/s); 0: none")
         ->type_name("FPS")
         ->check(CLI::Range(0.0, 1000.0));
-    app.add_flag("--arm", o.arm, "arm at once instead of waiting for a command");
-    app.add_flag(
-        "--arm-with-gui", o.arm_with_gui,
-        "arm once, when the visual process has drawn its first frame, so that a person sees all of it");
-    app.add_option("--level", o.levels, "fixed level of a path, e.g. docking.force=1; the law becomes fixed")
+    app.add_flag("--arm", o.arm, "Arm at once instead of waiting for a command");
+    app.add_flag("--arm-with-gui", o.arm_with_gui, "Arm once the window has drawn its first frame");
+    app.add_option("--level", o.levels,
+                   "Fixed level of one path, from 0 to 1, such as docking.force=1; sets the law to fixed")
         ->type_name("PATH=VALUE");
-    app.add_option("--core", v.core, "core of the servo thread; -1: chosen, -2: not pinned");
+    app.add_option("--core", v.core,
+                   "Processor core of the servo thread; -1: chosen automatically; -2: not pinned");
     app.add_option("--priority", v.priority, "FIFO priority of the servo thread; 0: ordinary scheduling")
         ->check(CLI::Range(0, 94));
     auto* offset = app.add_option("--start-offset-a", o.start_offset_a,
-                                  "the first body starts so many angstroms from home")
+                                  "Start distance of the first body from the place in its file (angstrom)")
                        ->check(CLI::Range(0.0, 1e4));
     auto* rotation = app.add_option("--start-rotation-deg", o.start_rotation_deg,
-                                    "the first body starts turned by so many degrees from home")
+                                    "Start rotation of the first body from the place in its file (degrees)")
                          ->check(CLI::Range(0.0, 180.0));
     auto* copies =
-        app.add_option(
-               "--copies", o.copies,
-               "so many bodies of the first structure; those behind the first stand free about the map")
+        app.add_option("--copies", o.copies,
+                       "Number of bodies of the first structure; the copies are placed around the map")
             ->check(CLI::Range(1, static_cast<int>(ModelBodies::kMax)));
-    app.add_option("--poses", o.poses,
-                   "start with the bodies in this JSON file, as the report of a run lists them")
+    app.add_option("--poses", o.poses, "Start poses of the bodies, from the report of an earlier run (JSON)")
         ->type_name("FILE.json")
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
-    app.add_option("--hand", v.hand, "motion of the hand of the emulated device")
+    app.add_option("--hand", v.hand, "Motion of the emulated hand")
         ->type_name("passive|wander|stroke|drill|surgeon|suction-tube");
-    app.add_option(
-           "--hand2", v.hand2,
-           "a second hand, emulated too, where the configuration has none; suction-tube: goes with the "
-           "surgeon in the first")
+    app.add_option("--hand2", v.hand2,
+                   "Motion of a second, emulated hand, if the configuration has none; suction-tube: "
+                   "accompanies the surgeon")
         ->type_name("passive|wander|stroke|drill|surgeon|suction-tube");
-    app.add_option("--hand-at-mm", v.hand_at_mm, "position in mm at which an emulated surgeon works")
+    app.add_option("--hand-at-mm", v.hand_at_mm, "Position at which an emulated surgeon works (mm)")
         ->delimiter(',')
         ->expected(2);
     app.add_option("--pedal", v.pedal,
-                   "switch of the burr: button (of the stylus), line (a foot pedal) or always")
+                   "Switch of the burr: stylus button, foot pedal on an input line, or always on")
         ->type_name("button|line|always");
-    app.add_option("--burr-mm", v.burr_mm, "diameter of the burr")->type_name("MM");
-    app.add_option("--burr-shape", v.burr_shape, "shape of the burr")->type_name("sphere|cylinder|cone");
-    app.add_option("--burr-rpm", v.burr_rpm, "speed of the burr")->type_name("RPM");
-    app.add_option(
-           "--tool-radius-mm", o.tool_radius_mm,
-           "radius of the ball that touches a surface, in the hand's space; 0: a point. With a mesh as "
-           "the tool: radius of the balls at its points; 0: as baked")
+    app.add_option("--burr-mm", v.burr_mm, "Burr diameter (mm)")->type_name("MM");
+    app.add_option("--burr-shape", v.burr_shape, "Burr shape")->type_name("sphere|cylinder|cone");
+    app.add_option("--burr-rpm", v.burr_rpm, "Burr speed (rpm)")->type_name("RPM");
+    app.add_option("--tool-radius-mm", o.tool_radius_mm,
+                   "Radius of the ball that touches a surface (mm in the workspace); 0: a point. For a mesh "
+                   "as the tool: radius of the balls at the contact points; 0: as baked")
         ->type_name("MM")
         ->check(CLI::Range(0.0, 50.0));
-    app.add_option("--stiffness", o.surface.stiffness_n_m, "stiffness of a surface")
+    app.add_option("--stiffness", o.surface.stiffness_n_m, "Stiffness of the surface (N/m)")
         ->type_name("N/M")
         ->check(CLI::Range(1.0, 20000.0))
         ->capture_default_str();
-    app.add_option("--friction", o.surface.friction, "friction coefficient of a surface")
+    app.add_option("--friction", o.surface.friction, "Friction coefficient of the surface")
         ->check(CLI::Range(0.0, 2.0))
         ->capture_default_str();
-    app.add_option("--mode", v.surface_mode,
-                   "how a surface is looked up: off-brute, off-tree or chr (fine around the tool)")
+    app.add_option("--mode", v.surface_mode, "Contact search on the surface; chr: detailed around the tool")
         ->check(CLI::IsMember({"off-brute", "off-tree", "chr"}));
-    app.add_option("--seed", o.seed, "random seed of the start direction and of the emulated hand");
-    app.add_option("--force-scale", v.force_scale, "factor of the scene's own gain")
+    app.add_option("--seed", o.seed, "Random seed for the start direction and the emulated hand");
+    app.add_option("--force-scale", v.force_scale, "Factor on the force gain of the scene")
         ->check(CLI::Range(0.0, 1e6));
-    app.add_flag("--check", o.check, "read and check everything, then exit");
+    app.add_flag("--check", o.check, "Read and check scene and configuration, then exit");
 }
 
 RtConfig configure(const StartOptions& o, const StartOverrides& v) {

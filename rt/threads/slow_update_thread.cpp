@@ -19,7 +19,7 @@ SlowUpdateThread::SlowUpdateThread(ForceModel& model, const Latest<ToolTopic>& t
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this, &model, &tool, servo_thread_id] {
-        prepare_helper_thread("tend", servo_thread_id);
+        prepare_helper_thread("slow-update", servo_thread_id);
         ServoClock clock(Duration{0});
         Instant next = clock.now();
         while (!leave_.load(std::memory_order_relaxed)) {

@@ -59,7 +59,7 @@ void lock_memory(Platform& platform) {
     platform.findings.push_back(
         "cannot lock memory (" + std::string(std::strerror(errno)) + "): RLIMIT_MEMLOCK is " +
         limit_text(limit.rlim_cur, 1024.0 * 1024.0, " MiB") +
-        ". Going on with touched pages that may be swapped out.\n  mend: " + kLimitsFix);
+        ". Going on with touched pages that may be swapped out.\n  fix: " + kLimitsFix);
 }
 
 void hold_dma_latency(Platform& platform) {
@@ -74,7 +74,7 @@ void hold_dma_latency(Platform& platform) {
     if (fd >= 0) ::close(fd);
     platform.findings.push_back(
         "cannot hold /dev/cpu_dma_latency at 0 (" + why +
-        "). Going on; a sleeping core may wake up to 100 us late.\n  mend: " + kLimitsFix);
+        "). Going on; a sleeping core may wake up to 100 us late.\n  fix: " + kLimitsFix);
 }
 
 void take_fifo(const ScheduleRequest& request, Platform& platform) {
@@ -113,7 +113,7 @@ void pin(const ScheduleRequest& request, Platform& platform) {
     if (error != 0) {
         platform.findings.push_back("cannot pin the servo to core " + std::to_string(core) + " (" +
                                     std::strerror(error) +
-                                    "). Going on wherever the kernel puts it.\n  mend: choose "
+                                    "). Going on wherever the kernel puts it.\n  fix: choose "
                                     "one of " +
                                     first_line("/sys/devices/system/cpu/online") + " with --core");
         return;
@@ -127,7 +127,7 @@ void warn_of_throttling(Platform& platform) {
     if (runtime.empty() || runtime == "-1") return;
     platform.findings.push_back("a FIFO loop that never sleeps is throttled: the kernel takes " +
                                 std::to_string(1'000'000 - std::stol(runtime)) +
-                                " us of every second from it.\n  mend: a shorter spin tail, a fixed rate, or "
+                                " us of every second from it.\n  fix: a shorter spin tail, a fixed rate, or "
                                 "--priority 0");
 }
 

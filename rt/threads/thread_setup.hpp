@@ -1,6 +1,6 @@
 // Making a thread and its process fit for real time, as far as this machine permits.
 //
-// Refused  every step that is refused is a finding: what was tried, why it failed, the command that mends it,
+// Refused  every step that is refused is a finding: what was tried, why it failed, the command that fixes it,
 //          and how the run goes on. Nothing here is fatal; what was reached is shown in the health topic.
 // Thread   prepare_process() at start-up on the main thread, the others on the thread that they prepare
 #pragma once
@@ -16,7 +16,7 @@ namespace tact {
 
 struct Platform {
     std::uint32_t flags = 0;            // ScheduleFlag
-    std::vector<std::string> findings;  // degraded, in words, each with its mend
+    std::vector<std::string> findings;  // degraded, in words, each with its fix
     int dma_latency_fd = -1;            // kept open while the loop runs
 };
 

@@ -16,9 +16,9 @@
 
 #include "gui/drilling/bone_view.hpp"
 #include "gui/render/camera.hpp"
-#include "gui/window/png.hpp"
 #include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/image/png.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 
 namespace tact {
@@ -74,8 +74,8 @@ struct BonePicture {
     }
     void save(const char* what) const {
         if (const char* const picture = std::getenv("TACT_BONE_PICTURE"); picture != nullptr)
-            write_png(std::string(picture) + what + std::to_string(bone.bricks.size[0]) + ".png",
-                      read_pixels(kWidth, kHeight));
+            write_png(std::string(picture) + what + std::to_string(bone.bricks.size[0]) + ".png", kWidth,
+                      kHeight, read_pixels(kWidth, kHeight).rgb);
     }
 };
 

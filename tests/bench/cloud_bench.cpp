@@ -12,9 +12,9 @@
 #include "gui/drilling/particle_cloud.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
-#include "gui/window/png.hpp"
 #include "gui/window/window.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/image/png.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "tests/support/bone_block.hpp"
@@ -139,7 +139,8 @@ void cloud(benchmark::State& state) {
     state.counters["fill_ms"] = 1e3 * filling_s / static_cast<double>(state.iterations());
     state.SetLabel(window.renderer());
     if (const char* const picture = std::getenv("TACT_CLOUD_PICTURE"); picture != nullptr)
-        write_png(std::string(picture) + std::to_string(most) + ".png", read_pixels(kWidth, kHeight));
+        write_png(std::string(picture) + std::to_string(most) + ".png", kWidth, kHeight,
+                  read_pixels(kWidth, kHeight).rgb);
 }
 BENCHMARK(cloud)
     ->ArgName("particles")

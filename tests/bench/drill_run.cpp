@@ -145,13 +145,13 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
         ToolState tool;
         if (!path_m.empty()) tool.T_world_tool.p_m = path_m.front();
         model.reset(tool);
-        model.drive({.burr_rad_s = 0.0, .step_s = way.step_s});
+        model.turn_burr({.burr_rad_s = 0.0, .step_s = way.step_s});
         for (int i = 0; i < ForceFade::kRampSteps; ++i)
             static_cast<void>(model.step(tool, {.fidelity = way.fidelity}));
         std::uint64_t removed = model.removed_levels();
         SolidVoxels solid(bone, revision);
         if (way.count_voxels) static_cast<void>(solid.lost());
-        model.drive({.burr_rad_s = way.burr_rad_s, .step_s = way.step_s});
+        model.turn_burr({.burr_rad_s = way.burr_rad_s, .step_s = way.step_s});
         for (std::size_t i = 0; i < path_m.size(); ++i) {
             tool.twist_world.linear_m_s =
                 i == 0 ? Vec3(Vec3::Zero()) : Vec3((path_m[i] - path_m[i - 1]) / way.step_s);

@@ -79,7 +79,7 @@ void stroke(benchmark::State& state) {
         settings.tool.shaft_length_m = std::max(settings.tool.shaft_length_m, 2.0 * radius_m + 0.02);
         settings.rate_per_s = 20.0;
         DrillModel model(meta, shared, settings);
-        model.drive({settings.rate_at_rad_s, 1e-3});
+        model.turn_burr({settings.rate_at_rad_s, 1e-3});
         Budget budget;
         budget.fidelity = model.knob().start;
         const double span_m = std::min(0.3 * edge * voxel_m, 10.0 * radius_m);

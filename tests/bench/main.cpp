@@ -92,15 +92,18 @@ json drilling_and_particles() {
 }
 
 constexpr Measure kMeasures[] = {
-    {"servo", "how late a cycle of 1 ms begins", &servo},
-    {"docking", "one force of the docking model; changing the detail of a surface, and simplifying meshes",
+    {"servo", "lateness of a cycle of 1 ms", &servo},
+    {"docking", "time of one docking force, of a change of surface detail, and of mesh simplification",
      &docking_and_meshes},
-    {"surface", "one step of touching a surface of 92 480, 2 and 10 million triangles; some minutes and 4 GB",
+    {"surface",
+     "time of one contact step on surfaces of 92 480, 2 million and 10 million triangles; takes minutes and "
+     "4 GB",
      &bench_surface, true},
     {"drilling",
-     "one step of drilling, force and erosion, burrs of 1 to 20 mm; moving particles; two minutes",
+     "time of a drilling step (force and erosion) for burrs of 1 to 20 mm, and of moving particles; takes "
+     "two minutes",
      &drilling_and_particles, true},
-    {"ipc", "publishing and reading the state of a servo cycle", &ipc},
+    {"ipc", "time to publish and to read the state of a servo cycle", &ipc},
 };
 
 int bench(const std::vector<std::string>& wanted, bool as_json) {
@@ -128,50 +131,54 @@ void describe(CLI::App& app, int& exit_code) {
     const auto wanted = std::make_shared<std::vector<std::string>>();
     const auto as_json = std::make_shared<bool>(false);
     std::vector<std::string> names;
-    std::string help = "which; default: all but surface and drilling.";
+    std::string help = "Measurements to run; default: all but surface and drilling.";
     for (const Measure& m : kMeasures) {
         names.emplace_back(m.name);
         help += std::string(" ") + m.name + ": " + m.help + ".";
     }
     command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
-    command->add_flag("--json", *as_json, "print as JSON, for programs");
+    command->add_flag("--json", *as_json, "Print as JSON");
     const auto work = std::make_shared<SurfaceWork>();
-    auto* const group = command->add_option_group("Surface", "your own work, printed as CSV");
+    auto* const group = command->add_option_group("Surface", "Measurement on your own data, printed as CSV");
     auto* const mesh =
-        group->add_option("--mesh", work->mesh, "PLY, OBJ, STL or OFF, also .gz")->check(CLI::ExistingFile);
-    auto* const path =
-        group
-            ->add_option(
-                "--trajectory", work->trajectory,
-                "text: x y z a line, a millisecond apart, in the unit of the mesh, or mm in a volume")
+        group->add_option("--mesh", work->mesh, "Triangle mesh to touch: PLY, OBJ, STL or OFF, also .gz")
             ->check(CLI::ExistingFile);
+    auto* const path = group
+                           ->add_option("--trajectory", work->trajectory,
+                                        "Positions of the tool, one line x y z per millisecond, in the unit "
+                                        "of the mesh (--mesh) or in mm (--volume)")
+                           ->check(CLI::ExistingFile);
     mesh->needs(path);
-    group->add_option("--unit", work->unit, "unit of lengths in mesh and trajectory")
+    group->add_option("--unit", work->unit, "Unit of length of mesh and trajectory (a: angstrom)")
         ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
         ->capture_default_str();
-    group->add_option("--tool-radius-mm", work->radius_mm, "radius of the ball; 0: a point")
+    group
+        ->add_option("--tool-radius-mm", work->radius_mm,
+                     "Radius of the ball that touches the mesh (mm); 0: a point")
         ->check(CLI::Range(0.0, 50.0))
         ->capture_default_str();
     const auto drilling = std::make_shared<DrillingWork>();
-    auto* const bone = command->add_option_group("Drilling", "your own work, printed as CSV");
-    auto* const volume = bone->add_option("--volume", drilling->volume,
-                                          "raw, a byte a voxel, x fastest: 0 none, 255 solid bone")
-                             ->check(CLI::ExistingFile)
-                             ->excludes(mesh);
-    bone->add_option("--size", drilling->size, "size of the volume, in voxels")
+    auto* const bone = command->add_option_group("Drilling", "Measurement on your own data, printed as CSV");
+    auto* const volume =
+        bone->add_option(
+                "--volume", drilling->volume,
+                "Volume of bone: raw file, one byte per voxel, x fastest; 0: no bone, 255: solid bone")
+            ->check(CLI::ExistingFile)
+            ->excludes(mesh);
+    bone->add_option("--size", drilling->size, "Size of the volume along x, y and z (voxels)")
         ->expected(3)
         ->check(CLI::Range(1, 2048))
         ->capture_default_str();
-    bone->add_option("--voxel-mm", drilling->voxel_mm, "edge of a voxel")
+    bone->add_option("--voxel-mm", drilling->voxel_mm, "Edge of a voxel (mm)")
         ->check(CLI::Range(0.01, 10.0))
         ->capture_default_str();
-    bone->add_option("--burr-radius-mm", drilling->radius_mm, "radius of the burr")
+    bone->add_option("--burr-radius-mm", drilling->radius_mm, "Burr radius (mm)")
         ->check(CLI::Range(0.1, 50.0))
         ->capture_default_str();
     command->callback([=, &exit_code] {
         if (*volume && !*path)
-            throw CLI::ValidationError("--volume",
-                                       "needs --trajectory: x y z of the burr's centre a line, in mm");
+            throw CLI::ValidationError(
+                "--volume", "needs --trajectory: one line x y z of the burr's centre per millisecond, in mm");
         if (*path && !*mesh && !*volume)
             throw CLI::ValidationError("--trajectory", "needs --mesh or --volume");
         if (*volume) {
@@ -193,7 +200,7 @@ void describe(CLI::App& app, int& exit_code) {
 }  // namespace tact::launch
 
 int main(int argc, char** argv) {
-    CLI::App app{"tact-bench: measures what this machine is good for"};
+    CLI::App app{"tact-bench: measures the performance of this machine"};
     app.set_version_flag("--version", tact::program_version("tact-bench"));
     app.footer("Exit codes: 0 measured; 1 error; 2 wrong usage.");
     int exit_code = 0;

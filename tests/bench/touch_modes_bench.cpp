@@ -1,8 +1,8 @@
 // A ball that slides over a rough sphere: time of the servo's step in the modes off-tree and chr, on one path.
 //
 // Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
-//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. chr is tended every fourth step by the same
-//           thread, or (Live) steps are 1 ms apart and a thread beside it tends every 4 ms, as in tact-rt.
+//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. the slow update of chr runs every fourth step by the same
+//           thread, or (Live) steps are 1 ms apart and a thread beside it updates it every 4 ms, as in tact-rt.
 // Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
 //           surface; tend_us: of one slow_update(); near: triangles in it, predicted for this fidelity.
 // Measured  see rt/force/surface/README.md.
@@ -95,7 +95,7 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
                 (void)model->step(tool, {.fidelity = 1.0F});
                 auto& least = servo_us[static_cast<std::size_t>(i)];
                 least = std::min(least, to_us(Monotonic::now() - begin));
-                adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
+                adaptive += model->regime() == TouchRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
                 next += std::chrono::milliseconds(1);
                 if (live) std::this_thread::sleep_until(next);
             }

@@ -65,7 +65,7 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
             const bool nearer = (now_m - path_model_m[i]).norm() <
                                 (before_m - path_model_m[i]).norm() - 1e-7 / world_per_model;
             steps[i] = {result.wrench_world.force_n, std::min(us, steps[i].us), settled, !settled && !nearer};
-            steps[i].adaptive = model.regime() == SurfaceRegime::adaptive;
+            steps[i].adaptive = model.regime() == TouchRegime::adaptive;
             before_m = now_m;
             if (model.has_slow_update() && i % kSlowUpdateEvery == 0) model.slow_update(tool, {});
         }

@@ -26,12 +26,12 @@ struct TouchStep {
 
 inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand are a jam
 inline constexpr std::size_t kSlowUpdateEvery =
-    4;  // steps: 250 times a second, as the thread that tends does
+    4;  // steps: 250 times a second, as the thread of the slow update does
 
 // Baked by tact-prep with the given words before -o, without a picture; what it said as JSON.
 nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);
 
-// world_per_model: 1 is as large as in its file. forest: for mode chr, whose surface is tended between every
+// world_per_model: 1 is as large as in its file. forest: for mode chr, whose slow update runs between every
 // fourth step and the next, and not counted. The force has faded in when the path begins.
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
                                    const SurfaceSettings& settings, int passes, double world_per_model = 1.0,

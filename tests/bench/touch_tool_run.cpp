@@ -68,7 +68,7 @@ std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchT
             const double left_m = model.contact().way_m(path[i], model.contact().proxy()).norm();
             steps[i] = {result.wrench_world.force_n, std::min(us, steps[i].us), settled,
                         !settled && left_m > before_m - 1e-7};
-            steps[i].adaptive = model.regime() == SurfaceRegime::adaptive;
+            steps[i].adaptive = model.regime() == TouchRegime::adaptive;
             if (i % kSlowUpdateEvery == 0) model.slow_update(hand, {});
         }
     }

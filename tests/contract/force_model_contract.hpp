@@ -247,7 +247,7 @@ TEST_P(ForceModelContract, a_refused_order_changes_nothing) {
     absurd[4].kind = Kind::place, absurd[4].body = before.id[0], absurd[4].T_model_body.p_m.x() = 1e300;
     absurd[5].kind = Kind::add, absurd[5].T_model_body.q = Quat(0.0, 0.0, 0.0, 0.0);
     absurd[6].kind = Kind::remove, absurd[6].body = 12345;
-    absurd[7].kind = Kind::option, absurd[7].option = 1U << 31U;
+    absurd[7].kind = Kind::setting, absurd[7].command = 255;
     const StepResult felt = model_->step(at(GetParam().touch), budget(1.0F));
     for (const ModelOrder& order : absurd) EXPECT_FALSE(model_->order(order)) << static_cast<int>(order.kind);
     const ModelBodies after = model_->bodies();

@@ -142,7 +142,7 @@ TEST_P(LinesContract, whatever_stops_lowers_the_enable_line_and_only_a_person_ra
         ASSERT_TRUE(permit());
         const std::uint64_t trips = newest_.trips;
         rig_->inject(f.fault);
-        // Not by the state: where a stop mends itself, a late reader finds the lines waiting already.
+        // Not by the state: where a stop fixes itself, a late reader finds the lines waiting already.
         ASSERT_TRUE(until([&] { return newest_.trips > trips; }));
         EXPECT_TRUE(until([&] { return newest_.cause == f.cause; }));
         // Re-armed while it is still wrong: used up.

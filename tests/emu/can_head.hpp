@@ -4,7 +4,7 @@
 // Link     down and up are the interface's own, as `ip link set` does; frames that it does not take are
 //          counted; an interface that vanished is looked for twice a second
 // Thread   one of its own; the public functions on another
-// Fails by StartupError naming the interface and the mend
+// Fails by StartupError naming the interface and the fix
 #pragma once
 
 #include <atomic>

@@ -5,7 +5,7 @@
 //          removes every trace; what a killed emulator of the same serial left is removed first
 // Reads    of the endpoints block in the kernel; unplug() wakes them with ESHUTDOWN, and until it is plugged
 //          they say EAGAIN
-// Fails by StartupError with the mend: no rights, modules that are missing, no free controller
+// Fails by StartupError with the fix: no rights, modules that are missing, no free controller
 // Thread   plug() and unplug() on one
 #pragma once
 

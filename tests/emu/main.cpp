@@ -1,7 +1,7 @@
 // tact-emu: devices behind the kernel's own interfaces, for tests without hardware.
 //
 // Exit  0  it ended in order: by a signal, an order, or its time was over
-//       1  it could not start; one message says what, why and the mend
+//       1  it could not start; one message says what, why and the fix
 //       2  wrong usage
 #include <poll.h>
 #include <signal.h>

@@ -1,34 +1,19 @@
 // What a Falcon, or anything with its numbers, sends over a whole connection: bytes of any content, size and
 // time, and failures of the bus. Whatever comes, no torque goes out beyond the motors' limits, none before the
 // marks are found or without enable, and no pose is anything but finite.
-#include <deque>
-
 #include "hal/falcon/falcon.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/fuzz_usb_bus.hpp"
 
 namespace tact::fuzz {
 namespace {
 
 using falcon::Reply;
-using phantom::BusEvent;
-using phantom::BusEventKind;
+using usb::BusEventKind;
 
-class FuzzBus final : public falcon::FtdiBus {
+class FuzzBus final : public FuzzUsbBus {
 public:
-    phantom::BusFinding open(const std::string& /*serial*/) override {
-        return {phantom::BusFault::none, "F", {}};
-    }
-    void close() noexcept override { events.clear(); }
-    std::size_t wait(std::span<BusEvent> out, Duration patience) noexcept override {
-        if (events.empty()) time += patience;
-        std::size_t n = 0;
-        for (; n < out.size() && !events.empty(); ++n) {
-            out[n] = events.front();
-            events.pop_front();
-        }
-        return n;
-    }
     bool send(std::span<const std::byte> packet) noexcept override {
         falcon::Request r;
         require(decode(packet, r) == falcon::PacketFault::none);  // it runs, so it is never loaded
@@ -40,21 +25,7 @@ public:
         asked = true;
         return true;
     }
-    bool clear_stall() noexcept override { return true; }
-    bool control(const falcon::FtdiRequest& /*request*/) noexcept override { return true; }
-    Instant now() noexcept override { return time; }
 
-    void push(BusEventKind kind, std::span<const std::byte> bytes = {}) {
-        BusEvent e;
-        e.kind = kind;
-        e.at = time;
-        e.size = static_cast<std::uint8_t>(bytes.size() > 64 ? 65 : bytes.size());
-        std::copy_n(bytes.begin(), std::min<std::size_t>(bytes.size(), 64), e.bytes.begin());
-        if (events.size() < 64) events.push_back(e);
-    }
-
-    std::deque<BusEvent> events;
-    Instant time = instant_from_ns(1'000'000'000);
     bool opened = false, asked = false, may_push = false;
 };
 

@@ -1,6 +1,6 @@
 // For targets of file readers: the first byte picks the format, the rest is the file.
 //
-// Refusals  of a reader are StartupErrors that say a mend; anything else that it throws is a finding
+// Refusals  of a reader are StartupErrors that say a fix; anything else that it throws is a finding
 #pragma once
 
 #include <cstring>
@@ -28,7 +28,7 @@ bool run_formats(std::span<const std::byte> input, unsigned formats, const Use& 
     try {
         use(static_cast<unsigned>(input[0]) % formats, text);
     } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
+        require(std::strstr(error.what(), "fix:") != nullptr);
         return false;
     }
     return true;

@@ -52,7 +52,7 @@ bool run(std::span<const std::byte> input) {
         asked = take_asked_scene(folder.path);
         require(asked.has_value());
     } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
+        require(std::strstr(error.what(), "fix:") != nullptr);
     }
     require(!take_asked_scene(folder.path));
     if (!asked) return false;

@@ -48,7 +48,7 @@ std::optional<SceneMeta> meta_of(Read&& read) {
     try {
         return read();
     } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
+        require(std::strstr(error.what(), "fix:") != nullptr);
     }
     return std::nullopt;
 }

@@ -1,15 +1,15 @@
 // What an arm's board, or anything that says it is one, does to the driver over a whole connection: any bytes,
 // any size, states of any content with a right checksum, failures of the bus, in any order. Whatever comes, no
 // current flows beyond the limits, none without enable, and no pose is anything but finite.
-#include <deque>
-
 #include "hal/phantom/phantom_usb.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/fuzz_usb_bus.hpp"
 
 namespace tact::fuzz {
 namespace {
 
 using namespace tact::phantom;
+using usb::BusEventKind;
 
 Info info() {
     Info i;
@@ -19,19 +19,8 @@ Info info() {
     return i;
 }
 
-class FuzzBus final : public UsbBus {
+class FuzzBus final : public FuzzUsbBus {
 public:
-    BusFinding open(const std::string& /*serial*/) override { return {BusFault::none, "F", {}}; }
-    void close() noexcept override { events.clear(); }
-    std::size_t wait(std::span<BusEvent> out, Duration patience) noexcept override {
-        if (events.empty()) time += patience;
-        std::size_t n = 0;
-        for (; n < out.size() && !events.empty(); ++n) {
-            out[n] = events.front();
-            events.pop_front();
-        }
-        return n;
-    }
     bool send(std::span<const std::byte> packet) noexcept override {
         Command c;
         Query q;
@@ -49,8 +38,6 @@ public:
         push(BusEventKind::sent);
         return true;
     }
-    bool clear_stall() noexcept override { return true; }
-    Instant now() noexcept override { return time; }
 
     State next() {
         State s;
@@ -61,17 +48,6 @@ public:
         s.command_seen = seen;
         return s;
     }
-    void push(BusEventKind kind, std::span<const std::byte> bytes = {}) {
-        BusEvent e;
-        e.kind = kind;
-        e.at = time;
-        e.size = static_cast<std::uint8_t>(bytes.size() > 64 ? 65 : bytes.size());
-        std::copy_n(bytes.begin(), std::min<std::size_t>(bytes.size(), 64), e.bytes.begin());
-        if (events.size() < 64) events.push_back(e);
-    }
-
-    std::deque<BusEvent> events;
-    Instant time = instant_from_ns(1'000'000'000);
     std::uint32_t sequence = 0, seen = 0;
 };
 

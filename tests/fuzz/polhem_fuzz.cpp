@@ -13,9 +13,7 @@ namespace {
 class Port final : public polhem::HidPort {
 public:
     explicit Port(std::span<const std::byte> input) : input_(input) {}
-    phantom::BusFinding open(const std::string& /*serial*/) override {
-        return {phantom::BusFault::none, "F", {}};
-    }
+    usb::BusFinding open(const std::string& /*serial*/) override { return {usb::BusFault::none, "F", {}}; }
     void close() noexcept override {}
     int read(std::span<std::byte> into, Duration /*patience*/) noexcept override {
         now_ += std::chrono::microseconds(100);
@@ -68,11 +66,11 @@ bool run(std::span<const std::byte> input) {
             ++c.heartbeat;
             bus.send(phantom::encode(c));
         }
-        std::array<phantom::BusEvent, 8> events;
+        std::array<usb::BusEvent, 8> events;
         const std::size_t got = bus.wait(events, Duration{0});
-        for (const phantom::BusEvent& e : std::span(events).first(got)) {
-            gone = gone || e.kind == phantom::BusEventKind::gone;
-            if (e.kind != phantom::BusEventKind::packet) continue;
+        for (const usb::BusEvent& e : std::span(events).first(got)) {
+            gone = gone || e.kind == usb::BusEventKind::gone;
+            if (e.kind != usb::BusEventKind::packet) continue;
             phantom::State s;
             require(decode(std::span(e.bytes).first(e.size), s) == phantom::PacketFault::none);
             require(s.sequence > sequence);

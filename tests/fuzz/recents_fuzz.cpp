@@ -13,7 +13,7 @@ bool run(std::span<const std::byte> input) {
     try {
         scenes = read_recents_text(text, "file");
     } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
+        require(std::strstr(error.what(), "fix:") != nullptr);
         return false;
     }
     require(scenes.size() <= kRecentsMost);

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     std::size_t runs = 0;
     for (const Input& seed : seeds) {
         if (!tact::fuzz::run(seed)) {
-            std::printf("seed %zu is refused: it has to be mended\n",
+            std::printf("seed %zu is refused: it has to be fixed\n",
                         static_cast<std::size_t>(&seed - seeds.data()));
             return 1;
         }

@@ -2,7 +2,7 @@
 // them, names of a stack of pictures, a list of label names. What is accepted is read and resampled.
 #include <cmath>
 
-#include "prep/volume/import_bone.hpp"
+#include "prep/drilling/import_bone.hpp"
 #include "prep/volume/png_stack.hpp"
 #include "prep/volume/raw_scan.hpp"
 #include "tests/fuzz/format_fuzz.hpp"

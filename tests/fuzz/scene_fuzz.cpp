@@ -38,7 +38,7 @@ std::size_t accepted(Read&& read) {
         read();
         return 1;
     } catch (const StartupError& error) {
-        require(std::strstr(error.what(), "mend:") != nullptr);
+        require(std::strstr(error.what(), "fix:") != nullptr);
     }
     return 0;
 }

@@ -1,4 +1,4 @@
-// Frames of the tracker's bus. The first byte: format, sensors, and whether checksums are mended, so that
+// Frames of the tracker's bus. The first byte: format, sensors, and whether checksums are fixed, so that
 // what lies behind them is met as well; then frames of 4 bytes (identifier, kind, length) and their payload.
 #include <cmath>
 

@@ -59,7 +59,7 @@ class Desk:
                        for words in (": device: ", ": device of the second hand: "))
 
     def fault(self, order, arm="LEFT", patience_s=parts.PATIENCE_S):
-        """Gives the order and asserts that it ends in zero, and stays there once it is mended. False: it never came."""
+        """Gives the order and asserts that it ends in zero, and stays there once it is fixed. False: it never came."""
         self.arm()
         self.emulator.order(f"{order} {arm}")
         what, name = ("usb", "unplugged") if order == "unplug" else ("fault", re.sub(r" -?\d.*", "", order))

@@ -4,6 +4,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "ipc/base/error.hpp"
+#include "tests/reproduce/draw.hpp"
 #include "tests/reproduce/mesh_figures.hpp"
 
 namespace tact::launch {
@@ -36,6 +37,7 @@ int reproduce(const DockingExperiment& e) {
         add(adapted_figure(*rates->mesh, static_cast<std::uint32_t>(rates->low.free.vertices_mean), e.out));
     const nlohmann::json report{{"rates", json_of(*rates)}, {"summary", json_of(rows)}};
     write_whole(e.out / "docking.json", report.dump(2) + "\n");
+    draw_figures(e.out);
     std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(rows).c_str(),
                 (e.out / "docking.json").c_str());
     return exit_code;

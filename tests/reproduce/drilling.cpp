@@ -8,8 +8,8 @@
 #include "ipc/base/clock.hpp"
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
+#include "tests/reproduce/draw.hpp"
 #include "tests/reproduce/drilling_pictures.hpp"
-#include "tests/reproduce/plot.hpp"
 #include "tests/reproduce/summary.hpp"
 #include "tests/reproduce/text.hpp"
 
@@ -58,24 +58,9 @@ std::string way_name(std::size_t way) {
     return way < kDrillBlocks.size() ? text("l = %.1f R", kDrillBlocks[way]) : std::string("voxel by voxel");
 }
 
-plot::Panel panel_of(const std::vector<DrillingRow>& rows, double radius_mm, const char* label,
-                     double (*value)(const DrillingRow&, std::size_t), std::size_t ways) {
-    plot::Panel panel{.y_label = text("R = %.0f mm: %s", radius_mm, label)};
-    for (std::size_t way = 0; way < ways; ++way) {
-        plot::Curve curve{.name = way_name(way), .dashed = way == kDrillBlocks.size()};
-        for (const DrillingRow& r : rows)
-            if (r.radius_mm == radius_mm)
-                curve.points.push_back({r.penetration_mm / r.radius_mm, value(r, way)});
-        panel.curves.push_back(curve);
-    }
-    return panel;
-}
-
-double force_at(const DrillingRow& r, std::size_t way) { return r.force_n[way]; }
 double error_at(const DrillingRow& r, std::size_t way) {
     return r.true_n > kFeltN ? 100.0 * (r.force_n[way] / r.true_n - 1.0) : std::nan("");
 }
-double log_us_at(const DrillingRow& r, std::size_t way) { return std::log10(r.us[way]); }
 
 struct Spread {
     double mean = 0.0, most = 0.0;
@@ -92,45 +77,6 @@ Spread error_of(const std::vector<DrillingRow>& rows, std::size_t way) {
     }
     s.mean /= std::max(count, 1);
     return s;
-}
-
-void draw_figures(const std::vector<DrillingRow>& rows, const std::vector<DrillingRow>& growth,
-                  const std::filesystem::path& out) {
-    const char* const x = "penetration over R";
-    plot::save({.title = "Figure 2a: force against penetration",
-                .remark = "elastic force of flat solid bone, voxels of 0.3 mm, no erosion",
-                .x_label = x,
-                .panels = {panel_of(rows, 1.0, "force, N", &force_at, kDrillWays),
-                           panel_of(rows, 5.0, "force, N", &force_at, kDrillWays)}},
-               out / "fig2a_force.png");
-    plot::save(
-        {.title = "Figure 2b: error of the force",
-         .remark = "against 512 points in each voxel of the ball's surface; the seed: a few percent or below",
-         .x_label = x,
-         .panels = {panel_of(rows, 1.0, "error, percent", &error_at, kDrillBlocks.size()),
-                    panel_of(rows, 5.0, "error, percent", &error_at, kDrillBlocks.size())}},
-        out / "fig2b_error.png");
-    plot::Plot times{.title = "Figure 3: time for one force",
-                     .remark = "one core; least of some repetitions",
-                     .x_label = x};
-    for (const double radius : {1.0, 3.0, 5.0}) {
-        plot::Panel panel = panel_of(rows, radius, "log10 of us", &log_us_at, kDrillWays);
-        panel.goals = {{3.0, "1 ms"}};
-        times.panels.push_back(panel);
-    }
-    plot::save(times, out / "fig3_time.png");
-    plot::Panel by_radius{.y_label = "log10 of us", .goals = {{3.0, "1 ms"}}};
-    for (std::size_t way = 0; way < kDrillWays; ++way) {
-        plot::Curve curve{.name = way_name(way), .dashed = way == kDrillBlocks.size()};
-        for (const DrillingRow& r : growth) curve.points.push_back({r.radius_mm, log_us_at(r, way)});
-        by_radius.curves.push_back(curve);
-    }
-    plot::save(
-        {.title = "Figure 4: time for one force by the size of the burr",
-         .remark = "half of R in the bone; the seed: 1 to 6 mm, voxel by voxel beyond 1 ms from 2 mm on",
-         .x_label = "R, mm",
-         .panels = {by_radius}},
-        out / "fig4_growth.png");
 }
 
 std::string csv_of(const std::vector<DrillingRow>& rows) {
@@ -214,9 +160,9 @@ int reproduce_drilling(const DrillingExperiment& e) {
     }
     write_whole(e.out / "forces.csv", csv_of(rows));
     write_whole(e.out / "growth.csv", csv_of(growth));
-    draw_figures(rows, growth, e.out);
     const std::vector<SummaryRow> table = summary_of(rows, growth);
     write_whole(e.out / "drilling.json", nlohmann::json{{"summary", json_of(table)}}.dump(2) + "\n");
+    draw_figures(e.out);
     const int exit_code = e.pictures ? drilling_pictures(e.out, e.quick) : 0;
     std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
                 (e.out / "drilling.json").c_str());

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "deploy/tact/drilling/drilling.hpp"
 #include "deploy/tact/run.hpp"
 #include "deploy/tact/scene_cache.hpp"
 

@@ -19,44 +19,49 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
     auto* const command = reproduce.add_subcommand(name, about);
     const auto e = std::make_shared<DockingExperiment>();
     e->with_meshes = meshes;
-    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
-    command->add_option("--core", e->rates.core.core, "the core that all share; -1: the last")
+    command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
+    command
+        ->add_option("--core", e->rates.core.core,
+                     "Processor core that all processes share; -1: the last core; default -1")
         ->check(CLI::Range(-1, 1023));
-    command->add_option("--fps-max", e->rates.core.fps_max, "pictures a second, at most")
+    command->add_option("--fps-max", e->rates.core.fps_max, "Maximum frame rate (frames/s)")
         ->check(CLI::Range(1.0, 240.0))
         ->capture_default_str();
-    command->add_option("--law", e->rates.law, "law of the governor in the adapted runs")
+    command->add_option("--law", e->rates.law, "Law of the governor in the adaptive runs")
         ->check(CLI::IsMember({"elastic", "sensitus"}))
         ->capture_default_str();
-    command
-        ->add_option("--goal", e->rates.goal_hz,
-                     "force rate to hold under load, in Hz; 0: from a measurement")
+    command->add_option("--goal", e->rates.goal_hz, "Force rate to hold under load (Hz); 0: measured first")
         ->check(CLI::Range(0.0, 1e6));
-    command->add_flag("--quick", e->rates.quick, "seconds instead of a minute; shows that it works");
+    command->add_flag("--quick", e->rates.quick, "Short run of a few seconds, as a check");
     command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
 }
 
 void add_surface(CLI::App& reproduce, int& exit_code) {
-    auto* const command = reproduce.add_subcommand(
-        "surface", "table 1 of the surface paper, with meshes to 10 million triangles; minutes and 4 GB");
+    auto* const command =
+        reproduce.add_subcommand("surface",
+                                 "Reproduce table 1 of the surface paper, with meshes of up to 10 million "
+                                 "triangles; takes minutes and 4 GB of memory");
     const auto e = std::make_shared<SurfaceExperiment>();
-    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
-    command->add_option("--mesh", e->meshes, "meshes to touch, instead of synthetic ones")
+    command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
+    command->add_option("--mesh", e->meshes, "Meshes to touch; default: synthetic meshes")
         ->check(CLI::ExistingFile);
-    command->add_option("--unit", e->unit, "unit of lengths in these files")->capture_default_str();
-    command->add_option("--triangles-max", e->triangles_max, "most triangles of the synthetic meshes")
+    command->add_option("--unit", e->unit, "Unit of length of the mesh files")->capture_default_str();
+    command
+        ->add_option("--triangles-max", e->triangles_max,
+                     "Maximum number of triangles of the synthetic meshes")
         ->capture_default_str();
-    command->add_flag("--quick", e->quick, "seconds instead of minutes; shows that it works");
+    command->add_flag("--quick", e->quick, "Short run of a few seconds, as a check");
     command->callback([e, &exit_code] { exit_code = reproduce_surface(*e); });
 }
 
 void add_drilling(CLI::App& reproduce, int& exit_code) {
-    auto* const command = reproduce.add_subcommand("drilling", "figures 1 to 4 of the drilling paper");
+    auto* const command =
+        reproduce.add_subcommand("drilling", "Reproduce figures 1 to 4 of the drilling paper");
     const auto e = std::make_shared<DrillingExperiment>();
-    command->add_option("--out", e->out, "folder for CSV, PNG and JSON")->required();
-    command->add_flag("--quick", e->quick, "fewer places; shows that it works");
+    command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
+    command->add_flag("--quick", e->quick, "Short run at fewer positions, as a check");
     command->add_flag("!--no-pictures", e->pictures,
-                      "leave figure 1 out, a run of half a minute with a window");
+                      "Leave out figure 1, which runs a window for half a minute");
     command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
 }
 
@@ -65,16 +70,16 @@ void add_drilling(CLI::App& reproduce, int& exit_code) {
 
 int main(int argc, char** argv) {
     using namespace tact::launch;
-    CLI::App app{"tact-reproduce: repeats the published experiments on this machine"};
+    CLI::App app{"tact-reproduce: reproduces the published experiments on this machine"};
     app.set_version_flag("--version", tact::program_version("tact-reproduce"));
     app.footer("Exit codes: 0 done; 1 error; 2 wrong usage.");
     app.require_subcommand(1);
     int exit_code = 0;
-    add_docking(app, exit_code, "docking", "figures 3 to 8 of the docking paper", true);
-    add_docking(
-        app, exit_code, "governor",
-        "force rate of the docking paper, with and without its law, with and without an external load",
-        false);
+    add_docking(app, exit_code, "docking", "Reproduce figures 3 to 8 of the docking paper", true);
+    add_docking(app, exit_code, "governor",
+                "Reproduce the force rates of the docking paper, with and without the governor, with and "
+                "without external load",
+                false);
     add_surface(app, exit_code);
     add_drilling(app, exit_code);
     if (const auto answered = tact::manual::answer(app, "tact-reproduce", argc, argv)) return *answered;

@@ -5,9 +5,10 @@
 #include "deploy/tact/files.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/mesh/mesh_cut.hpp"
+#include "prep/mesh_file/import_mesh.hpp"
+#include "prep/mesh_file/write_ply.hpp"
 #include "tests/reproduce/mesh_error.hpp"
 #include "tests/reproduce/mesh_picture.hpp"
-#include "tests/reproduce/ply.hpp"
 #include "tests/reproduce/run_prep.hpp"
 #include "tests/reproduce/sample_meshes.hpp"
 #include "tests/reproduce/text.hpp"
@@ -17,17 +18,22 @@ namespace {
 
 constexpr double kSeedWeight = 1000.0;  // f of the seed
 
+TriangleMesh scaled(TriangleMesh mesh, double factor) {
+    for (float& x : mesh.position_m) x = static_cast<float>(static_cast<double>(x) * factor);
+    return mesh;
+}
+
 struct Simplifier {
     std::filesystem::path scratch;
     double per_m;  // units of the file in a metre
 
     TriangleMesh operator()(const TriangleMesh& mesh, std::uint32_t vertices, double weight) const {
         const auto in = scratch / "in.ply", made = scratch / "out.ply";
-        write_ply(mesh, per_m, in);
+        write_ply(in, scaled(mesh, per_m));
         run_prep({"simplify", in.string(), "--vertices", std::to_string(vertices), "-o", made.string(),
                   "--boundary-weight", text("%g", weight)},
                  scratch / "simplify.log", "simplifying a mesh");
-        return read_ply(made, per_m);
+        return scaled(import_mesh(made).mesh, 1.0 / per_m);
     }
 };
 
@@ -68,7 +74,7 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
                             {}});
     MeshPicture picture{.title = "Figure 3: an open mesh, its border with and without protection",
                         .remark =
-                            "sizes as in the seed, border planes weighted by f = 1000 as there; distances: "
+                            "sizes as in the paper, border planes weighted by f = 1000 as there; distances: "
                             "the furthest, in percent of the "
                             "box's diagonal",
                         .eye = Vec3(0.5, -1.2, 1.1),
@@ -84,12 +90,12 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
                                             ", surface by " + percent_of(r.error.max_m, r.error),
                                   r.weight >= 0.0});
     }
-    save(picture, out / "fig3_border.png");
+    save(picture, out, "fig3_border");
     const auto border = [&](std::size_t i) { return percent_of(rows[i].error.border_max_m, rows[i].error); };
     const std::string counts =
         text("%zu to %zu and %zu", rows[0].mesh.vertices(), rows[3].mesh.vertices(), rows[4].mesh.vertices());
     return {{"3", "open mesh, vertices", "1250 to 100 and 8", counts,
-             "a bent sheet of ours; the seed's mesh is not published"},
+             "a bent sheet of ours; the mesh of the paper is not published"},
             {"3", "border, no protection", "zig-zag at 100, lost at 8",
              "off by " + border(1) + " and " + border(2), "furthest, of the mesh's diagonal"},
             {"3", "border, protected (f = 1000)", "kept at 100 and 8",
@@ -110,7 +116,7 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
                         {}});
     MeshPicture picture{.title = "Figure 4: isosurface like that of a chaperonin, at three sizes",
                         .remark =
-                            "two rings of eight, made in code; sizes as in the seed; flat shaded; distances "
+                            "two rings of eight, made in code; sizes as in the paper; flat shaded; distances "
                             "in percent of the box's diagonal",
                         .eye = Vec3(0.5, -1.6, 0.9),
                         .panel_px = 560};
@@ -126,7 +132,7 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
                                   percent_of(r.error.max_m, r.error) + " (most)",
              r.weight >= 0.0});
     }
-    save(picture, out / "fig4_chaperonin.png");
+    save(picture, out, "fig4_chaperonin");
     const auto off = [&](std::size_t i) {
         return text("%zu vertices, off by ", rows[i].mesh.vertices()) +
                percent_of(rows[i].error.rms_m, rows[i].error) + " rms, " +
@@ -176,15 +182,15 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
         100.0 * (1.0 - static_cast<double>(some.triangles()) / static_cast<double>(all.triangles()));
     save({.title = "Figure 6: the surface without and with adaptation",
           .remark = "the map of the rate experiment; as it was drawn on average at the goal B of figure 5",
-          .panels = {{&all, text("(a) %zu triangles", all.triangles()), "the seed: 10140", false},
+          .panels = {{&all, text("(a) %zu triangles", all.triangles()), "paper: 10140", false},
                      {&some, text("(b) %zu triangles, %.0f %% fewer", some.triangles(), fewer),
-                      text("the seed: 2776, 72 %% fewer; error %.2f A",
+                      text("paper: 2776, 72 %% fewer; error %.2f A",
                            static_cast<double>(cut.error_m()) / kAngstromM),
                       false}},
           .eye = Vec3(0.6, -1.2, 1.4),
           .panel_px = 640,
           .panel_height_px = 520},
-         out / "fig6_triangles.png");
+         out, "fig6_triangles");
     return {{"6", "triangles before and after", "10140 to 2776",
              text("%zu to %zu", all.triangles(), some.triangles()),
              "the surface is finer, so that drawing it loads a core of today"}};

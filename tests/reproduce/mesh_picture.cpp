@@ -6,13 +6,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/files.hpp"
+#include "ipc/image/png.hpp"
 
 namespace tact::launch {
 namespace {
 
 constexpr int kSamples = 3;  // a side of a pixel
 constexpr double kEdgePx = 0.55;
-constexpr plot::Colour kPaper{255, 255, 255}, kInk{34, 34, 34}, kGrey{102, 102, 102};
 const Vec3 kFront(0.36, 0.62, 0.85), kBack(0.93, 0.66, 0.38);
 
 Vec3 corner(const TriangleMesh& mesh, std::size_t index) {
@@ -103,8 +106,8 @@ Vec3 shade_of(const Vec3& normal, const Vec3& toward, const Vec3& light) {
 
 }  // namespace
 
-plot::Image draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye, bool edges,
-                      int width_px, int height_px) {
+MeshImage draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye, bool edges,
+                    int width_px, int height_px) {
     const int w = kSamples * width_px, h = kSamples * height_px;
     const Camera camera(framed, eye, w, h);
     const Vec3 light = (camera.toward + 0.5 * camera.up - 0.4 * camera.right).normalized();
@@ -116,8 +119,8 @@ plot::Image draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, cons
         raster.triangle({camera.at(at[0], w, h), camera.at(at[1], w, h), camera.at(at[2], w, h)},
                         shade_of(normal, camera.toward, light), edges ? kEdgePx * kSamples : 0.0);
     }
-    plot::Image image{.width = width_px, .height = height_px, .rgba = {}};
-    image.rgba.reserve(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+    MeshImage image{static_cast<std::uint32_t>(width_px), static_cast<std::uint32_t>(height_px), {}};
+    image.rgb.reserve(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
     for (int y = 0; y < height_px; ++y)
         for (int x = 0; x < width_px; ++x) {
             std::array<float, 3> sum{};
@@ -130,32 +133,25 @@ plot::Image draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, cons
                     for (std::size_t k = 0; k < 3; ++k) sum[k] += c[k];
                 }
             for (const float s : sum)
-                image.rgba.push_back(static_cast<std::uint8_t>(std::lround(
+                image.rgb.push_back(static_cast<std::uint8_t>(std::lround(
                     255.0 * std::clamp(static_cast<double>(s) / (kSamples * kSamples), 0.0, 1.0))));
-            image.rgba.push_back(255);
         }
     return image;
 }
 
-void save(const MeshPicture& picture, const std::filesystem::path& path) {
-    constexpr int kTop = 92, kFoot = 74, kGap = 16;
-    const int n = static_cast<int>(picture.panels.size()), each = picture.panel_px;
-    const int tall = picture.panel_height_px > 0 ? picture.panel_height_px : each;
-    if (n == 0) return;
-    const plot::Font font;
-    plot::Canvas canvas(n * each + (n + 1) * kGap, kTop + tall + kFoot, kPaper);
-    canvas.text(font, picture.title, {kGap, 36}, 24, kInk);
-    canvas.text(font, picture.remark, {kGap, 64}, 16, kGrey);
-    for (int i = 0; i < n; ++i) {
-        const MeshPanel& p = picture.panels[static_cast<std::size_t>(i)];
-        const int x = kGap + i * (each + kGap);
-        canvas.paste(draw_mesh(*p.mesh, *picture.panels.front().mesh, picture.eye, p.edges, each, tall), x,
-                     kTop);
-        const double middle = x + 0.5 * each;
-        canvas.text(font, p.title, {middle, kTop + tall + 28.0}, 19, kInk, plot::Anchor::middle);
-        canvas.text(font, p.remark, {middle, kTop + tall + 54.0}, 15, kGrey, plot::Anchor::middle);
+void save(const MeshPicture& picture, const std::filesystem::path& folder, const std::string& name) {
+    const int high = picture.panel_height_px > 0 ? picture.panel_height_px : picture.panel_px;
+    nlohmann::json panels = nlohmann::json::array();
+    char letter = 'a';
+    for (const MeshPanel& p : picture.panels) {
+        const MeshImage image =
+            draw_mesh(*p.mesh, *picture.panels.front().mesh, picture.eye, p.edges, picture.panel_px, high);
+        const std::string file = name + "_" + letter++ + ".png";
+        write_png(folder / file, image.width_px, image.height_px, image.rgb);
+        panels.push_back({{"file", file}, {"title", p.title}, {"remark", p.remark}});
     }
-    plot::save_png(canvas.image(), path);
+    const nlohmann::json all{{"title", picture.title}, {"remark", picture.remark}, {"panels", panels}};
+    write_whole(folder / (name + ".panels.json"), all.dump(2) + "\n");
 }
 
 }  // namespace tact::launch

@@ -5,13 +5,13 @@
 // Thread  any.  Fails by  StartupError where the file cannot be written
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "ipc/base/pose.hpp"
 #include "ipc/scene/mesh/progressive_mesh.hpp"
-#include "tests/reproduce/plot_canvas.hpp"
 
 namespace tact::launch {
 
@@ -30,9 +30,16 @@ struct MeshPicture {
     int panel_height_px = 0;  // 0: as wide
 };
 
-// All panels show the box of the first one's mesh. `width_px` by `height_px`, on white.
-[[nodiscard]] plot::Image draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye,
-                                    bool edges, int width_px, int height_px);
-void save(const MeshPicture& picture, const std::filesystem::path& path);
+struct MeshImage {
+    std::uint32_t width_px = 0, height_px = 0;
+    std::vector<std::uint8_t> rgb;  // rows from the top
+};
+
+// In the box of `framed`; `width_px` by `height_px`, on white.
+[[nodiscard]] MeshImage draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye,
+                                  bool edges, int width_px, int height_px);
+// FOLDER/NAME_a.png and so on, one for each panel, in the box of the first one's mesh; and FOLDER/NAME.panels.json with
+// their titles, from which draw.py makes NAME.png.
+void save(const MeshPicture& picture, const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace tact::launch

@@ -59,7 +59,7 @@ struct Rates {
 // Nothing: a signal asked to end.
 std::optional<Rates> measure_rates(const RatesSettings& settings);
 
-// rates.csv, fig5_rates.png, fig7_load_without_law.png, fig8_load_with_law.png in that folder.
+// rates.csv in that folder.
 void write_rates(const Rates& rates, const std::filesystem::path& out);
 [[nodiscard]] nlohmann::json json_of(const Rates& rates);
 [[nodiscard]] std::vector<SummaryRow> summary_of(const Rates& rates);

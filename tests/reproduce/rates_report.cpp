@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "deploy/tact/files.hpp"
-#include "tests/reproduce/plot.hpp"
 #include "tests/reproduce/rates.hpp"
 #include "tests/reproduce/text.hpp"
 
@@ -13,91 +12,6 @@ namespace {
 std::string whole(double v) { return std::to_string(std::lround(v)); }
 
 double off_percent(double value, double of) { return of > 0.0 ? 100.0 * (value - of) / of : 0.0; }
-
-plot::Curve rate_curve(const Run& run, const std::string& name, int colour) {
-    plot::Curve c{.name = name, .colour = colour};
-    for (const RateWindow100& w : windows(run.samples, 0.2, 1e9)) c.points.push_back({w.t_s, w.rate_hz});
-    return c;
-}
-
-plot::Curve triangle_curve(const Rates& r, const Run& run, const std::string& name, int colour) {
-    plot::Curve c{.name = name, .colour = colour};
-    for (const RateSample& s : run.samples)
-        if (s.t_s > 0.2) c.points.push_back({s.t_s, 1e-3 * r.triangles(s.vertices)});
-    return c;
-}
-
-// Where windows of a run were disturbed, joined where they touch, in the colour of its curve.
-void mark_disturbed(const Rates& r, const std::vector<plot::Panel*>& panels, const Run& run, int colour,
-                    double until_s = 1e9) {
-    std::vector<plot::Span> spans;
-    for (const RateWindow100& w : windows(run.samples, 0.2, until_s, kWindow_s, r.fast_s(run))) {
-        if (!w.disturbed) continue;
-        const double from_s = w.t_s - kWindow_s;
-        if (!spans.empty() && from_s <= spans.back().x_to)
-            spans.back().x_to = w.t_s;
-        else
-            spans.push_back({from_s, w.t_s, "", colour});
-    }
-    for (plot::Panel* const panel : panels) {
-        const auto first = panel->spans.insert(panel->spans.end(), spans.begin(), spans.end());
-        if (first != panel->spans.end() && panel == panels.front())
-            first->name = "disturbed from outside, in the colour of the run";
-    }
-}
-
-std::string remark_of(const Rates& r) {
-    return "one core for all" + std::string(r.finely_shared ? ", in turns of 1 ms" : "") + ", " +
-           precedence_text(r.settings.precedence) + "; " + whole(static_cast<double>(r.scene.points_summed)) +
-           " points felt, " + whole(r.triangles(r.scene.vertices)) + " triangles at most; each point: 0.1 s";
-}
-
-constexpr const char* kRateLabel = "force updates per second";
-constexpr const char* kTriangleLabel = "triangles drawn, thousands";
-
-plot::Plot figure_5(const Rates& r) {
-    const auto goal = [](const Run& run, const char* seed) {
-        return "goal " + whole(run.goal_hz) + " (seed: " + seed + ")";
-    };
-    const std::string c = "C  no adaptation (seed: about 550)", b = "B  " + goal(r.low, "800, held"),
-                      a = "A  " + goal(r.high, "1200, not reached");
-    const double end = r.low.phase.end_s();
-    plot::Curve off = rate_curve(r.off, c, 0), off_triangles = triangle_curve(r, r.off, "C", 0);
-    for (plot::Curve* const k : {&off, &off_triangles})
-        std::erase_if(k->points,
-                      [&](const plot::Point& p) { return p.x > std::min(r.off.phase.load_on_s(), end); });
-    plot::Panel rates{.y_label = kRateLabel,
-                      .curves = {off, rate_curve(r.low, b, 1), rate_curve(r.high, a, 2)},
-                      .goals = {{r.low.goal_hz, "goals of B and A"}, {r.high.goal_hz, ""}}};
-    plot::Panel triangles{
-        .y_label = kTriangleLabel,
-        .curves = {off_triangles, triangle_curve(r, r.low, "B", 1), triangle_curve(r, r.high, "A", 2)}};
-    mark_disturbed(r, {&rates, &triangles}, r.off, 0, std::min(r.off.phase.load_on_s(), end));
-    mark_disturbed(r, {&rates, &triangles}, r.low, 1);
-    mark_disturbed(r, {&rates, &triangles}, r.high, 2);
-    return {.title = "Figure 5: force rate without external load, by goal",
-            .remark = remark_of(r),
-            .x_label = "time, s",
-            .panels = {rates, triangles}};
-}
-
-plot::Plot with_load(const Rates& r, const std::string& title,
-                     const std::vector<std::pair<const Run*, std::string>>& runs, const Run& main) {
-    plot::Plot p{.title = title, .remark = remark_of(r), .x_label = "time, s"};
-    plot::Panel rates{.y_label = kRateLabel}, triangles{.y_label = kTriangleLabel};
-    rates.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), "external load"});
-    triangles.spans.push_back({main.phase.load_on_s(), main.phase.end_s(), ""});
-    int colour = 0;
-    for (const auto& [run, name] : runs) {
-        const int of = run == &r.on_seed ? 3 : colour++;
-        mark_disturbed(r, {&rates, &triangles}, *run, of);
-        rates.curves.push_back(rate_curve(*run, name, of));
-        triangles.curves.push_back(triangle_curve(r, *run, "", of));
-    }
-    if (main.goal_hz > 0.0) rates.goals.push_back({main.goal_hz, "goal " + whole(main.goal_hz)});
-    p.panels = {rates, triangles};
-    return p;
-}
 
 nlohmann::json json_of(const RateSummary& s, double goal_hz, double settled_s) {
     if (s.seconds <= 0.0) return nullptr;
@@ -149,12 +63,16 @@ std::string held(const RateSummary& s, double goal_hz) {
 }  // namespace
 
 void write_rates(const Rates& r, const std::filesystem::path& out) {
+    // The part of a run in the figures (draw.py).
+    const std::pair<const Run*, const char*> kCases[] = {
+        {&r.off, "off"},          {&r.low, "low"},           {&r.high, "high"},      {&r.on, "on"},
+        {&r.on_seed, "on_paper"}, {&r.fifo_off, "fifo_off"}, {&r.fifo_on, "fifo_on"}};
     std::string csv =
-        "run,goal_hz,t_s,external_load,force_rate_100ms_hz,strangers_share,update_processor_us,step_work_"
-        "done_anew,disturbed,"
-        "level_mesh,level_force,vertices,"
-        "triangles,fps\n";
-    for (const Run* const run : r.runs()) {
+        "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,strangers_share,update_processor_us,step_"
+        "work_"
+        "done_anew,disturbed,level_mesh,level_force,vertices,triangles,fps\n";
+    for (const auto& [run, name] : kCases) {
+        if (run->samples.empty()) continue;
         auto w = windows(run->samples, 0.0, 1e9, kWindow_s, r.fast_s(*run));
         auto at = w.begin();
         double written_s = -1.0;
@@ -164,22 +82,13 @@ void write_rates(const Rates& r, const std::filesystem::path& out) {
             if (at == w.end()) break;
             if (at->t_s > s.t_s) continue;
             written_s = s.t_s;
-            csv += text("\"%s\",%.0f,%.3f,%d,%.2f,%.4f,%.2f,%.4f,%d,%.5f,%.5f,%u,%.0f,%.2f\n",
-                        run->name.c_str(), run->goal_hz, s.t_s, s.load ? 1 : 0, at->rate_hz,
+            csv += text("\"%s\",%s,%.0f,%.3f,%d,%.2f,%.4f,%.2f,%.4f,%d,%.5f,%.5f,%u,%.0f,%.2f\n",
+                        run->name.c_str(), name, run->goal_hz, s.t_s, s.load ? 1 : 0, at->rate_hz,
                         at->foreign_share, 1e6 * at->update_s, at->recomputed_fraction, at->disturbed ? 1 : 0,
                         s.level_mesh, s.level_force, s.vertices, r.triangles(s.vertices), s.fps);
         }
     }
     write_whole(out / "rates.csv", csv);
-    plot::save(figure_5(r), out / "fig5_rates.png");
-    plot::save(with_load(r, "Figure 7: force rate under an external load, no adaptation",
-                         {{&r.off, "no adaptation (seed: falls to 300 to 400)"}}, r.off),
-               out / "fig7_load_without_law.png");
-    std::vector<std::pair<const Run*, std::string>> runs{
-        {&r.off, "no adaptation"}, {&r.on, "law " + r.settings.law + " (seed: stays near its goal)"}};
-    if (!r.on_seed.samples.empty()) runs.emplace_back(&r.on_seed, "law sensitus, the seed's own");
-    plot::save(with_load(r, "Figure 8: force rate under an external load, with adaptation", runs, r.on),
-               out / "fig8_load_with_law.png");
 }
 
 nlohmann::json json_of(const Rates& r) {

@@ -10,7 +10,7 @@
 #include "ipc/scene/mesh/refine_filter.hpp"
 #include "ipc/scene/mesh/vertex_forest.hpp"
 #include "tests/bench/touch_paths.hpp"
-#include "tests/reproduce/plot.hpp"
+#include "tests/reproduce/draw.hpp"
 #include "tests/reproduce/summary.hpp"
 #include "tests/reproduce/surface_direction.hpp"
 #include "tests/reproduce/surface_rows.hpp"
@@ -66,37 +66,8 @@ std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool qu
     return rows;
 }
 
-// Rates of the seed's hand, the slow one, by size.
-plot::Plot table_figure(const std::vector<TouchRow>& rows) {
-    plot::Panel rates{.y_label = "log10 of the force rate, Hz", .goals = {{3.0, "1000 Hz"}}, .y_min = 0.0};
-    plot::Panel times{.y_label = "99.9 % of steps take less, us", .goals = {{1000.0, "1 ms"}}};
-    // A point and the largest ball in each mode; without dashes: as the model is by default.
-    int colour = 0;
-    for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
-        const char* const mode_name = kSurfaceModeNames[static_cast<std::size_t>(mode)];
-        for (const TouchBall* const tool : {&kTouchBalls[0], &kTouchBalls[2]}) {
-            plot::Curve rate{.name = std::string(mode_name) + ", " + tool->name,
-                             .colour = colour++,
-                             .dashed = mode != SurfaceMode::off_tree},
-                time = rate;
-            for (const TouchRow& r : rows) {
-                if (r.mode != mode_name || r.tool != tool->name || r.hand != kSlowHand) continue;
-                const double x = std::log10(static_cast<double>(r.triangles));
-                rate.points.push_back({x, std::log10(r.rate_hz)});
-                if (mode != SurfaceMode::off_brute) time.points.push_back({x, r.p999_us});
-            }
-            rates.curves.push_back(rate);
-            if (mode != SurfaceMode::off_brute) times.curves.push_back(time);
-        }
-    }
-    return {.title = "Table 1: force rate by the size of the mesh",
-            .remark = "one core; a point and a ball, wandering at 55 mm/s",
-            .x_label = "log10 of the number of triangles",
-            .panels = {rates, times}};
-}
-
-// The seed's filters: a bell, and the frustums by which it is replaced.
-plot::Plot filter_figure() {
+// Figure 3: the filters of the paper, a bell and the frustums that replace it.
+std::string filters_csv() {
     constexpr float kRadius = 3e-3F, kWidth = 4e-3F, kFar = 1e-4F;
     const RefineFilter bell = RefineFilter::bell(kRadius, kWidth, kFar);
     const std::array<RefineFilter::Point, 4> corner{{{kRadius, 0.1F * kFar},
@@ -104,19 +75,15 @@ plot::Plot filter_figure() {
                                                      {kRadius + kWidth, 0.7F * kFar},
                                                      {kRadius + 2.0F * kWidth, kFar}}};
     const RefineFilter frustums = RefineFilter::frustums(kRadius, corner);
-    plot::Curve exact{.name = "1 - exp(-x^2)", .dashed = true}, by_points{.name = "bell, as it is computed"},
-        pieces{.name = "multiple frustums"};
+    std::string csv = "distance_mm,exact_um,bell_um,frustums_um\n";
     for (int i = 0; i <= 400; ++i) {
         const float d = 15e-3F * static_cast<float>(i) / 400.0F, x = std::max(d - kRadius, 0.0F) / kWidth;
-        const double mm = 1e3 * static_cast<double>(d);
-        exact.points.push_back({mm, 1e6 * static_cast<double>(kFar * (1.0F - std::exp(-x * x)))});
-        by_points.points.push_back({mm, 1e6 * static_cast<double>(bell.allowed_m(d))});
-        pieces.points.push_back({mm, 1e6 * static_cast<double>(frustums.allowed_m(d))});
+        csv += text("%.4f,%.4f,%.4f,%.4f\n", 1e3 * static_cast<double>(d),
+                    1e6 * static_cast<double>(kFar * (1.0F - std::exp(-x * x))),
+                    1e6 * static_cast<double>(bell.allowed_m(d)),
+                    1e6 * static_cast<double>(frustums.allowed_m(d)));
     }
-    return {.title = "Figure 3: how coarse the surface may be, by the distance from the probe",
-            .remark = "full detail within 3 mm; distance: the largest of |dx|, |dy|, |dz|",
-            .x_label = "distance from the probe, mm",
-            .panels = {{.y_label = "allowed error, um", .curves = {exact, by_points, pieces}}}};
+    return csv;
 }
 
 std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz, quality(r).c_str()); }
@@ -189,13 +156,13 @@ int reproduce_surface(const SurfaceExperiment& e) {
     }
     write_whole(e.out / "table1.csv", csv_of(rows));
     if (!smooth.empty()) write_whole(e.out / "direction.csv", csv_of(smooth));
-    save(table_figure(rows), e.out / "table1.png");
-    save(filter_figure(), e.out / "fig3_filters.png");
+    write_whole(e.out / "filters.csv", filters_csv());
     std::vector<SummaryRow> table = summary_of(rows);
     for (const SummaryRow& row : summary_of(smooth)) table.push_back(row);
     const nlohmann::json report{
         {"rows", json_of(rows)}, {"direction", json_of(smooth)}, {"summary", json_of(table)}};
     write_whole(e.out / "surface.json", report.dump(2) + "\n");
+    draw_figures(e.out);
     std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
                 (e.out / "surface.json").c_str());
     return 0;

@@ -107,7 +107,7 @@ class Process(unittest.TestCase):
         out, _ = second.communicate(timeout=PATIENCE_S)
         self.assertEqual(second.returncode, 1, out)
         self.assertIn(str(first.pid), out)
-        self.assertIn("mend:", out)
+        self.assertIn("fix:", out)
         other = self.start("--session", "other", "--seconds", "0.2")
         other.communicate(timeout=PATIENCE_S)
         self.assertEqual(other.returncode, 0)
@@ -163,11 +163,11 @@ class Process(unittest.TestCase):
         with open(broken, "wb") as f:
             f.write(data)
         for options, words in (
-            ([self.scene, "--config", config], ["bad.toml:2", "servo.period_ms", "mend:"]),
-            ([broken], ["broken.tact", "mend:"]),
-            ([os.path.join(self.dir, "none.tact")], ["none.tact", "mend:"]),
-            ([self.scene, "--level", "docking.force=3"], ["docking.force=3", "mend:"]),
-            ([self.scene, "--law", "mine"], ["governor.law", "mine", "mend:"]),
+            ([self.scene, "--config", config], ["bad.toml:2", "servo.period_ms", "fix:"]),
+            ([broken], ["broken.tact", "fix:"]),
+            ([os.path.join(self.dir, "none.tact")], ["none.tact", "fix:"]),
+            ([self.scene, "--level", "docking.force=3"], ["docking.force=3", "fix:"]),
+            ([self.scene, "--law", "mine"], ["governor.law", "mine", "fix:"]),
         ):
             done = subprocess.run([os.path.join(BIN, "tact-rt"), *options], env=self.env, capture_output=True, text=True,
                                   timeout=PATIENCE_S)

@@ -12,6 +12,7 @@
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/servo/rt_guard.hpp"
 #include "rt/servo/servo.hpp"
+#include "rt/start/visual_paths.hpp"
 #include "tests/support/board_bus.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -81,6 +82,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     std::unique_ptr<ForceModel> model = make_model(1);
     const HandParts hand{&device, model.release(), device.open()};
     ServoSettings settings;
+    settings.visual_paths = kMeshPaths;
     settings.watchdogs.timing_latches = true;
     settings.chain.passivity = true;
     settings.model_deadline = true;  // long past on the machine's clock: the step's shortest way out
@@ -197,6 +199,7 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     std::unique_ptr<ForceModel> model = load_docking_model(scene, {});
     const HandParts hand{&device, model.release(), info};
     ServoSettings settings;
+    settings.visual_paths = kMeshPaths;
     settings.watchdogs.timing_latches = false;  // a fault of the device latches all the same
     settings.dry_cycles = 1;
     Servo servo({clock, {&hand, 1}, *region, mailbox}, settings);

@@ -14,6 +14,7 @@
 #include "ipc/topics/regions.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/servo/servo.hpp"
+#include "rt/start/visual_paths.hpp"
 #include "rt/threads/model_builder.hpp"
 #include "tests/support/small_scene.hpp"
 
@@ -55,6 +56,7 @@ public:
         ServoSettings settings;
         settings.model_deadline = false;
         settings.dry_cycles = 20;
+        settings.visual_paths = kMeshPaths;
         servo_.emplace(ServoParts{clock_, {&hand_, 1}, *region_, mailbox_}, settings);
         servo_->warm_up();
         order(CommandKind::arm);
@@ -89,7 +91,7 @@ public:
         EXPECT_TRUE(region_->bodies.read(b));
         return b;
     }
-    [[nodiscard]] float level() const { return servo_->governor().level(Servo::kForceIndex); }
+    [[nodiscard]] float level() const { return servo_->governor().level(kForcePathIndex); }
     [[nodiscard]] int said(EventCode code) const {
         RingCursor cursor;
         EventTopic e{};
@@ -234,7 +236,7 @@ TEST(BodiesScenario, a_placed_body_is_where_it_was_put_and_the_hand_takes_it_fro
 // A model with options that have to be built: one that can be, and one that fails.
 class BuiltAside final : public ForceModel {
 public:
-    static constexpr std::uint32_t kFails = kOptionLaplacian;
+    static constexpr std::uint32_t kFails = kDockingLaplacian;
     [[nodiscard]] KnobSpec knob() const noexcept override { return {.path = "test", .haptic = true}; }
     [[nodiscard]] std::uint32_t items(float) const noexcept override { return 1; }
     void reset(const ToolState&) noexcept override {}

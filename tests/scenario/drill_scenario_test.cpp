@@ -5,6 +5,7 @@
 
 #include "hal/sim/sim_lines.hpp"
 #include "rt/force/drilling/drill_model.hpp"
+#include "rt/force/drilling/drill_publisher.hpp"
 #include "tests/scenario/lockstep.hpp"
 #include "tests/support/bone_block.hpp"
 
@@ -17,8 +18,14 @@ struct DrillScenario {
     DrillBone bone{block.bricks, block.density, block.revision};
     DrillModel model{meta(), bone, burr()};
     Lockstep loop;
+    DrillPublisher publisher{
+        loop.region_->drill, loop.region_->touch, {.burr_rad_s = 6283.0, .irrigation_m3_s = 3e-7}};
 
-    explicit DrillScenario(bool pedal) : loop(settings(pedal), sim(), nullptr, &model) {}
+    explicit DrillScenario(bool pedal)
+        : loop({}, sim(), nullptr, &model, {},
+               {pedal ? DriveSwitch::always : DriveSwitch::button, kLineBurr}) {
+        model.publish_to(publisher);
+    }
 
     static SceneMeta meta() {
         SceneMeta m{};
@@ -31,13 +38,7 @@ struct DrillScenario {
         DrillSettings s;
         s.tool.radius_m = 2e-3;
         s.tool.shaft_radius_m = 0.0;
-        return s;
-    }
-    static ServoSettings settings(bool pedal) {
-        ServoSettings s;
-        s.drives.burr_rad_s = 6283.0;
-        s.drives.burr = pedal ? Pedal::always : Pedal::button;
-        s.drives.irrigation_m3_s = 3e-7;
+        s.burr_rad_s = 6283.0;
         return s;
     }
     static SimSettings sim() {
@@ -116,13 +117,20 @@ TEST(DrillScenario, the_same_run_leaves_the_same_bone) {
 struct TwoHands {
     BoneBlock block{96, 5e-4, [](const Vec3& v) { return v.z() < 40.0 ? 1.0 : 0.0; }, 1};
     DrillBone bone{block.bricks, block.density, block.revision};
-    DrillModel burr{meta(), bone, {}}, suction_tube{meta(), bone, tube()};
+    DrillModel burr{meta(), bone, turning()}, suction_tube{meta(), bone, tube()};
     SimLines lines;
     Lockstep loop;
+    DrillPublisher publisher{
+        loop.region_->drill, loop.region_->touch, {.burr_rad_s = 6283.0, .suction_m3_s = 3e-4}};
 
-    explicit TwoHands(Pedal burr_pedal = Pedal::button, Pedal suction = Pedal::button)
-        : loop(settings(burr_pedal, suction), hand("surgeon"), opened(), &burr,
-               {hand("suction-tube"), &suction_tube}) {}
+    explicit TwoHands(DriveSwitch burr_switch = DriveSwitch::button,
+                      DriveSwitch suction_switch = DriveSwitch::button)
+        : loop({}, hand("surgeon"), opened(), &burr,
+               {hand("suction-tube"), &suction_tube, {suction_switch, kLineSuction}},
+               {burr_switch, kLineBurr}) {
+        burr.publish_to(publisher);
+        suction_tube.publish_to(publisher);
+    }
 
     Lines* opened() {
         static_cast<void>(lines.open());
@@ -147,12 +155,9 @@ struct TwoHands {
         s.hand.script = script;
         return s;
     }
-    static ServoSettings settings(Pedal burr_pedal, Pedal suction) {
-        ServoSettings s;
-        s.drives.burr_rad_s = 6283.0;
-        s.drives.burr = burr_pedal;
-        s.drives.suction_m3_s = 3e-4;
-        s.drives.suction = suction;
+    static DrillSettings turning() {
+        DrillSettings s;
+        s.burr_rad_s = 6283.0;
         return s;
     }
     [[nodiscard]] std::uint64_t mass() const {
@@ -207,7 +212,7 @@ TEST(TwoHandsScenario, the_same_seed_leaves_the_same_bone) {
 }
 
 TEST(TwoHandsScenario, a_foot_pedal_drives_the_burr_and_another_one_the_suction) {
-    TwoHands t(Pedal::line, Pedal::line);
+    TwoHands t(DriveSwitch::line, DriveSwitch::line);
     t.active();
     t.loop.cycles(500);
     EXPECT_EQ(t.loop.drill().hand[0].burr_rad_s, 0.0F);

@@ -307,7 +307,7 @@ TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_men
             rig, rt_program(), {rig.scene().string(), "--priority", "0", "--check", "--poses", bad.string()});
         ASSERT_TRUE(said);
         EXPECT_EQ(said->ending.number, 1);
-        EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+        EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
     }
 }
 
@@ -321,7 +321,7 @@ TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with
     ASSERT_TRUE(said);
     EXPECT_EQ(said->ending.number, 1);
     EXPECT_TRUE(has(said->text, open_to_all.string())) << said->text;
-    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+    EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
 // The same programs as a user without any privilege, by setpriv of util-linux.
@@ -363,7 +363,7 @@ TEST_F(WithoutPrivilege, a_scene_that_may_not_be_read_is_named_with_the_reason) 
     EXPECT_EQ(said->ending.number, 1);
     EXPECT_TRUE(has(said->text, rig_.scene().string())) << said->text;
     EXPECT_TRUE(has(said->text, "ermission")) << said->text;
-    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+    EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
 TEST_F(WithoutPrivilege,
@@ -388,7 +388,7 @@ TEST_F(WithoutPrivilege, a_runtime_folder_of_another_user_is_refused) {
     ASSERT_TRUE(said);
     EXPECT_EQ(said->ending.number, 1);
     EXPECT_TRUE(has(said->text, theirs.string())) << said->text;
-    EXPECT_TRUE(has(said->text, "mend: ")) << said->text;
+    EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Picture {
 
     void frame(bool applies = true) {
         const LevelsTopic l = loop.levels();
-        const double level = static_cast<double>(l.path[Servo::kMeshIndex].level);
+        const double level = static_cast<double>(l.path[kDisplayPathIndex].level);
         const double work_s = 0.004 + (frame_s - 0.004) * level;
         report.gui_heartbeat_ns = report.gui_taken_at_ns = to_ns(loop.clock_.now());
         report.gui_attached = 1;
@@ -30,9 +30,9 @@ struct Picture {
         loop.mailbox_.housekeeping.publish(report);
         loop.cycles(static_cast<int>(1e3 * work_s) + 1);
     }
-    [[nodiscard]] float level() const { return loop.levels().path[Servo::kMeshIndex].level; }
+    [[nodiscard]] float level() const { return loop.levels().path[kDisplayPathIndex].level; }
     [[nodiscard]] auto reason() const {
-        return static_cast<LevelReason>(loop.levels().path[Servo::kMeshIndex].reason);
+        return static_cast<LevelReason>(loop.levels().path[kDisplayPathIndex].reason);
     }
 };
 
@@ -55,7 +55,7 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_f
         for (int i = 0; i < 100; ++i) picture.frame();
         EXPECT_LT(0.004 + 0.496 * static_cast<double>(picture.level()), 1.1 / 30.0);
         EXPECT_GT(picture.level(), 0.02F);
-        EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+        EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
         EXPECT_FLOAT_EQ(loop.levels().display_goal_hz, 30.0F);
         EXPECT_EQ(loop.health().overruns, 0U);
     }
@@ -86,18 +86,18 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
 
 // --- bone: the picture's particles ---
 
-PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[Servo::kParticlesIndex]; }
+PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[kParticlesPathIndex]; }
 
 TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
     ServoSettings settings = with_display_goal(Law::elastic, 30.0);
     EXPECT_EQ(Lockstep(settings).levels().count, 2U);
-    settings.bone = true;
+    settings.visual_paths = kBonePaths;
     Lockstep loop(settings);
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(100);
     ASSERT_EQ(loop.levels().count, 3U);
     EXPECT_STREQ(particles_of(loop).path, kParticlesPath);
-    EXPECT_STREQ(loop.levels().path[Servo::kMeshIndex].path, kVolumePath);
+    EXPECT_STREQ(loop.levels().path[kDisplayPathIndex].path, kVolumePath);
     EXPECT_EQ(particles_of(loop).haptic, 0);
     loop.active();
     Picture picture{loop, 0.2};
@@ -110,7 +110,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
     EXPECT_EQ(p.items_max, 80000U);
     EXPECT_NEAR(p.items, 80000.0 * static_cast<double>(p.level), 1.0);
     EXPECT_EQ(p.cost_s, 0.003);
-    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     picture.frame_s = 0.006;  // the machine is free again
     for (int i = 0; i < 2000; ++i) picture.frame();
     EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
@@ -119,7 +119,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
 TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_before_the_force) {
     ServoSettings settings;
     settings.free_running = true;
-    settings.bone = true;
+    settings.visual_paths = kBonePaths;
     settings.governor = {.law = Law::sensitus, .goal_hz = 1000.0};
     settings.watchdogs.timing_latches = false;
     Lockstep loop(settings);
@@ -130,15 +130,15 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
     for (int i = 0; i < 3; ++i) picture.frame();
     ASSERT_EQ(particles_of(loop).level, 1.0F);
     loop.model_.cost = microseconds(4000);
-    const float force_before = loop.levels().path[Servo::kForceIndex].level;
+    const float force_before = loop.levels().path[kForcePathIndex].level;
     bool force_fell = false;
     for (int i = 0; i < 400 && !force_fell; ++i) {
         picture.frame();
         const LevelsTopic l = loop.levels();
-        force_fell = l.path[Servo::kForceIndex].level < force_before;
+        force_fell = l.path[kForcePathIndex].level < force_before;
         if (!force_fell) continue;
-        EXPECT_EQ(l.path[Servo::kParticlesIndex].level, l.path[Servo::kParticlesIndex].floor);
-        EXPECT_EQ(l.path[Servo::kMeshIndex].level, l.path[Servo::kMeshIndex].floor);
+        EXPECT_EQ(l.path[kParticlesPathIndex].level, l.path[kParticlesPathIndex].floor);
+        EXPECT_EQ(l.path[kDisplayPathIndex].level, l.path[kDisplayPathIndex].floor);
     }
     EXPECT_TRUE(force_fell);
 }
@@ -153,15 +153,15 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
     Picture picture{loop, 0.004};
     for (int i = 0; i < 20; ++i) picture.frame();
     ASSERT_EQ(picture.level(), 1.0F);
-    ASSERT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    ASSERT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     loop.model_.turn_s = 0.008;  // of four milliseconds
-    const auto force = [&] { return static_cast<double>(loop.levels().path[Servo::kForceIndex].level); };
+    const auto force = [&] { return static_cast<double>(loop.levels().path[kForcePathIndex].level); };
     bool force_fell = false;
     for (int i = 0; i < 2000; ++i) {
         picture.frame();
         if (force() >= 1.0 || force_fell) continue;
         force_fell = true;
-        EXPECT_EQ(picture.level(), loop.levels().path[Servo::kMeshIndex].floor);
+        EXPECT_EQ(picture.level(), loop.levels().path[kDisplayPathIndex].floor);
     }
     // Nine tenths of a turn's time are used, and the servo itself missed nothing.
     EXPECT_TRUE(force_fell);
@@ -217,7 +217,7 @@ TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer
     EXPECT_LT(loop.health().recomputed_fraction_least, 0.95F);
     EXPECT_GE(loop.windows(5.0).first, 96U);
     EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the law has answered
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.66, 0.05);
+    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.66, 0.05);
 }
 
 TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_wholly_at_any_rate) {
@@ -278,7 +278,7 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     loop.model_.cost = microseconds(500);
     loop.cycles(30000);
     EXPECT_NEAR(loop.health().force_rate_hz, 4000.0, 0.05 * 4000.0);
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[Servo::kForceIndex].level), 0.5, 0.03);
+    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.5, 0.03);
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
@@ -292,12 +292,12 @@ TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_retur
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(1600);
     loop.cycles(20000);
-    const float low = loop.levels().path[Servo::kForceIndex].level;
+    const float low = loop.levels().path[kForcePathIndex].level;
     EXPECT_LT(low, 0.75F);
     EXPECT_GT(low, 0.35F);
     loop.model_.cost = microseconds(100);
     loop.cycles(10000);
-    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+    EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     EXPECT_GT(loop.said(EventCode::level_changed), 2);
     // Each change says why.
     bool fell = false, rose = false;
@@ -324,12 +324,12 @@ TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_it
     for (int i = 0; i < 20; ++i) {
         loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
         loop.cycles(100);
-        if (loop.levels().path[Servo::kMeshIndex].level > 0.011F) {
-            EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 1.0F);
+        if (loop.levels().path[kDisplayPathIndex].level > 0.011F) {
+            EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
         }
     }
-    EXPECT_LT(loop.levels().path[Servo::kMeshIndex].level, 0.5F);
-    EXPECT_EQ(loop.levels().path[Servo::kMeshIndex].items_max, 10000U);
+    EXPECT_LT(loop.levels().path[kDisplayPathIndex].level, 0.5F);
+    EXPECT_EQ(loop.levels().path[kDisplayPathIndex].items_max, 10000U);
 }
 
 }  // namespace

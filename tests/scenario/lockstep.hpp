@@ -12,6 +12,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/servo/servo.hpp"
+#include "rt/start/visual_paths.hpp"
 #include "tests/support/spring_model.hpp"
 
 namespace tact {
@@ -20,19 +21,21 @@ namespace tact {
 struct SecondHand {
     SimSettings sim;
     ForceModel* model = nullptr;
+    DriveInput drive = {};
 };
 
 class Lockstep {
 public:
     // Lines that are given are open; a model that is given is felt instead of the spring.
     explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {}, Lines* lines = nullptr,
-                      ForceModel* model = nullptr, const SecondHand& second = {})
+                      ForceModel* model = nullptr, const SecondHand& second = {}, DriveInput drive = {})
         : region_(new RtRegion{}), device_(sim), device2_(second.sim) {
         settings.model_deadline = false;
         settings.dry_cycles = 20;
+        if (settings.visual_paths.empty()) settings.visual_paths = kMeshPaths;
         clock_.advance(std::chrono::seconds(100));
-        hands_ = {HandParts{&device_, model != nullptr ? model : &model_, device_.open()},
-                  HandParts{&device2_, second.model, device2_.open()}};
+        hands_ = {HandParts{&device_, model != nullptr ? model : &model_, device_.open(), drive},
+                  HandParts{&device2_, second.model, device2_.open(), second.drive}};
         const std::span<const HandParts> hands(hands_.data(), second.model != nullptr ? 2 : 1);
         servo_.emplace(ServoParts{clock_, hands, *region_, mailbox_, lines}, settings);
         servo_->warm_up();

@@ -149,13 +149,13 @@ TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
     loop.order(CommandKind::reset_fault);
     loop.cycles(1);
     EXPECT_EQ(loop.health().command_result, static_cast<std::uint32_t>(CommandResult::refused_state));
-    loop.order(CommandKind::set_level, 0.25, Servo::kForceIndex);
+    loop.order(CommandKind::set_level, 0.25, kForcePathIndex);
     loop.cycles(300);
     EXPECT_EQ(loop.health().command_result, static_cast<std::uint32_t>(CommandResult::done));
     EXPECT_STREQ(loop.levels().law, "fixed");
-    EXPECT_FLOAT_EQ(loop.levels().path[Servo::kForceIndex].level, 0.25F);
-    EXPECT_EQ(loop.levels().path[Servo::kForceIndex].items, 250U);
-    loop.order(CommandKind::set_level, 0.01, Servo::kForceIndex);  // below its floor
+    EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 0.25F);
+    EXPECT_EQ(loop.levels().path[kForcePathIndex].items, 250U);
+    loop.order(CommandKind::set_level, 0.01, kForcePathIndex);  // below its floor
     loop.cycles(1);
     EXPECT_EQ(loop.health().command_result, static_cast<std::uint32_t>(CommandResult::refused_value));
     loop.order(CommandKind::set_goal_hz, 750.0);

@@ -7,6 +7,7 @@
 #include "gui/drilling/site_effects.hpp"
 #include "hal/sim/sim_device.hpp"
 #include "rt/force/drilling/drill_model.hpp"
+#include "rt/force/drilling/drill_publisher.hpp"
 #include "tests/scenario/lockstep.hpp"
 #include "tests/support/bone_block.hpp"
 
@@ -30,6 +31,7 @@ struct WatchedDrill {
     std::optional<DrillBone> bone;
     std::optional<DrillModel> model;
     std::optional<Lockstep> loop;
+    std::optional<DrillPublisher> publisher;
     MappedBoneRegion mapped;
     BoneVolumeView baked;
     std::optional<BoneFollower> follower;
@@ -42,16 +44,17 @@ struct WatchedDrill {
         DrillSettings burr;
         burr.tool.radius_m = 2e-3;
         burr.tool.shaft_radius_m = 0.0;
+        burr.burr_rad_s = 6283.0;
         model.emplace(meta_of_block(), *bone, burr);
         ServoSettings servo;
-        servo.bone = true;
-        servo.drives.burr_rad_s = 6283.0;
-        servo.drives.burr = Pedal::always;
-        servo.drives.irrigation_m3_s = 3e-7;
+        servo.visual_paths = kBonePaths;
         SimSettings sim;
         sim.hand.script = "drill";
         sim.hand.press_m = 0.012;
-        loop.emplace(servo, sim, nullptr, &*model);
+        loop.emplace(servo, sim, nullptr, &*model, SecondHand{}, DriveInput{DriveSwitch::always});
+        publisher.emplace(loop->region_->drill, loop->region_->touch,
+                          DrillRates{.burr_rad_s = 6283.0, .irrigation_m3_s = 3e-7});
+        model->publish_to(*publisher);
         std::string refusal;
         mapped = MappedBoneRegion::map(FileDescriptor(fcntl(region.fd(), F_DUPFD_CLOEXEC, 0)), refusal);
         baked.bricks = block.bricks;

@@ -24,24 +24,23 @@ const Settings& usual() {
     return settings;
 }
 
-class BoardBus final : public phantom::UsbBus {
+class BoardBus final : public usb::Bus {
 public:
     explicit BoardBus(const BoardSettings& settings) : board_(settings), serial_(settings.serial) {}
 
-    phantom::BusFinding open(const std::string& serial) override {
+    usb::BusFinding open(const std::string& serial) override {
         ++opens;
         last_serial = serial;
-        if (finding != phantom::BusFault::none && opens <= finds) return {finding, {}, detail};
-        if (!plugged || (!serial.empty() && serial != serial_))
-            return {phantom::BusFault::missing, {}, detail};
+        if (finding != usb::BusFault::none && opens <= finds) return {finding, {}, detail};
+        if (!plugged || (!serial.empty() && serial != serial_)) return {usb::BusFault::missing, {}, detail};
         open_ = true;
-        return {phantom::BusFault::none, usb_serial.empty() ? serial_ : usb_serial, {}};
+        return {usb::BusFault::none, usb_serial.empty() ? serial_ : usb_serial, {}};
     }
     void close() noexcept override {
         open_ = false;
         events_.clear();
     }
-    std::size_t wait(std::span<phantom::BusEvent> events, Duration patience) noexcept override {
+    std::size_t wait(std::span<usb::BusEvent> events, Duration patience) noexcept override {
         if (events_.empty() && patience > Duration{0}) {
             const Duration room = instant_from_ns(held_at_ns_.load(std::memory_order_acquire)) - now_;
             if (room > Duration{0})
@@ -62,17 +61,17 @@ public:
         if (stalls > 0) {
             --stalls;
             stalled_ = true;
-            push(phantom::BusEventKind::stalled);
+            push(usb::BusEventKind::stalled);
             return true;
         }
         if (send_fails > 0) {
             --send_fails;
-            push(phantom::BusEventKind::send_failed);
+            push(usb::BusEventKind::send_failed);
             return true;
         }
         if (stalled_ || out_hangs) return true;
         board_.receive(packet, us());
-        push(phantom::BusEventKind::sent);
+        push(usb::BusEventKind::sent);
         return true;
     }
     bool clear_stall() noexcept override {
@@ -90,13 +89,13 @@ public:
             std::array<std::byte, 64> packet;
             std::size_t size = 0;
             while (board_.next_packet(packet, size)) {
-                if (open_ && !stalled_) push(phantom::BusEventKind::packet, std::span(packet).first(size));
+                if (open_ && !stalled_) push(usb::BusEventKind::packet, std::span(packet).first(size));
             }
         }
         reached_ns_.store(to_ns(now_), std::memory_order_release);
     }
-    void push(phantom::BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept {
-        phantom::BusEvent e;
+    void push(usb::BusEventKind kind, std::span<const std::byte> bytes = {}) noexcept {
+        usb::BusEvent e;
         e.kind = kind;
         e.at = now_;
         e.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), 65));
@@ -111,7 +110,7 @@ public:
     // Out of the socket: the board loses its power too.
     void unplug() noexcept {
         plugged = false;
-        if (open_) push(phantom::BusEventKind::gone);
+        if (open_) push(usb::BusEventKind::gone);
     }
     void plug() noexcept {
         plugged = true;
@@ -121,7 +120,7 @@ public:
     [[nodiscard]] EmulatedBoard& board() noexcept { return board_; }
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
-    phantom::BusFault finding = phantom::BusFault::none;
+    usb::BusFault finding = usb::BusFault::none;
     unsigned finds = std::numeric_limits<unsigned>::max();  // of so many calls of open(), the first ones
     std::string detail, usb_serial, last_serial;
     bool plugged = true, out_hangs = false, clears = true;
@@ -135,7 +134,7 @@ private:
 
     EmulatedBoard board_;
     std::string serial_;
-    std::deque<phantom::BusEvent> events_;
+    std::deque<usb::BusEvent> events_;
     bool open_ = false, stalled_ = false;
     Instant now_ = instant_from_ns(4'294'000'000'000);  // the board's clock wraps a second later
     std::atomic<std::int64_t> held_at_ns_{std::numeric_limits<std::int64_t>::max()}, reached_ns_{to_ns(now_)};

@@ -16,9 +16,9 @@
 
 namespace tact::emu {
 
-class FalconBoard final : public falcon::FtdiBus {
+class FalconBoard final : public usb::Bus {
 public:
-    using Kind = phantom::BusEventKind;
+    using Kind = usb::BusEventKind;
 
     static std::vector<std::byte> firmware_of(std::size_t size) {
         std::vector<std::byte> out(size);
@@ -26,20 +26,19 @@ public:
         return out;
     }
 
-    phantom::BusFinding open(const std::string& serial) override {
+    usb::BusFinding open(const std::string& serial) override {
         ++opens;
-        if (finding != phantom::BusFault::none) return {finding, {}, detail};
-        if (!plugged || (!serial.empty() && serial != "FA-1"))
-            return {phantom::BusFault::missing, {}, detail};
+        if (finding != usb::BusFault::none) return {finding, {}, detail};
+        if (!plugged || (!serial.empty() && serial != "FA-1")) return {usb::BusFault::missing, {}, detail};
         open_ = true;
-        return {phantom::BusFault::none, "FA-1", {}};
+        return {usb::BusFault::none, "FA-1", {}};
     }
     void close() noexcept override {
         open_ = false;
         events_.clear();
         coming_.clear();
     }
-    std::size_t wait(std::span<phantom::BusEvent> events, Duration patience) noexcept override {
+    std::size_t wait(std::span<usb::BusEvent> events, Duration patience) noexcept override {
         if (real_time_) {
             if (events_.empty()) std::this_thread::sleep_for(patience);
             advance(Monotonic::now() - now_);
@@ -70,7 +69,7 @@ public:
         stall = false;
         return true;
     }
-    bool control(const falcon::FtdiRequest& r) noexcept override {
+    bool control(const usb::VendorRequest& r) noexcept override {
         if (!open_ || refuses_settings) return false;
         if (r.request == 3) baud_ = r;
         if (r == falcon::ftdi::kDtrLow) dtr_ = false;
@@ -148,7 +147,7 @@ public:
     std::vector<std::byte> instead;  // of the next reply, once
     bool instead_set = false;
     Duration reply_after = std::chrono::microseconds(700);
-    phantom::BusFault finding = phantom::BusFault::none;
+    usb::BusFault finding = usb::BusFault::none;
     std::string detail;
 
 private:
@@ -160,7 +159,7 @@ private:
     void push(Kind kind, std::span<const std::byte> bytes) noexcept { push(kind, bytes, now_); }
     void push(Kind kind, std::span<const std::byte> bytes, Instant at) noexcept {
         do {  // a packet of the converter holds 62
-            phantom::BusEvent e;
+            usb::BusEvent e;
             e.kind = kind;
             e.at = at;
             const auto piece = bytes.first(std::min(bytes.size(), falcon::ftdi::kPieceBytes));
@@ -242,10 +241,10 @@ private:
     }
 
     falcon::Kinematics legs_;
-    std::deque<phantom::BusEvent> events_;
+    std::deque<usb::BusEvent> events_;
     std::deque<Coming> coming_;
     std::vector<std::byte> heard_;
-    falcon::FtdiRequest baud_{};
+    usb::VendorRequest baud_{};
     falcon::Torque3 shown_{};
     Vec3 grip_m_ = Vec3::Zero(), speed_m_s_ = Vec3::Zero();
     bool open_ = false, dtr_ = false, awake_ = false, real_time_ = false;

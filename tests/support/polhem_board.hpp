@@ -18,10 +18,10 @@ public:
         board_.receive(phantom::encode(phantom::Query{}), us());
     }
 
-    phantom::BusFinding open(const std::string& serial) override {
-        if (!plugged || (!serial.empty() && serial != "PH-1")) return {phantom::BusFault::missing, {}, {}};
+    usb::BusFinding open(const std::string& serial) override {
+        if (!plugged || (!serial.empty() && serial != "PH-1")) return {usb::BusFault::missing, {}, {}};
         open_ = true;
-        return {phantom::BusFault::none, "PH-1", {}};
+        return {usb::BusFault::none, "PH-1", {}};
     }
     void close() noexcept override {
         open_ = false;

@@ -18,6 +18,7 @@
 #include "ipc/base/servo_clock.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/servo/servo.hpp"
+#include "rt/start/visual_paths.hpp"
 #include "rt/threads/supervisor.hpp"
 #include "tests/support/spring_model.hpp"
 
@@ -121,6 +122,7 @@ private:
         ServoSettings s;
         s.model_deadline = false;
         s.dry_cycles = 20;
+        s.visual_paths = kMeshPaths;
         s.watchdogs.timing_latches = false;
         s.watchdogs.device_watchdog_latches = false;
         s.watchdogs.sample_age_max = kLong;

@@ -18,7 +18,7 @@ import tempfile
 FOLDERS = ["rt/servo", "rt/force", "rt/govern", "rt/safety", "hal/sim", "hal/arm", "hal/io", "hal/tracker", "ipc/scene", "ipc/shm"]
 ENTRIES = re.compile(
     r"^tact::Servo::cycle\(\)$"
-    r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::(bodies|touch|drill)\(\) const$|::drive\(tact::ToolDrive const&\)$"
+    r"|::step\(tact::ToolState const&, tact::Budget const&\)$|::reset\(tact::ToolState const&\)$|::bodies\(\) const$|::publish\(tact::ModelCycle const&\)$|::drive\(tact::ToolDrive const&\)$"
     r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up|stiffness_n_m)\(\)( const)?$|::items\(float\) const$"
     r"|::read\((unsigned int, tact::TrackerSample|tact::DeviceSample|tact::LinesSample)&, .*\)( const)?$|::write\(tact::(Device|Lines)Command const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("
@@ -163,7 +163,7 @@ def main():
     entries, reached, bad, pointers = check(list(objects_of(sys.argv[1])))
     for wanted in ("tact::Servo::cycle()", "::step(", "::read(", "::write("):
         if not any(wanted in e for e in entries):
-            bad.append(f"no entry point like {wanted} was found; mend ENTRIES or build first")
+            bad.append(f"no entry point like {wanted} was found; fix ENTRIES or build first")
     print("\n".join(sorted(set(bad))))
     print(f"{len(entries)} entry points, {len(reached)} functions reached, {pointers} calls through pointers, {len(set(bad))} wrong")
     if "--entries" in sys.argv:

@@ -15,9 +15,13 @@ import re
 import sys
 import tempfile
 
+# What the systems of the launcher may use of it.
+LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/files", "deploy/tact/observer", "deploy/tact/run",
+            "deploy/tact/scene_cache", "deploy/tact/signals", "deploy/tact/system_run"]
 # Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
 BELOW = {
     "ipc/base": [],
+    "ipc/image": ["ipc/base"],
     "ipc/version": [],
     "ipc/manual": ["ipc/base"],
     "ipc/shm": ["ipc/base"],
@@ -33,11 +37,13 @@ BELOW = {
     "ipc/station": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
-    # Force models do not know each other.
-    "rt/force/docking": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/drilling": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
+    # Force models do not know each other. Each knows the topic that it publishes, and the commands that it takes.
+    "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/topics/bodies", "ipc/topics/command", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/drilling": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/drill", "ipc/topics/event", "ipc/topics/touch",
+                          "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/field": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
-    "rt/force/surface": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/surface": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/command", "ipc/topics/touch", "rt/force/force_model",
+                         "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],
     # The cycle knows the contract of a force model and no model.
@@ -60,19 +66,30 @@ BELOW = {
     "gui/stereo": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling", "gui/field",
                    "gui/stereo"],
-    "prep": ["ipc/base", "ipc/version", "ipc/scene", "ipc/manual"],
+    "prep": ["ipc/base", "ipc/image", "ipc/version", "ipc/scene", "ipc/manual"],
+    # Systems do not know each other; they share readers, meshes and the console.
+    "prep/console": ["ipc/base", "ipc/scene"],
+    "prep/docking": ["ipc/base", "ipc/version", "ipc/scene", "prep/codebook", "prep/console", "prep/input", "prep/map", "prep/mesh",
+                     "prep/structure", "prep/synthetic"],
+    "prep/surface": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/mesh", "prep/mesh_file", "prep/synthetic"],
+    "prep/field": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/input", "prep/mesh", "prep/volume"],
+    "prep/drilling": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/input", "prep/synthetic", "prep/volume"],
     "deploy": ["ipc", "rt/force", "hal/probe"],
+    "deploy/tact/docking": ["ipc", "rt/force/docking", "rt/force/force_model"] + LAUNCHER,
+    "deploy/tact/surface": ["ipc", "rt/force/surface"] + LAUNCHER,
+    "deploy/tact/field": ["ipc"] + LAUNCHER,
+    "deploy/tact/drilling": ["ipc", "rt/force/drilling"] + LAUNCHER,
     "tests": ["ipc", "hal", "rt", "gui", "prep", "deploy"],
 }
 # Third-party header -> folders that wrap it.
 WRAPPED = [
-    (r"libusb", ["hal/phantom", "hal/falcon"]),
+    (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
-    (r"png\.h|pngconf", ["gui", "prep/volume/png_stack", "tests"]),
-    (r"ft2build\.h|freetype/", ["tests/reproduce/plot_canvas"]),
+    (r"png\.h|pngconf", ["ipc/image"]),
+    (r"nifti", ["prep/volume/nifti"]),
     (r"hdf5", ["ipc/record/hdf5_file"]),
     (r"zlib\.h", ["ipc/scene/file", "prep", "tests"]),
     (r"CLI/", ["ipc/manual", "ipc/recorder/main", "rt/main", "rt/start/start_options", "rt/replay", "gui", "prep", "deploy", "tests"]),
@@ -82,7 +99,8 @@ WRAPPED = [
                     "ipc/recorder/main", "ipc/station/station_report", "tests"]),
 ]
 # What is named under a folder in these files alone: a table of the systems there.
-NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"])]
+NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
+         ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}

@@ -4,7 +4,15 @@ if(Python3_FOUND)
     add_test(NAME tidy_layers COMMAND ${Python3_EXECUTABLE} tests/tidy/layers.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     add_test(NAME tidy_layers_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/layers.py --self-test
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-    set_tests_properties(tidy_layers tidy_layers_finds_violations PROPERTIES LABELS tidy)
+    add_test(NAME tidy_systems COMMAND ${Python3_EXECUTABLE} tests/tidy/systems.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_systems_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/systems.py --self-test
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_servo_words COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_servo_words_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py --self-test
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(tidy_layers tidy_layers_finds_violations tidy_systems tidy_systems_finds_violations
+        tidy_servo_words tidy_servo_words_finds_violations
+        PROPERTIES LABELS tidy)
 endif()
 # The code as it runs: a build for x86-64 with optimization and without sanitizers.
 if(Python3_FOUND AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT TACT_SANITIZE AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")

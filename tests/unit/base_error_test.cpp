@@ -10,13 +10,13 @@ namespace {
 
 TEST(StartupError, says_what_why_and_the_mend) {
     EXPECT_STREQ(StartupError("read a.ply", "it has no faces", "export a surface").what(),
-                 "read a.ply: it has no faces\n  mend: export a surface");
+                 "read a.ply: it has no faces\n  fix: export a surface");
 }
 
 TEST(StartupError, words_of_a_file_neither_end_the_text_nor_speak_to_a_terminal) {
     const std::string name("x\0y\x1b[31m\r\x7f", 10);
-    const StartupError error("read a.ply", "element \"" + name + "\"\nin line 3: µ", "mend the file");
-    EXPECT_STREQ(error.what(), "read a.ply: element \"x?y?[31m??\"\nin line 3: µ\n  mend: mend the file");
+    const StartupError error("read a.ply", "element \"" + name + "\"\nin line 3: µ", "fix the file");
+    EXPECT_STREQ(error.what(), "read a.ply: element \"x?y?[31m??\"\nin line 3: µ\n  fix: fix the file");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(ConfigArm, without_the_section_it_is_the_arm_of_the_documentation) {
 }
 
 TEST(ConfigArm, errors_name_line_key_and_mend) {
-    EXPECT_TRUE(says(error_of("[arm]\nmodel = \"delta\"\n"), {".toml:2", "arm.model", "omni", "mend:"}));
+    EXPECT_TRUE(says(error_of("[arm]\nmodel = \"delta\"\n"), {".toml:2", "arm.model", "omni", "fix:"}));
     EXPECT_TRUE(
         says(error_of("[arm]\n\nthigh_cm = 3\n"), {".toml:3", "arm.thigh_cm", "no such key", "thigh_mm"}));
     EXPECT_TRUE(says(error_of("[arm]\nthigh_mm = 3\n"), {".toml:2", "arm.thigh_mm", "10 to 2000"}));

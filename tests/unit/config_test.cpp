@@ -1,4 +1,4 @@
-// The configuration: its documentation is true, and every error names file, line, key and mend.
+// The configuration: its documentation is true, and every error names file, line, key and fix.
 #include "rt/config/config.hpp"
 
 #include <gtest/gtest.h>
@@ -154,7 +154,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
 
 TEST(Config, an_unknown_key_is_refused_with_line_and_the_likely_one) {
     const std::string error = error_of("[servo]\nperiod_us = 500\nspin_tail_us = 3\n");
-    EXPECT_TRUE(says(error, {".toml:3", "servo.spin_tail_us", "no such key", "mend:", "servo.spin_us"}))
+    EXPECT_TRUE(says(error, {".toml:3", "servo.spin_tail_us", "no such key", "fix:", "servo.spin_us"}))
         << error;
 }
 
@@ -275,7 +275,7 @@ TEST(Config, a_key_outside_a_section_is_refused) {
 }
 
 TEST(Config, broken_toml_and_a_missing_file_are_refused_in_words) {
-    EXPECT_TRUE(says(error_of("[servo\n"), {".toml:1", "mend:"}));
+    EXPECT_TRUE(says(error_of("[servo\n"), {".toml:1", "fix:"}));
     EXPECT_TRUE(says(error_of("[servo]\nperiod_us = = 3\n"), {".toml:2"}));
     RtConfig config;
     EXPECT_THROW(read_config("/nowhere/tact.toml", config), StartupError);
@@ -325,8 +325,6 @@ TEST(Config, a_foot_pedal_needs_a_line) {
     EXPECT_TRUE(refused("drilling.suction"));
     config.lines.suction_pedal = "3";
     check_config(config, "here");
-    EXPECT_EQ(settings_from(config, true).drives.burr, Pedal::line);
-    EXPECT_EQ(settings_from(config, true).drives.suction, Pedal::line);
     EXPECT_EQ(lines_settings_from(config).gpio.burr_pedal, "2");
     EXPECT_EQ(lines_settings_from(config).gpio.suction_pedal, "3");
 }

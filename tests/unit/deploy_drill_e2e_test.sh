@@ -39,7 +39,7 @@ assert abs(by_structure - trainee["removed_mm3"]) < 1e-6, trainee
 names = [s["name"] for s in trainee["structures"]]
 assert "facial nerve" in names and "sigmoid sinus" in names, names
 assert all(s["nearest_mm"] is not None for s in trainee["structures"] if s["critical"]), trainee
-assert "bone taken:" in said and "strokes:" in said and "near critical structures:" in said, said
+assert "bone removed:" in said and "strokes:" in said and "near critical structures:" in said, said
 png = open(os.path.join(folder, "run.png"), "rb").read()
 assert png[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", png[16:24]) == (960, 600), png[:24]
 print("%.1f mm3 in %.1f s of drilling, %d strokes" %

@@ -3,8 +3,10 @@
 
 #include <fstream>
 
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/drilling/drilling.hpp"
 #include "deploy/tact/files.hpp"
-#include "deploy/tact/info_drilling.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"

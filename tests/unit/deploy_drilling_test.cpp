@@ -7,8 +7,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "deploy/tact/drilling/drilling.hpp"
+#include "deploy/tact/drilling/report_drilling.hpp"
 #include "deploy/tact/files.hpp"
-#include "deploy/tact/report_drilling.hpp"
 #include "deploy/tact/run_options.hpp"
 #include "deploy/tact/scene_cache.hpp"
 #include "ipc/base/error.hpp"
@@ -47,7 +48,7 @@ TEST(DrillingReport, tells_tools_in_peoples_units_and_what_they_took) {
     EXPECT_NEAR(j["suction_tube"]["diameter_mm"].get<double>(), 2.0, 1e-5);
     EXPECT_NEAR(j["suction_tube"]["suction_l_min"].get<double>(), 20.0, 1e-4);
     EXPECT_TRUE(j["trainee"].is_null());
-    EXPECT_EQ(drilling_summary(j), "bone taken: 1000.0 mm3\n");
+    EXPECT_EQ(drilling_summary(j), "bone removed: 1000.0 mm3\n");
     EXPECT_EQ(drilling_summary(nullptr), "");
 }
 
@@ -84,9 +85,9 @@ TEST(DrillingReport, a_trainees_figures_are_taken_over_and_said_in_lines) {
     EXPECT_EQ(j["trainee"], trainee);
     const std::string said = drilling_summary(j);
     for (const char* const words : {"drilling 40.0 s, of which cutting 35.0 s", "above 2.0 N for 1.5 s",
-                                    "strokes: 71 of 6.2 mm at 12.0 mm/s", "visible for 70 %",
-                                    "within 1 mm 1.0 s and 2.00 mm3; injuries 1",
-                                    "sinus: burr in it by 0.4 mm, 0.30 mm3 taken, injuries 1"})
+                                    "strokes: 71, mean length 6.2 mm, mean speed 12.0 mm/s",
+                                    "visible for 70 %", "within 1 mm 1.0 s and 2.00 mm3; injuries 1",
+                                    "sinus: burr inside by 0.4 mm, removed 0.30 mm3, injuries 1"})
         EXPECT_NE(said.find(words), std::string::npos) << words << "\n" << said;
     EXPECT_EQ(said.find("facial nerve"), std::string::npos);  // never near
 }

@@ -1,5 +1,5 @@
 // tact eval: the file of poses, hostile or not, and the forces that come out.
-#include "deploy/tact/eval.hpp"
+#include "deploy/tact/docking/eval.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "deploy/tact/docking/poses_csv.hpp"
 #include "deploy/tact/files.hpp"
-#include "deploy/tact/poses_csv.hpp"
 #include "ipc/base/error.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "tests/bench/bench_docking.hpp"

@@ -12,7 +12,7 @@ cmake --install "$build" --prefix "$prefix" >"$work/install.log" 2>&1 || { cat "
 programs="tact tact-bench tact-reproduce tact-prep tact-rt tact-gui tact-record tact-replay"
 for file in etc/tact/tact.toml etc/security/limits.d/tact.conf lib/udev/rules.d/60-tact.rules lib/tact/can-up \
     lib/systemd/system/tact-can@.service share/applications/tact.desktop share/icons/hicolor/scalable/apps/tact.svg \
-    share/mime/packages/tact.xml share/tact/monitoring/tact_rules.yml share/doc/tact/README.md; do
+    share/mime/packages/tact.xml share/tact/monitoring/tact_rules.yml share/tact/reproduce/draw.py share/doc/tact/README.md; do
     [ -s "$prefix/$file" ] || fail "$file is not installed"
 done
 [ ! -e "$prefix/bin/tact-emu" ] || fail "test equipment is installed"

@@ -59,6 +59,20 @@ def all_commands():
         todo += [words + [c] for c in commands if "-".join(words + [c]) not in OWN_PROGRAMS]
 
 
+# Beginnings of texts that need another line to be understood.
+FRAGMENTS = ("of ", "its ", "what ", "who ", "where ", "which ", "their ", "so many ")
+# Programs whose texts are checked by their own tests.
+NOT_READ = {"tact-gui"}
+
+
+def help_texts(words):
+    """Texts of options, commands and the program that --help prints, each on one line."""
+    text = subprocess.run([BIN / words[0], *words[1:], "--help"], check=True, capture_output=True, text=True).stdout
+    lines = re.sub(r"\n {20,}", " ", re.sub(r"(?m)^( {2,6}\S.*)\n {20,}", r"\1  ", text)).splitlines()
+    rows = [re.split(r" {2,}", line.strip(), maxsplit=1) for line in lines if line.startswith("  ")]
+    return [lines[0]] + [row[-1] for row in rows if len(row) == 2]
+
+
 def section_of(folder, words):
     """The part of a page that describes a command, with - as it is shown."""
     name = "-".join(words)
@@ -116,6 +130,22 @@ class Manual(unittest.TestCase):
     def test_help_does_not_print_the_hidden_requests(self):
         for words, options, _ in self.commands:
             self.assertTrue(options.isdisjoint({"--manual", "--completion"}), words)
+
+    def test_every_help_text_stands_alone(self):
+        read = 0
+        for words, _, _ in self.commands:
+            if words[0] in NOT_READ:
+                continue
+            for text in help_texts(words):
+                read += 1
+                self.assertFalse(text.lower().startswith(FRAGMENTS), (words, text))
+        self.assertGreater(read, 300)
+
+    def test_help_shows_nothing_of_the_parser(self):
+        for words, _, _ in self.commands:
+            text = subprocess.run([BIN / words[0], *words[1:], "--help"], check=True, capture_output=True, text=True).stdout
+            for internal in ("} OR {", "->", "TEXT:", "FLOAT", "UINT", " in [", "REQUIRED", "Excludes:", "Needs:"):
+                self.assertNotIn(internal, text, words)
 
     def test_groff_sets_every_page_without_a_warning(self):
         if shutil.which("groff") is None:

@@ -116,7 +116,7 @@ TEST(Probe, what_the_configuration_asks_for_and_cannot_be_seen_fails_with_a_mend
         EXPECT_EQ(a.one(name).level, FindingLevel::fail) << name;
         EXPECT_NE(a.one(name).fix, "") << name;
     }
-    EXPECT_TRUE(says(a.one("device").says, {"no USB can be seen", "cannot be told"}));
+    EXPECT_TRUE(says(a.one("device").says, {"USB is not visible", "cannot be detected"}));
 }
 
 TEST(Probe, an_arm_is_known_by_the_class_of_its_interface_and_told_with_its_serial) {
@@ -262,7 +262,7 @@ TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
     tree.can("can0", "0x400c1\n", 72);
     EXPECT_FALSE(ask(tree, request).fails());
     request.tracker_interface = "can7";
-    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"none of this name", "can0 (up, FD)"}));
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"no interface has this name", "can0 (up, FD)"}));
 }
 
 TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
@@ -278,7 +278,7 @@ TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
         EXPECT_FALSE(ask(tree, request).fails()) << chip;
     }
     request.lines_chip = "mcp2221";
-    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"none of this label"}));
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"no chip has this label"}));
     tree.gpio("gpiochip2", "cp2112_gpio");
     request.lines_chip = "cp2112_gpio";
     EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"several chips"}));

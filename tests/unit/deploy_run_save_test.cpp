@@ -1,5 +1,5 @@
 // --save: what the hand placed is saved when the run is over, or said why not.
-#include "deploy/tact/save_fit.hpp"
+#include "deploy/tact/docking/save_fit.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -45,7 +45,7 @@ TEST_F(DeployRun, what_could_not_be_saved_is_said_before_the_run) {
     EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("never overwritten"),
               std::string::npos);
     options_.save = options_.save / "mine";
-    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("no folder"), std::string::npos);
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("not a folder"), std::string::npos);
 }
 
 TEST_F(DeployRun, a_save_that_fails_is_said_and_keeps_the_places) {

@@ -127,8 +127,8 @@ inline int controller(int argc, char** argv) {
 // Leaves its window state file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
 inline int window(int argc, char** argv) {
     log_words("WINDOWS", argc, argv);
-    if (const std::string desk = value_of(argc, argv, "--window-state"); !desk.empty())
-        std::ofstream(desk) << "as left";
+    if (const std::string state = value_of(argc, argv, "--window-state"); !state.empty())
+        std::ofstream(state) << "as left";
     LinkClient link(value_of(argc, argv, "--session"), -1);
     while (!link.attached()) {
         link.poll();

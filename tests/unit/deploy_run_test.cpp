@@ -119,7 +119,7 @@ TEST_F(DeployRun, a_controller_that_hangs_is_killed_and_the_run_fails) {
     options_.grace = std::chrono::milliseconds(100);
     EXPECT_EQ(run(), 1);
     EXPECT_EQ(report_["ended"]["tact-rt"]["signal"], SIGKILL);
-    EXPECT_NE(said_.find("had not heeded"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("ignored the request"), std::string::npos) << said_;
 }
 
 TEST_F(DeployRun, a_signal_to_tact_ends_all_in_order) {

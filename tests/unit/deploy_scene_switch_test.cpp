@@ -81,7 +81,7 @@ TEST_F(OtherScene, a_file_that_is_no_scene_is_refused_in_the_window_and_the_old_
     const auto told = lines("told");
     ASSERT_GE(told.size(), 3U);
     EXPECT_NE(told[1].find("so it is not a scene of tact"), std::string::npos) << told[1];
-    EXPECT_NE(told[2].find("mend:"), std::string::npos) << told[2];
+    EXPECT_NE(told[2].find("fix:"), std::string::npos) << told[2];
 }
 
 TEST_F(OtherScene, where_the_other_cannot_be_started_the_old_one_comes_back_and_the_window_says_why) {
@@ -118,7 +118,7 @@ TEST_F(OtherScene, a_request_is_one_absolute_path_and_is_gone_once_it_was_taken)
     for (const std::string& bad : {std::string(), std::string("\n"), std::string("relative.tact\n"),
                                    std::string("/a\n/b\n"), std::string("/without-end"),
                                    std::string("/a\0b\n", 5), "/" + std::string(kAskedPathMost, 'x') + "\n"})
-        EXPECT_NE(taken(bad).find("mend:"), std::string::npos) << bad.substr(0, 40);
+        EXPECT_NE(taken(bad).find("fix:"), std::string::npos) << bad.substr(0, 40);
     std::filesystem::create_directory(folder / "open");
     EXPECT_THROW((void)take_asked_scene(folder), StartupError);
     std::filesystem::create_symlink(scene_, folder / "open");

@@ -52,7 +52,7 @@ TEST(Orders, that_are_wrong_are_refused_with_where_why_and_the_mend) {
         EXPECT_NE(text.find("here"), std::string::npos) << line;
         EXPECT_NE(text.find(a), std::string::npos) << line << ": " << text;
         EXPECT_NE(text.find(b), std::string::npos) << line << ": " << text;
-        EXPECT_NE(text.find("mend:"), std::string::npos) << line;
+        EXPECT_NE(text.find("fix:"), std::string::npos) << line;
     };
     says("explode", "no order \"explode\"", "encoder jump ENCODER COUNTS [ARM]");
     says("corrupt", "N is \"\"", "1 to 100000");

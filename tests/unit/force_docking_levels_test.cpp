@@ -36,8 +36,8 @@ TEST(DockingLevels, the_error_it_reports_holds_near_home) {
         }
     }
     EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
-    EXPECT_EQ(model->predict(1.0F).error, 0.0);
-    EXPECT_GT(model->predict(0.0F).error, 0.0);
+    EXPECT_EQ(model->evaluate(model->home(), at(1.0F)).load.error, 0.0);
+    EXPECT_GT(model->evaluate(model->home(), at(0.0F)).load.error, 0.0);
 }
 
 TEST(DockingLevels,
@@ -60,16 +60,20 @@ TEST(DockingLevels,
         const double error_n = model->step(tool_at(hand), at(0.3F)).load.error;
         if (model->audit().done() == done) continue;
         done = model->audit().done();
-        EXPECT_LE(n_per_gradient * model->audit().off(), model->predict(0.3F).error * (1.0 + 1e-6));
-        EXPECT_LE(error_n, model->predict(0.3F).error);  // it never falls
+        const double bound_n = model->evaluate(held, at(0.3F)).load.error;
+        EXPECT_LE(n_per_gradient * model->audit().off(), bound_n * (1.0 + 1e-6));
+        EXPECT_LE(error_n, bound_n);  // it never falls
     }
     EXPECT_GT(done, 100U);
 }
 
 TEST(DockingLevels, cost_is_predicted_in_order_of_size) {
     const auto model = make_model();
-    EXPECT_GT(model->predict(1.0F).cost_predicted.count(), 0);
-    EXPECT_LT(model->predict(0.0F).cost_predicted, model->predict(1.0F).cost_predicted);
+    const auto predicted = [&](float level) {
+        return model->evaluate(model->home(), at(level)).load.cost_predicted;
+    };
+    EXPECT_GT(predicted(1.0F).count(), 0);
+    EXPECT_LT(predicted(0.0F), predicted(1.0F));
     EXPECT_EQ(model->items(0.0F), 25U);
     EXPECT_EQ(model->items(1.0F), 1000U);
     EXPECT_EQ(std::string(model->knob().path), "docking.force");

@@ -6,6 +6,7 @@
 #include "ipc/scene/density/docking_gain.hpp"
 #include "ipc/scene/density/laplacian_map.hpp"
 #include "ipc/scene/density/simulated_map.hpp"
+#include "ipc/topics/command.hpp"
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
@@ -70,11 +71,7 @@ std::unique_ptr<DockingModel> make_model(const DockingSettings& settings = {}) {
 }
 
 bool set_option(ForceModel& model, std::uint32_t option, bool on) {
-    ModelOrder order;
-    order.kind = ModelOrder::Kind::option;
-    order.option = option;
-    order.on = on;
-    return model.order(order);
+    return dynamic_cast<DockingModel&>(model).set_options(option, on);
 }
 
 // As ordered, built aside and taken over.
@@ -97,12 +94,12 @@ TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_
     const auto model = make_model();
     const Vec3 own = scene().structures[0].home_com_model_m, other = scene().structures[1].home_com_model_m;
     const double own_before = density_at(*model, own), other_before = density_at(*model, other);
-    ASSERT_TRUE(set_option(*model, kOptionSubtraction, true));
+    ASSERT_TRUE(set_option(*model, kDockingSubtraction, true));
     EXPECT_TRUE(model->stale());
     EXPECT_EQ(model->bodies().options, 0U);
     const auto next = rebuilt(*model);
     EXPECT_FALSE(next->stale());
-    EXPECT_EQ(next->bodies().options, kOptionSubtraction);
+    EXPECT_EQ(next->bodies().options, kDockingSubtraction);
     EXPECT_LT(std::abs(density_at(*next, other)), 0.05 * other_before);
     EXPECT_NEAR(density_at(*next, own), own_before, 0.05 * own_before);
     // A body that lies where the other does is pulled home, not deeper in.
@@ -111,16 +108,16 @@ TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_
     EXPECT_LT(felt_at(*next, between).force_n.x(), -0.1);
     EXPECT_GT(felt_at(*next, between).force_n.norm(), felt_at(*model, between).force_n.norm());
     // Off again: at once, without a build.
-    ASSERT_TRUE(set_option(*next, kOptionSubtraction, false));
+    ASSERT_TRUE(set_option(*next, kDockingSubtraction, false));
     EXPECT_FALSE(next->stale());
     EXPECT_NEAR(density_at(*next, other), other_before, 1e-6 * other_before);
 }
 
 TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
     const auto model = make_model();
-    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto next = rebuilt(*model);
-    EXPECT_EQ(next->bodies().options, kOptionLaplacian);
+    EXPECT_EQ(next->bodies().options, kDockingLaplacian);
     SeededRandom random(4);
     const Structure& left = scene().structures[0];
     double most_n = 0.0;
@@ -146,9 +143,9 @@ TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
 
 TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
     const auto model = make_model();
-    ASSERT_TRUE(set_option(*model, kOptionLaplacian | kOptionSubtraction, true));
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian | kDockingSubtraction, true));
     const auto next = rebuilt(*model);
-    EXPECT_EQ(next->bodies().options, kOptionLaplacian | kOptionSubtraction);
+    EXPECT_EQ(next->bodies().options, kDockingLaplacian | kDockingSubtraction);
     const Vec3 other = scene().structures[1].home_com_model_m, own = scene().structures[0].home_com_model_m;
     EXPECT_GT(density_at(*next, own), 0.0);
     EXPECT_LT(std::abs(density_at(*next, other)), 0.2 * density_at(*next, own));
@@ -157,15 +154,15 @@ TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
 TEST(DockingOptions, the_unit_of_the_contours_is_the_same_whichever_option_came_first) {
     const Vec3 own = scene().structures[0].home_com_model_m;
     const auto both = make_model();
-    ASSERT_TRUE(set_option(*both, kOptionLaplacian | kOptionSubtraction, true));
+    ASSERT_TRUE(set_option(*both, kDockingLaplacian | kDockingSubtraction, true));
     const auto at_once = rebuilt(*both);
     const auto model = make_model();
-    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto whole = rebuilt(*model);
-    ASSERT_TRUE(set_option(*whole, kOptionSubtraction, true));
+    ASSERT_TRUE(set_option(*whole, kDockingSubtraction, true));
     const auto after = rebuilt(*whole);
     EXPECT_EQ(density_at(*after, own), density_at(*at_once, own));
-    ASSERT_TRUE(set_option(*after, kOptionSubtraction, false));
+    ASSERT_TRUE(set_option(*after, kDockingSubtraction, false));
     EXPECT_EQ(density_at(*rebuilt(*after), own), density_at(*whole, own));
     EXPECT_EQ(density_at(*make_model(), own), density_at(*model, own));
 }
@@ -193,9 +190,9 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     };
     EXPECT_LT(steps(), 0.06);
     const Wrench without = felt_at(*model, overlapping);
-    ASSERT_TRUE(set_option(*model, kOptionClash, true));
+    ASSERT_TRUE(set_option(*model, kDockingClash, true));
     EXPECT_FALSE(model->stale());
-    EXPECT_EQ(model->bodies().options, kOptionClash);
+    EXPECT_EQ(model->bodies().options, kDockingClash);
     const Wrench with = felt_at(*model, overlapping);
     const ClashField left(scene().structures[0]), right(scene().structures[1]);
     const ClashBody other{&right, model->bodies().T_model_body[1]};
@@ -208,12 +205,12 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     EXPECT_LT(steps(), 0.06);
     EXPECT_LT((before - with.force_n).norm(), 1e-6);
     // It outlives a rebuild, and a rebuild that failed.
-    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
-    EXPECT_EQ(rebuilt(*model)->bodies().options, kOptionClash | kOptionLaplacian);
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
+    EXPECT_EQ(rebuilt(*model)->bodies().options, kDockingClash | kDockingLaplacian);
     model->give_up();
-    EXPECT_EQ(model->bodies().options, kOptionClash);
+    EXPECT_EQ(model->bodies().options, kDockingClash);
     EXPECT_FALSE(model->stale());
-    ASSERT_TRUE(set_option(*model, kOptionClash, false));
+    ASSERT_TRUE(set_option(*model, kDockingClash, false));
     EXPECT_LT((felt_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
 }
 
@@ -226,9 +223,9 @@ TEST(DockingOptions, an_order_between_take_over_and_step_does_not_cut_the_force)
     StepResult before;
     for (int i = 0; i < 2 * DockingModel::kRampSteps; ++i) before = model->step(tool, Budget{});
     ASSERT_GT(before.wrench_world.force_n.norm(), 0.1);
-    ASSERT_TRUE(set_option(*model, kOptionLaplacian, true));
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto next = rebuilt(*model);
-    ASSERT_TRUE(set_option(*next, kOptionClash, true));
+    ASSERT_TRUE(set_option(*next, kDockingClash, true));
     const StepResult after = next->step(tool, Budget{});
     EXPECT_LT((after.wrench_world.force_n - before.wrench_world.force_n).norm(), 0.05);
 }
@@ -239,15 +236,34 @@ TEST(DockingOptions, force_scale_scales_the_clash_too) {
     const auto full = make_model(), half = make_model(settings);
     Pose overlapping = scene().structures[1].home();
     overlapping.p_m.x() -= 18.0 * kA;
-    for (DockingModel* model : {full.get(), half.get()}) ASSERT_TRUE(set_option(*model, kOptionClash, true));
+    for (DockingModel* model : {full.get(), half.get()}) ASSERT_TRUE(set_option(*model, kDockingClash, true));
     EXPECT_LT((0.5 * felt_at(*full, overlapping).force_n - felt_at(*half, overlapping).force_n).norm(), 1e-9);
+}
+
+TEST(DockingOptions, a_command_turns_its_option_on_and_off) {
+    const auto model = make_model();
+    ModelOrder order;
+    order.kind = ModelOrder::Kind::setting;
+    for (const auto& [command, option] : {std::pair(CommandKind::set_clash, kDockingClash),
+                                          std::pair(CommandKind::set_subtraction, kDockingSubtraction),
+                                          std::pair(CommandKind::set_laplacian, kDockingLaplacian)}) {
+        order.command = static_cast<std::uint8_t>(command);
+        order.on = true;
+        ASSERT_TRUE(model->order(order));
+        EXPECT_EQ(model->bodies().options_asked, option);
+        order.on = false;
+        ASSERT_TRUE(model->order(order));
+        EXPECT_EQ(model->bodies().options_asked, 0U);
+    }
+    order.command = static_cast<std::uint8_t>(CommandKind::set_detail_filter);  // of another system
+    EXPECT_FALSE(model->order(order));
 }
 
 TEST(DockingOptions, unknown_options_are_refused) {
     const auto model = make_model();
     EXPECT_FALSE(set_option(*model, 0, true));
     EXPECT_FALSE(set_option(*model, 1U << 9, true));
-    EXPECT_FALSE(set_option(*model, kOptionClash | (1U << 9), true));
+    EXPECT_FALSE(set_option(*model, kDockingClash | (1U << 9), true));
     EXPECT_EQ(model->bodies().options_asked, 0U);
 }
 

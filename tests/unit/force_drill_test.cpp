@@ -210,7 +210,7 @@ TEST(DrillModel, a_scripted_stroke_repeats_bit_by_bit) {
         s.seed = seed;
         s.vibration = 0.1;
         Bench b(s);
-        b.model->drive({kFullRadS, 1e-3});
+        b.model->turn_burr({kFullRadS, 1e-3});
         b.model->reset(Bench::at(0.0, 0.0, 3e-3));
         for (int i = 0; i < 700; ++i) {
             const double t = 1e-3 * i;
@@ -240,7 +240,7 @@ TEST(DrillModel, the_force_is_continuous_while_bone_vanishes) {
         for (int i = 0; i < 400; ++i) before = b.step(Bench::at(0.0, 0.0, z_m));
         const double pressed_n = before.wrench_world.force_n.z();
         EXPECT_GT(pressed_n, 0.1);
-        b.model->drive({0.5 * kFullRadS, 1e-3});
+        b.model->turn_burr({0.5 * kFullRadS, 1e-3});
         double turning_n = 0.0;
         for (int i = 0; i < 1500; ++i) {
             const StepResult now = b.step(Bench::at(0.0, 0.0, z_m));
@@ -258,7 +258,7 @@ TEST(DrillModel, the_force_is_continuous_while_bone_vanishes) {
 TEST(DrillModel, steps_that_were_late_are_made_up_for) {
     const auto removed = [](int late_every, double radius_m) {
         Bench b(burr(radius_m));
-        b.model->drive({kFullRadS, 1e-3});
+        b.model->turn_burr({kFullRadS, 1e-3});
         const double z_m = radius_m - 8e-4;
         b.model->reset(Bench::at(-6e-3, 0.0, z_m + 8e-3));
         for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-6e-3, 0.0, z_m + 8e-3));
@@ -284,17 +284,17 @@ TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
     Bench b(burr());
     const ToolState in = Bench::at(0.0, 0.0, 1.2e-3);
     const std::uint64_t mass = mass_of(b.bone);
-    b.model->drive({kFullRadS, 1e-3});
+    b.model->turn_burr({kFullRadS, 1e-3});
     for (int i = 0; i < 100; ++i) (void)b.step(in);  // before a reset
     EXPECT_EQ(mass_of(b.bone), mass);
     b.model->reset(in);
-    for (const ToolDrive& drive : {ToolDrive{0.0, 1e-3}, ToolDrive{std::nan(""), 1e-3}, ToolDrive{-5.0, 1e-3},
-                                   ToolDrive{kFullRadS, -1.0}, ToolDrive{kFullRadS, std::nan("")}}) {
-        b.model->drive(drive);
+    for (const BurrDrive& drive : {BurrDrive{0.0, 1e-3}, BurrDrive{std::nan(""), 1e-3}, BurrDrive{-5.0, 1e-3},
+                                   BurrDrive{kFullRadS, -1.0}, BurrDrive{kFullRadS, std::nan("")}}) {
+        b.model->turn_burr(drive);
         for (int i = 0; i < 300; ++i) (void)b.step(in);
         EXPECT_EQ(mass_of(b.bone), mass);
     }
-    b.model->drive({kFullRadS, 1e-3});
+    b.model->turn_burr({kFullRadS, 1e-3});
     ToolState held = in;
     held.buttons = 1;
     for (int i = 0; i < 300; ++i) (void)b.step(held);
@@ -315,7 +315,7 @@ TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
 
 TEST(DrillModel, a_jump_cuts_nothing_on_its_way) {
     Bench b(burr());
-    b.model->drive({kFullRadS, 1e-3});
+    b.model->turn_burr({kFullRadS, 1e-3});
     b.model->reset(Bench::at(-20e-3, 0.0, 0.0));
     for (int i = 0; i < 300; ++i) (void)b.step(Bench::at(-20e-3, 0.0, 0.0));
     (void)b.step(Bench::at(20e-3, 0.0, 0.0));
@@ -333,7 +333,7 @@ TEST(DrillModel, a_running_burr_rattles_within_its_share_and_around_the_same_for
     const ToolState in = Bench::at(0.0, 0.0, 1.3e-3);
     Vec3 sum = Vec3::Zero(), before = Vec3::Zero(), calm = Vec3::Zero();
     for (Bench* b : {&still, &shaken}) {
-        b->model->drive({kFullRadS, 1e-3});
+        b->model->turn_burr({kFullRadS, 1e-3});
         b->model->reset(in);
         for (int i = 0; i < 400; ++i) before = b->step(in).wrench_world.force_n;
         if (b == &still) calm = before;

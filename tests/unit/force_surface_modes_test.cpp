@@ -6,6 +6,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
+#include "ipc/topics/command.hpp"
 #include "prep/surface/bake_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
 #include "rt/force/surface/near_surface.hpp"
@@ -65,7 +66,7 @@ Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool has_slow_upd
         if (i == 0) model->reset(tool);
         if (has_slow_update && i % kSlowUpdateEvery == 0) model->slow_update(tool, {});
         felt.force_n.push_back(model->step(tool, {}).wrench_world.force_n);
-        felt.adaptive += model->regime() == SurfaceRegime::adaptive ? 1.0 / 1200.0 : 0.0;
+        felt.adaptive += model->regime() == TouchRegime::adaptive ? 1.0 / 1200.0 : 0.0;
     }
     return felt;
 }
@@ -206,8 +207,8 @@ std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder
 }
 
 TEST(SurfaceModes, what_is_kept_fine_is_shown_with_its_bound_and_cost) {
-    const ModelDetail d = rested(1.0F, 40)->touch().detail;
-    ASSERT_TRUE(d.there);
+    const SurfaceDetail d = rested(1.0F, 40)->touch().detail;
+    ASSERT_TRUE(d.valid);
     EXPECT_TRUE(d.full);
     EXPECT_GT(d.radius_m, 0.0);
     EXPECT_GT(d.triangles, 0U);
@@ -215,7 +216,7 @@ TEST(SurfaceModes, what_is_kept_fine_is_shown_with_its_bound_and_cost) {
     EXPECT_GT(d.turn_predicted_s, 0.0);
     // Far away the filter allows half of the radius, and the bound counts ways along the surface too.
     EXPECT_GT(d.deviation_m, 0.0);
-    EXPECT_FALSE(load_surface_model(*sphere().file, {})->touch().detail.there);
+    EXPECT_FALSE(load_surface_model(*sphere().file, {})->touch().detail.valid);
 }
 
 TEST(SurfaceModes, the_knobs_cost_is_that_of_the_surface_around_the_tool) {
@@ -232,22 +233,27 @@ TEST(SurfaceModes, the_knobs_cost_is_that_of_the_surface_around_the_tool) {
 
 TEST(SurfaceModes, a_person_forms_the_filter_and_the_cut_follows) {
     ModelOrder order;
-    order.kind = ModelOrder::Kind::filter;
-    order.width = 0.2F;
-    order.error_far = 4.0F;
-    order.shape = static_cast<std::uint8_t>(FilterForm::Shape::multiple_frustum);
-    const ModelDetail steep = rested(0.2F, 40, order)->touch().detail;
-    EXPECT_EQ(steep.shape, order.shape);
-    EXPECT_EQ(steep.width, order.width);
+    order.kind = ModelOrder::Kind::setting;
+    order.command = static_cast<std::uint8_t>(CommandKind::set_detail_filter);
+    double& error_far = order.T_model_body.p_m.x();
+    order.value = 0.2;
+    error_far = 4.0;
+    order.body = static_cast<std::uint32_t>(DetailShape::multiple_frustum);
+    const SurfaceDetail steep = rested(0.2F, 40, order)->touch().detail;
+    EXPECT_EQ(steep.shape, DetailShape::multiple_frustum);
+    EXPECT_EQ(steep.width, 0.2F);
     EXPECT_TRUE(steep.full);
-    order.width = 6.0F;
-    order.error_far = 0.1F;
+    order.value = 6.0;
+    error_far = 0.1;
     EXPECT_GT(rested(0.2F, 40, order)->touch().detail.triangles, steep.triangles);
     const auto model = rested(0.2F, 1);
-    order.width = 1e9F;
+    order.value = 1e9;
     EXPECT_FALSE(model->order(order));
-    order.width = 1.0F;
-    order.shape = 9;
+    order.value = 1.0;
+    order.body = 9;
+    EXPECT_FALSE(model->order(order));
+    order.body = 0;
+    order.command = static_cast<std::uint8_t>(CommandKind::set_clash);  // of another system
     EXPECT_FALSE(model->order(order));
     EXPECT_FALSE(load_surface_model(*sphere().file, {})->order(order));
 }

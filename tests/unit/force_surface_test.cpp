@@ -170,8 +170,7 @@ TEST(Surface, what_is_shown_of_a_touch_is_what_is_felt) {
     Hand hand(crossing(), plain(0.002), Vec3(0.01, 0.012, 0.014));
     const Vec3 goal(-0.002, -0.003, 0.02);  // over one sheet, held by the two others
     const Vec3 force = hand.lead(goal);
-    const ModelTouch touch = hand.model->touch();
-    ASSERT_TRUE(touch.there);
+    const SurfaceTouch touch = hand.model->touch();
     EXPECT_LT((kWorldPerModel * touch.probe_m - goal).norm(), 1e-9);
     EXPECT_EQ(touch.proxy_m, hand.model->contact().proxy_m);
     EXPECT_NEAR(kWorldPerModel * touch.radius_m, 0.002, 1e-12);

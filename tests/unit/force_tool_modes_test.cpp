@@ -67,7 +67,7 @@ Felt feel(SurfaceMode mode, double speed_m_s, bool has_slow_update = true, int s
         if (has_slow_update && i % kSlowUpdateEvery == 0) model->slow_update(tool, {});
         felt.wrench.push_back(model->step(tool, {}).wrench_world);
         felt.touching += (felt.wrench.back().force_n.norm() > 0.1 ? 1.0 : 0.0) / steps;
-        felt.adaptive += (model->regime() == SurfaceRegime::adaptive ? 1.0 : 0.0) / steps;
+        felt.adaptive += (model->regime() == TouchRegime::adaptive ? 1.0 : 0.0) / steps;
     }
     return felt;
 }
@@ -125,9 +125,9 @@ TEST(ToolModes, what_is_tended_is_shown) {
         model->slow_update(tool, {});
         (void)model->step(tool, {});
     }
-    const ModelDetail detail = model->touch().detail;
+    const SurfaceDetail detail = model->touch().detail;
     EXPECT_TRUE(model->has_slow_update());
-    EXPECT_TRUE(detail.there);
+    EXPECT_TRUE(detail.valid);
     EXPECT_TRUE(detail.full);
     // The whole tool lies in it, however it turns.
     EXPECT_GT(detail.radius_m, model->contact().points().reach_m());

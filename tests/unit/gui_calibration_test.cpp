@@ -488,7 +488,7 @@ TEST_F(StageFileWritten, where_there_is_no_room_the_folder_stays_as_it_was) {
     }
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
     std::signal(SIGXFSZ, handler);
-    EXPECT_NE(why.find("mend:"), std::string::npos) << why;
+    EXPECT_NE(why.find("fix:"), std::string::npos) << why;
     EXPECT_EQ(files(), 1);
     EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
 }

@@ -83,7 +83,7 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     EXPECT_EQ(state_.marks_text, "Touch tetra.obj.");
     press(folder_ / "wrong.ply");
     EXPECT_TRUE(row("wrong.ply").marked && !state_.marks_import);
-    EXPECT_EQ(state_.marks_text, "2 marked. One scene, mesh or scan at a time.");
+    EXPECT_EQ(state_.marks_text, "2 marked. One mesh at a time.");
     state_.import_wanted = true;  // the button is not to be pressed now
     desk.follow(state_);
     EXPECT_FALSE(state_.importing);
@@ -116,7 +116,7 @@ TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {
     desk.drop({folder_ / "wrong.ply"}, state_);
     until_done(desk);
     EXPECT_TRUE(state_.message.starts_with("tact-prep: ")) << state_.message;
-    EXPECT_NE(state_.message.find("mend:"), std::string::npos);
+    EXPECT_NE(state_.message.find("fix:"), std::string::npos);
     EXPECT_EQ(scenes(), 0U);
 }
 

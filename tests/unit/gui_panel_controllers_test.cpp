@@ -50,7 +50,7 @@ TEST_F(Desk, a_list_that_is_wrong_is_told_with_its_mend) {
           "{\"scenes\": [{\"path\": \"/a\\u007f\", \"used_unix_s\": 1}]}",
           "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": -1}]}",
           "{\"scenes\": [{\"path\": \"/a\", \"used_unix_s\": 1e300}]}"})
-        EXPECT_NE(error_of([&] { (void)read_recents_text(bad, "recent.json"); }).find("mend:"),
+        EXPECT_NE(error_of([&] { (void)read_recents_text(bad, "recent.json"); }).find("fix:"),
                   std::string::npos)
             << bad;
     std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
@@ -70,7 +70,7 @@ TEST_F(Desk, a_file_that_is_set_aside_is_kept_once) {
         EXPECT_EQ(kept, content);
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
-    EXPECT_NE(error_of([&] { (void)set_aside(file); }).find("mend:"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)set_aside(file); }).find("fix:"), std::string::npos);
 }
 
 TEST_F(Desk, the_state_folder_is_the_users_own) {
@@ -229,7 +229,7 @@ TEST_F(Desk, what_an_import_printed_tells_how_far_it_is) {
     EXPECT_EQ(share_done("[101 %] x\n[-1 %] x\n"), std::nullopt);
     EXPECT_EQ(last_line("one\n[ 45 %] two\n\n"), "[ 45 %] two");
     EXPECT_EQ(last_line("\n"), "");
-    EXPECT_EQ(error_text("[  0 %] reading\ntact-prep: no\n  mend: x\n"), "tact-prep: no\n  mend: x");
+    EXPECT_EQ(error_text("[  0 %] reading\ntact-prep: no\n  fix: x\n"), "tact-prep: no\n  fix: x");
 }
 
 TEST_F(Desk, sizes_and_times_read_well) {

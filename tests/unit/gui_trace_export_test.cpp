@@ -73,7 +73,7 @@ TEST_F(Export, a_folder_that_is_gone_is_said_in_words) {
     out_.follow(traces_);
     ASSERT_TRUE(message());
     EXPECT_EQ(traces_.message_grade, Grade::bad);
-    EXPECT_NE(traces_.message.find("mend:"), std::string::npos) << traces_.message;
+    EXPECT_NE(traces_.message.find("fix:"), std::string::npos) << traces_.message;
 }
 
 TEST_F(Export, no_part_of_a_file_stays_where_it_cannot_be_written) {

@@ -1,7 +1,6 @@
 // tact-gui as a process, on an X server of its own: waits, attaches, applies, survives, draws.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <png.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -116,15 +115,15 @@ protected:
     }
     static std::set<std::uint32_t> colours(const std::string& path, std::uint32_t width,
                                            std::uint32_t height) {
-        png_image image{};
-        image.version = PNG_IMAGE_VERSION;
-        if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return {};
-        EXPECT_EQ(image.width, width);
-        EXPECT_EQ(image.height, height);
-        image.format = PNG_FORMAT_RGBA;
-        std::vector<std::uint32_t> pixels(std::size_t{image.width} * image.height);
-        if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return {};
-        return {pixels.begin(), pixels.end()};
+        if (!std::filesystem::exists(path)) return {};
+        PngReader picture(path);
+        EXPECT_EQ(picture.width_px(), width);
+        EXPECT_EQ(picture.height_px(), height);
+        const std::vector<std::uint8_t> rgb = picture.read(PngFormat::rgb);
+        std::set<std::uint32_t> colours;
+        for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
+            colours.insert(static_cast<std::uint32_t>(rgb[i] << 16U | rgb[i + 1] << 8U | rgb[i + 2]));
+        return colours;
     }
 
     // Of a window that has drawn a few frames of what is published meanwhile.
@@ -428,7 +427,7 @@ TEST_F(GuiWindow, broken_scene_is_told_and_the_window_stays) {
     const std::string path = folder_ + "/broken.tact";
     std::ofstream(path) << "this is no scene";
     EXPECT_EQ(gui({path, "--seconds", "1", "--screenshot", folder_ + "/broken.png"})->wait(), 0) << log();
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
     EXPECT_GT(colours(folder_ + "/broken.png", 640, 480).size(), 20U);
 }
 
@@ -436,7 +435,7 @@ TEST_F(GuiWindow, without_a_display_it_says_so_and_what_mends_it) {
     unsetenv("DISPLAY");
     EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
     EXPECT_NE(log().find("no display"), std::string::npos) << log();
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
 TEST_F(GuiWindow, a_series_is_of_the_view_alone_and_its_first_of_the_scene) {
@@ -496,7 +495,7 @@ TEST_F(GuiWindow, a_stage_that_cannot_be_is_told_in_words) {
     EXPECT_NE(gui({"--stereo", "sideways"})->wait(), 0);
     // Drivers that draw on the processor have no buffers for two eyes.
     EXPECT_EQ(gui({"--seconds", "0.5", "--stereo", "quad-buffer"})->wait(), 1);
-    EXPECT_NE(log().find("mend:"), std::string::npos) << log();
+    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
 TEST_F(GuiWindow, picture_that_cannot_be_written_is_an_error_and_arguments_are_checked) {

@@ -35,7 +35,7 @@ TEST(ArmTable, a_premium_15_needs_no_configuration) {
 TEST(ArmTable, what_nobody_knows_is_asked_for_by_its_keys) {
     EXPECT_TRUE(
         says(error_of(arm_parameter_set("desktop")),
-             {"desktop", "thigh_mm", "counts_per_turn", "drive_ratio", "current_a_max", "mend:", "[arm]"}));
+             {"desktop", "thigh_mm", "counts_per_turn", "drive_ratio", "current_a_max", "fix:", "[arm]"}));
     const std::string omni = error_of(arm_parameter_set("omni"));
     EXPECT_TRUE(says(omni, {"omni", "counts_per_turn", "torque_constant_mn_m_a"})) << omni;
     EXPECT_EQ(omni.find("thigh_mm"), std::string::npos);
@@ -53,7 +53,7 @@ TEST(ArmTable, an_arm_that_is_not_in_it_is_refused_with_those_that_are) {
         static_cast<void>(arm_parameter_set("delta"));
         FAIL();
     } catch (const StartupError& e) {
-        EXPECT_TRUE(says(e.what(), {"delta", "omni", "premium-1.5-6dof", "mend:"}));
+        EXPECT_TRUE(says(e.what(), {"delta", "omni", "premium-1.5-6dof", "fix:"}));
     }
 }
 

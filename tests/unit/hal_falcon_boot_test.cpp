@@ -17,7 +17,7 @@ namespace {
 using emu::FalconBoard;
 using emu::LockstepFalcon;
 using falcon::Link;
-using phantom::BusFault;
+using usb::BusFault;
 
 TEST(FtdiPieces, lose_their_status_and_damaged_ones_everything) {
     const auto piece = [](std::initializer_list<int> values) {
@@ -110,12 +110,12 @@ TEST_F(FalconBoot, a_byte_that_comes_back_wrong_begins_the_load_anew) {
 TEST_F(FalconBoot, what_fails_is_said_with_its_mend) {
     LockstepFalcon none;
     none.board().runs = false;
-    EXPECT_TRUE(says(opening(none), {"FA-1", "no firmware", "mend: set device.firmware"}));
+    EXPECT_TRUE(says(opening(none), {"FA-1", "no firmware", "fix: set device.firmware"}));
     LockstepFalcon wrong(path());
     wrong.board().runs = false;
     wrong.board().wrong_echo_at = 5;
     wrong.board().wrong_echoes = 100;
-    EXPECT_TRUE(says(opening(wrong), {"gives the firmware's bytes back wrong", "mend:"}));
+    EXPECT_TRUE(says(opening(wrong), {"gives the firmware's bytes back wrong", "fix:"}));
     EXPECT_EQ(wrong.board().wrong_echoes, 97U);
     LockstepFalcon dead(path());
     dead.board().runs = false;
@@ -141,11 +141,11 @@ TEST_F(FalconBoot, a_file_that_is_not_there_empty_or_too_large_is_an_error_befor
          {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "nothing in it"},
           std::pair{"large.bin", "more than 131072 bytes"}}) {
         LockstepFalcon arm(path(name));
-        EXPECT_TRUE(says(opening(arm), {name, why, "mend: device.firmware"})) << name;
+        EXPECT_TRUE(says(opening(arm), {name, why, "fix: device.firmware"})) << name;
         EXPECT_EQ(arm.board().opens, 0U);
     }
     LockstepFalcon folder(folder_.string());
-    EXPECT_TRUE(says(opening(folder), {"mend: device.firmware"}));
+    EXPECT_TRUE(says(opening(folder), {"fix: device.firmware"}));
     write("largest.bin", std::vector<std::byte>(falcon::kFirmwareBytesMax));
     EXPECT_EQ(falcon::read_firmware(path("largest.bin")).size(), falcon::kFirmwareBytesMax);
 }
@@ -158,7 +158,7 @@ TEST_F(FalconBoot, what_the_bus_finds_is_said_with_its_mend) {
           std::pair{BusFault::failed, "dmesg"}}) {
         LockstepFalcon arm;
         arm.board().finding = fault;
-        EXPECT_TRUE(says(opening(arm), {"opening the Falcon", why, "mend:"})) << why;
+        EXPECT_TRUE(says(opening(arm), {"opening the Falcon", why, "fix:"})) << why;
     }
 }
 

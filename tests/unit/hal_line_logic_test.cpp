@@ -47,7 +47,7 @@ struct Event {
     const char* name;
     void (*happen)(Bench&);
     LinesCause cause;  // none: nothing stops because of it
-    bool lasts;        // until mended
+    bool lasts;        // until fixed
 };
 void open(Bench& b, int bits) { b.wiring = static_cast<std::uint8_t>(b.wiring & ~bits); }
 

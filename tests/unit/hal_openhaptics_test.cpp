@@ -117,7 +117,7 @@ TEST_F(OpenHapticsTest, a_library_that_is_not_there_is_said_with_every_place_tha
         const hd::Library library("");
         GTEST_SKIP() << "the maker's library is installed here: " << library.path();
     } catch (const StartupError& e) {
-        EXPECT_TRUE(says(e.what(), {"libHD.so", "/usr/lib/libHD.so", "mend:", "device.hd_library"}))
+        EXPECT_TRUE(says(e.what(), {"libHD.so", "/usr/lib/libHD.so", "fix:", "device.hd_library"}))
             << e.what();
     }
     try {
@@ -133,7 +133,7 @@ TEST_F(OpenHapticsTest, a_library_without_one_of_the_functions_is_refused_by_bot
         const hd::Library library(TACT_FAKE_HD_OLD);
         ADD_FAILURE();
     } catch (const StartupError& e) {
-        EXPECT_TRUE(says(e.what(), {TACT_FAKE_HD_OLD, "no function hdDisableDevice", "mend:"})) << e.what();
+        EXPECT_TRUE(says(e.what(), {TACT_FAKE_HD_OLD, "no function hdDisableDevice", "fix:"})) << e.what();
     }
 }
 
@@ -423,7 +423,7 @@ TEST_F(OpenHapticsTest, the_delay_is_the_ticks_that_are_seen_and_two_periods_of_
 TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
     fake().init_error = 0x600;
     EXPECT_TRUE(
-        says(refusal(), {"default haptic device", "no licence", "0x600", "mend:", "device.hd_device"}));
+        says(refusal(), {"default haptic device", "no licence", "0x600", "fix:", "device.hd_device"}));
     fake().reset();
     fake().init_error = 0x302;
     EXPECT_TRUE(says(refusal(), {"0x302", "cable"}));
@@ -438,7 +438,7 @@ TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
     EXPECT_TRUE(says(refusal(), {"of no arm there is"}));
     fake().reset();
     fake().raise(0x304);
-    EXPECT_TRUE(says(refusal(), {"scheduler broke off", "mend:"}));
+    EXPECT_TRUE(says(refusal(), {"scheduler broke off", "fix:"}));
     fake().reset();
     fake().model = "Evil\x1b[2J";
     open();

@@ -112,8 +112,7 @@ TEST(PhantomPriority, that_is_refused_is_said_once_with_its_mend_and_the_driver_
         EXPECT_NE(heard()[0].find("cannot use SCHED_FIFO at priority 1000 for the arm's USB"),
                   std::string::npos)
             << heard()[0];
-        EXPECT_NE(heard()[0].find("mend: tact doctor tells what is missing"), std::string::npos)
-            << heard()[0];
+        EXPECT_NE(heard()[0].find("fix: tact doctor tells what is missing"), std::string::npos) << heard()[0];
     }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using emu::BoardSettings;
 using emu::LockstepPhantom;
-using phantom::BusFault;
+using usb::BusFault;
 
 INSTANTIATE_TEST_SUITE_P(PhantomUsb, HapticDeviceContract,
                          testing::Values(DeviceCase{"premium_1_5",
@@ -459,7 +459,7 @@ TEST(PhantomOpen, an_answer_that_never_comes_is_told_with_what_came_instead) {
     LockstepPhantom arm;
     arm.board().faults().frozen = true;
     const std::array<std::byte, 65> glued{};
-    for (int i = 0; i < 7; ++i) arm.bus().push(phantom::BusEventKind::packet, glued);
+    for (int i = 0; i < 7; ++i) arm.bus().push(usb::BusEventKind::packet, glued);
     try {
         arm.device().open();
         ADD_FAILURE() << "opened";

@@ -15,8 +15,8 @@ namespace tact {
 namespace {
 
 using emu::LockstepPolhem;
-using phantom::BusFault;
 using std::chrono::milliseconds;
+using usb::BusFault;
 
 INSTANTIATE_TEST_SUITE_P(Polhem, HapticDeviceContract,
                          testing::Values(DeviceCase{"polhem",
@@ -193,7 +193,7 @@ TEST(PolhemHidraw, the_board_is_found_by_its_numbers_and_serial_on_its_first_int
     EXPECT_NE(polhem::find_board(usb, "", node).detail.find("no USB"), std::string::npos);
     usb.visible = true;
     usb.there = {board_of("A"), probe::UsbDevice{}};
-    const phantom::BusFinding one = polhem::find_board(usb, "", node);
+    const usb::BusFinding one = polhem::find_board(usb, "", node);
     EXPECT_EQ(one.fault, BusFault::none);
     EXPECT_EQ(one.serial, "A");
     EXPECT_EQ(node, "/dev/hidraw3");

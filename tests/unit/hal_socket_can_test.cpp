@@ -222,7 +222,7 @@ TEST(SocketCan, an_interface_that_is_not_there_is_refused_with_words) {
     SocketCan can("no_such_can0", FixSettings{});
     const std::string text = refusal([&] { can.open(); });
     EXPECT_NE(text.find("no_such_can0"), std::string::npos) << text;
-    EXPECT_NE(text.find("mend: "), std::string::npos) << text;
+    EXPECT_NE(text.find("fix: "), std::string::npos) << text;
     std::array<CanFrame, 8> got;
     EXPECT_EQ(can.receive(got, milliseconds(1)).fault, CanFault::gone);
     EXPECT_FALSE(can.reopen());

@@ -1,4 +1,4 @@
-// The file of a recording: what goes in comes out, a writer that dies leaves a file that is mended, and files that are no
+// The file of a recording: what goes in comes out, a writer that dies leaves a file that is fixed, and files that are no
 // recordings are refused in words.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

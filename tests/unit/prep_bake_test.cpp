@@ -6,7 +6,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/mesh/progressive_mesh.hpp"
-#include "prep/bake/bake_docking.hpp"
+#include "prep/docking/bake_docking.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/synthetic/ring.hpp"
 #include "tests/unit/prep_samples.hpp"

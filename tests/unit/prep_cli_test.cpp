@@ -87,7 +87,7 @@ protected:
         EXPECT_EQ(e.code, 1) << e.err;
         for (const char* word : words)
             EXPECT_NE(e.err.find(word), std::string::npos) << word << " is not in: " << e.err;
-        EXPECT_NE(e.err.find("mend: "), std::string::npos) << e.err;
+        EXPECT_NE(e.err.find("fix: "), std::string::npos) << e.err;
         EXPECT_FALSE(fs::exists(folder_ / "s.tact"));
     }
     fs::path folder_;
@@ -254,7 +254,7 @@ TEST_F(Program, bakes_bone_to_drill_from_a_scan_or_made_here) {
     const Ended baked =
         run({"drill", scan, "-o", scene, "--crop", "0:4,1:3,0:4", "--unit", "cm", "--face", "top"});
     ASSERT_EQ(baked.code, 0) << baked.err;
-    EXPECT_NE(baked.err.find("does not say which side is left"), std::string::npos) << baked.err;
+    EXPECT_NE(baked.err.find("does not name the left side"), std::string::npos) << baked.err;
     info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
     EXPECT_EQ(info["bone"]["size"], (std::vector<int>{4, 2, 7}));
     EXPECT_DOUBLE_EQ(info["bone"]["voxel_m"].get<double>(), 5e-3);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "ipc/base/error.hpp"
-#include "prep/volume/import_bone.hpp"
+#include "prep/drilling/import_bone.hpp"
 #include "tests/support/library_leaks.hpp"
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
@@ -96,7 +96,7 @@ TEST_P(PackedDicom, a_slice_that_is_cut_short_is_named) {
     const fs::path cut = packed_.path / "s2.dcm";
     const auto bytes = fs::file_size(cut);
     fs::resize_file(cut, bytes - 40);
-    EXPECT_TRUE(says(refusal(), {"s2.dcm", "mend:"}));
+    EXPECT_TRUE(says(refusal(), {"s2.dcm", "fix:"}));
 }
 
 std::string name_of(const testing::TestParamInfo<TransferSyntax::TSType>& info) {

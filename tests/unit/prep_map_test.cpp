@@ -150,7 +150,7 @@ TEST(SitusMap, round_trips_through_text) {
     EXPECT_NE(map.origin_rule.find("Situs header"), std::string::npos);
 }
 
-// What each bad input is told. Name of the file, place, reason and mend are all there.
+// What each bad input is told. Name of the file, place, reason and fix are all there.
 void expect_refused(const std::vector<char>& bytes, const char* ending, const char* place,
                     const char* reason) {
     const std::string name = std::string("bad") + ending;
@@ -158,7 +158,7 @@ void expect_refused(const std::vector<char>& bytes, const char* ending, const ch
     EXPECT_NE(error.find("read map " + name), std::string::npos) << reason << ": " << error;
     EXPECT_NE(error.find(place), std::string::npos) << place << ": " << error;
     EXPECT_NE(error.find(reason), std::string::npos) << error;
-    EXPECT_NE(error.find("\n  mend: "), std::string::npos) << error;
+    EXPECT_NE(error.find("\n  fix: "), std::string::npos) << error;
 }
 
 std::vector<char> with_word(int word, std::uint32_t value, Mrc mrc = {}) {

@@ -174,7 +174,7 @@ TEST(MeshFile, what_cannot_be_true_is_refused_with_the_place_and_a_mend) {
         {replaced(ply_ascii(), "float x", "float w"), ".ply", "no x, y and z"},
         {replaced(ply_ascii(), "float x", "quad x"), ".ply", "unknown type"},
         {replaced(ply_ascii(), "vertex_indices", "strip"), ".ply", "no faces"},
-        {replaced(ply_ascii(), "end_header", ""), ".ply", "unknown word"},
+        {replaced(ply_ascii(), "end_header", ""), ".ply", "unknown keyword"},
         {replaced(ply_ascii(), "3 0 2 1", "3 0 2 4"), ".ply", "names vertex 4"},
         {replaced(ply_ascii(), "3 0 2 1", "3 0 2 -1"), ".ply", "impossible vertex"},
         {replaced(ply_ascii(), "3 0 2 1", "2 0 2 1"), ".ply", "face 0"},
@@ -206,7 +206,7 @@ TEST(MeshFile, what_cannot_be_true_is_refused_with_the_place_and_a_mend) {
         const std::string why = refusal(c.text, c.ending);
         if (c.says.empty()) continue;  // not told from a good file
         EXPECT_NE(why.find(c.says), std::string::npos) << c.says << "\n" << why;
-        EXPECT_NE(why.find("mend:"), std::string::npos) << why;
+        EXPECT_NE(why.find("fix:"), std::string::npos) << why;
     }
 }
 

@@ -1,12 +1,12 @@
 // Readers of scans: the same bone out of every format and axis order, and what is wrong is said.
 #include <gtest/gtest.h>
-#include <png.h>
 #include <zlib.h>
 
 #include <algorithm>
 
 #include "ipc/base/error.hpp"
-#include "prep/volume/import_bone.hpp"
+#include "ipc/image/png.hpp"
+#include "prep/drilling/import_bone.hpp"
 #include "prep/volume/png_stack.hpp"
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
@@ -161,14 +161,14 @@ TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
         return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
     };
     const std::string unit = "\nspacings: 1 1 1\nencoding: raw";
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "mend:"}));
-    EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "mend: crop"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "fix:"}));
+    EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "fix: crop"}));
     EXPECT_TRUE(says(nrrd("sizes: 99999 5 4" + unit), {"99999 x 5 x 4", "8192"}));
     EXPECT_TRUE(says(nrrd("sizes: 1000 1000 1000\nspacings: 1 1 1\nencoding: gzip"),
                      {"than 3 packed ones can hold"}));
     EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"no whole number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5" + unit), {"axes"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"how far its voxels are apart"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"it has no voxel spacing"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"no number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 0 1\nencoding: raw"), {"axis 1", "--unit"}));
     EXPECT_TRUE(
@@ -266,7 +266,7 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         const ScanFolder f;
         for (int u = 0; u < 8; ++u)
             if (u != 3 && u != 4) f.write(numbered("s", u), sample::dicom_bytes(sample::bone_slice(u)));
-        EXPECT_TRUE(says(refusal(of(f.path)), {"2 slices are missing", "2.00 and 5.00 mm", "mend:"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"2 slices are missing", "2.00 and 5.00 mm", "fix:"}));
     }
     {
         const ScanFolder f;
@@ -282,7 +282,7 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "cut short"}));
     }
     const ScanFolder f;
-    EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM picture"}));
+    EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM image"}));
     write_series(f, {0});
     EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
 }
@@ -370,7 +370,7 @@ TEST(Dicom, what_is_no_grey_scan_is_refused) {
                          s.rows = 4096;
                          s.columns = 4096;
                      }),
-                     {"mend:"}));
+                     {"fix:"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.spacing = 0.0; }), {"mm"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unknown kind"}));
     EXPECT_TRUE(
@@ -421,14 +421,10 @@ TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enou
     EXPECT_TRUE(says(refusal(o), {"none of them lies in the volume"}));
 }
 
-void write_png(const fs::path& path, std::uint32_t wide,
-               const std::vector<std::array<std::uint8_t, 4>>& pixels) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = wide;
-    image.height = static_cast<std::uint32_t>(pixels.size() / wide);
-    image.format = PNG_FORMAT_RGBA;
-    ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr), 0);
+void write_rgba(const fs::path& path, std::uint32_t wide,
+                const std::vector<std::array<std::uint8_t, 4>>& pixels) {
+    write_png(path, wide, static_cast<std::uint32_t>(pixels.size()) / wide,
+              std::span(pixels.data()->data(), 4 * pixels.size()), PngFormat::rgba);
 }
 
 TEST(Pictures, are_ordered_by_number_without_gaps) {
@@ -455,7 +451,7 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     const ScanFolder f;
     const std::array<std::uint8_t, 4> bone{255, 249, 219, 255}, nerve{9, 8, 7, 255}, empty{1, 2, 3, 0};
     for (int k = 0; k < 3; ++k)
-        write_png(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
+        write_rgba(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
     BoneImport o = of(f.path);
     EXPECT_TRUE(says(refusal(o), {"--spacing-mm"}));
     o.spacing_mm = Vec3(0.2, 0.2, 0.2);
@@ -472,7 +468,7 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     EXPECT_TRUE(zero_beyond_size(b.bricks, b.density) && zero_beyond_size(b.bricks, b.label));
     o.bone_colour = {1, 1, 1};
     EXPECT_TRUE(says(refusal(o), {"1,1,1", "--bone-colour"}));
-    write_png(f.path / "p2.png", 2, {bone, bone, bone, bone});
+    write_rgba(f.path / "p2.png", 2, {bone, bone, bone, bone});
     EXPECT_TRUE(says(refusal(o), {"p2.png is 2 x 2", "3 x 2"}));
     f.write("p2.png", "no picture");
     EXPECT_TRUE(says(refusal(o), {"p2.png"}));

@@ -113,7 +113,7 @@ void expect_refused(const std::string& text, const char* ending, const char* pla
     EXPECT_NE(error.find("read structure " + name), std::string::npos) << reason << ": " << error;
     EXPECT_NE(error.find(place), std::string::npos) << error;
     EXPECT_NE(error.find(reason), std::string::npos) << error;
-    EXPECT_NE(error.find("\n  mend: "), std::string::npos) << error;
+    EXPECT_NE(error.find("\n  fix: "), std::string::npos) << error;
 }
 
 TEST(PdbStructure, bad_files_are_refused_with_the_line) {

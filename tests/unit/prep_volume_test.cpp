@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "prep/drilling/approach.hpp"
+#include "prep/drilling/bake_bone.hpp"
+#include "prep/drilling/distance.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
-#include "prep/volume/approach.hpp"
-#include "prep/volume/bake_bone.hpp"
-#include "prep/volume/distance.hpp"
 #include "tests/unit/scene_samples.hpp"
 
 namespace tact {

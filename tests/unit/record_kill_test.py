@@ -133,7 +133,7 @@ class Campaign:
         if said["end"] != "stopped" or said["cycles"] != cycles or said["lost"] != 0:
             wrong.append("the outcome says otherwise: " + out)
         code, _, err = self.to_end(path)
-        if code != 1 or "there already" not in err:
+        if code != 1 or "exists already" not in err:
             wrong.append("an older recording was overwritten")
         return wrong
 
@@ -144,7 +144,7 @@ class Campaign:
         child = subprocess.Popen(["sh", "-c", command, self.program("tact-record"), path], env=self.env,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         _, err = child.communicate(timeout=PATIENCE_S)
-        if child.returncode != 1 or "mend: make space" not in err:
+        if child.returncode != 1 or "fix: make space" not in err:
             return ["a full disk: exit code %d %s" % (child.returncode, err)]
         code, out, err = self.to_end("--repair", path, "--json")
         if code != 0:
@@ -196,7 +196,7 @@ class Campaign:
         elif any(float(r[names.index("hand0_fx_n")]) != x or float(r[names.index("hand0_qw")]) != q for r, x, q in zip(rows, force, pose)):
             wrong.append("a number of the table is not the recording's")
         code, _, err = self.to_end("--csv", path, "-o", table)
-        if code != 1 or "there already" not in err:
+        if code != 1 or "exists already" not in err:
             wrong.append("a table was overwritten")
         return wrong
 

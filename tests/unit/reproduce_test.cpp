@@ -1,7 +1,6 @@
 // What the reproduction says of a run's samples: means are cycles over time, the worst second is found.
 #include "tests/reproduce/mesh_error.hpp"
 #include "tests/reproduce/mesh_picture.hpp"
-#include "tests/reproduce/ply.hpp"
 #include "tests/reproduce/rate_samples.hpp"
 #include "tests/reproduce/sample_meshes.hpp"
 #include "tests/reproduce/summary.hpp"
@@ -12,9 +11,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-
-#include "deploy/tact/files.hpp"
-#include "ipc/base/error.hpp"
 
 namespace tact::launch {
 namespace {
@@ -193,36 +189,13 @@ TEST(Meshes, the_samples_are_the_seeds_in_size_one_open_and_one_closed) {
     for (const auto& [edge, n] : edges) ASSERT_EQ(n, 2);
 }
 
-TEST(Meshes, a_ply_file_comes_back_as_it_was_and_a_hostile_one_is_refused) {
-    const ScratchFolder folder;
-    const auto path = folder.path() / "m.ply";
-    write_ply(open_sheet(), 1e3, path);
-    const TriangleMesh back = read_ply(path, 1e3);
-    ASSERT_EQ(back.vertices(), 1250U);
-    EXPECT_EQ(back.triangle, open_sheet().triangle);
-    for (std::size_t i = 0; i < back.position_m.size(); ++i)
-        ASSERT_NEAR(back.position_m[i], open_sheet().position_m[i], 1e-6);
-    const std::string head =
-        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-        "property float z\n";
-    const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    for (const std::string& bad : {std::string(), std::string("ply\n"), head, head + face,
-                                   head + face + "0 0 0\n3 0 0 9\n", head + face + "0 0 0\n4 0 0 0 0\n",
-                                   head + face + "0 0 0\n3 0 0 -1\n", head + face + "0 0 0\n3 0 0 nan\n",
-                                   std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n") + face,
-                                   std::string("ply\nformat binary_big_endian 1.0\n") + face}) {
-        write_whole(path, bad);
-        EXPECT_THROW(static_cast<void>(read_ply(path, 1.0)), StartupError) << bad;
-    }
-}
-
 TEST(Meshes, the_picture_shows_front_and_back_and_paper_where_there_is_nothing) {
     const TriangleMesh mesh = square(0.0);
     const auto middle = [&](const Vec3& eye) {
-        const plot::Image i = draw_mesh(mesh, mesh, eye, false, 40, 40);
-        EXPECT_EQ(i.rgba[0], 255);  // a corner of the image
-        const std::size_t at = 4 * (20 * 40 + 20);
-        return std::array<int, 3>{i.rgba[at], i.rgba[at + 1], i.rgba[at + 2]};
+        const MeshImage i = draw_mesh(mesh, mesh, eye, false, 40, 40);
+        EXPECT_EQ(i.rgb[0], 255);  // a corner of the image
+        const std::size_t at = 3 * (20 * 40 + 20);
+        return std::array<int, 3>{i.rgb[at], i.rgb[at + 1], i.rgb[at + 2]};
     };
     const auto front = middle({0.3, -0.4, 1.0}), back = middle({0.3, -0.4, -1.0});
     EXPECT_GT(front[2], front[0]);

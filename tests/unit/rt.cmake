@@ -28,24 +28,30 @@ tact_test(unit/config_problems_test.cpp USES base hal servo threads config start
 tact_test(unit/threads_service_notify_test.cpp USES base servo threads config SYSTEM spdlog::spdlog)
 tact_test(unit/start_scene_bone_test.cpp USES base shm topics scene force start)
 tact_test(unit/start_bodies_test.cpp USES base scene force start)
+tact_test(unit/start_systems_test.cpp USES base shm topics scene hal force servo threads config start)
 tact_test(unit/start_drill_test.cpp USES base shm topics scene hal force servo threads config start)
+
+# The stages of a cycle, without a Servo.
+tact_test(unit/servo_input_stages_test.cpp USES base topics hal_api force servo)
+tact_test(unit/servo_force_stages_test.cpp USES base topics hal_api force servo)
+tact_test(unit/servo_output_stages_test.cpp USES base topics hal_api force servo)
 
 tact_test(unit/bench_servo_test.cpp USES base bench_servo)
 
 # The whole loop in lockstep.
-tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config)
-tact_test(scenario/drill_scenario_test.cpp USES base topics hal force servo threads config)
-tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force servo threads config safety)
-tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force servo threads config LABELS tsan)
-tact_test(scenario/servo_faults_scenario_test.cpp USES base topics hal force servo threads config)
-tact_test(scenario/lines_scenario_test.cpp USES base topics hal force servo threads config)
-tact_test(scenario/record_scenario_test.cpp USES base topics hal force servo threads config recorder)
-tact_test(scenario/bodies_scenario_test.cpp USES base topics scene hal force servo threads config)
-tact_test(scenario/governor_scenario_test.cpp USES base topics hal force servo threads config govern)
+tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config start)
+tact_test(scenario/drill_scenario_test.cpp USES base topics hal force servo threads config start)
+tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force servo threads config start safety)
+tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force servo threads config start LABELS tsan)
+tact_test(scenario/servo_faults_scenario_test.cpp USES base topics hal force servo threads config start)
+tact_test(scenario/lines_scenario_test.cpp USES base topics hal force servo threads config start)
+tact_test(scenario/record_scenario_test.cpp USES base topics hal force servo threads config start recorder)
+tact_test(scenario/bodies_scenario_test.cpp USES base topics scene hal force servo threads config start)
+tact_test(scenario/governor_scenario_test.cpp USES base topics hal force servo threads config start govern)
 
 # Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
-    USES base topics scene arm phantom phantom_usb hal emu_board force servo threads config SYSTEM GTest::gtest GTest::gtest_main)
+    USES base topics scene arm phantom phantom_usb hal emu_board force servo threads config start SYSTEM GTest::gtest GTest::gtest_main)
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)

@@ -1,5 +1,6 @@
-# Tests of assets.
+# Tests of the scene file and of its contents.
 tact_test(unit/scene_file_test.cpp USES scene)
+tact_test(unit/scene_kinds_test.cpp USES scene)
 tact_test(unit/scene_content_test.cpp USES scene)
 tact_test(unit/scene_density_map_test.cpp USES scene)
 tact_test(unit/scene_density_sum_test.cpp USES scene SYSTEM rapidcheck)

@@ -123,7 +123,7 @@ TEST(BoneVolume, what_no_maker_writes_is_refused_by_name) {
         EXPECT_NE(error.find(std::string("section ") + std::string(tag.begin(), tag.end())),
                   std::string::npos)
             << error;
-        EXPECT_NE(error.find("mend:"), std::string::npos);
+        EXPECT_NE(error.find("fix:"), std::string::npos);
     };
     using Bytes = std::vector<std::byte>;
     refused(kBone, "voxels", [](Bytes& b) { poke(b, 0, 0U); });

@@ -73,7 +73,7 @@ void expect_refused(const std::string& error, const char* section, const char* w
     EXPECT_NE(error.find("hostile.tact"), std::string::npos) << word << ": " << error;
     EXPECT_NE(error.find(section), std::string::npos) << word << ": " << error;
     EXPECT_NE(error.find(word), std::string::npos) << error;
-    EXPECT_NE(error.find("mend:"), std::string::npos) << error;
+    EXPECT_NE(error.find("fix:"), std::string::npos) << error;
 }
 
 TEST(SceneContent, every_field_of_meta_is_checked) {

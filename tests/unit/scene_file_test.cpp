@@ -104,7 +104,7 @@ TEST_F(SceneFileOnDisk, what_is_no_scene_is_refused_in_words) {
     const std::string text_error = error(path_ / "text.tact");
     EXPECT_NE(text_error.find("text.tact"), std::string::npos);
     EXPECT_NE(text_error.find("TACTSCN1"), std::string::npos);
-    EXPECT_NE(text_error.find("mend:"), std::string::npos);
+    EXPECT_NE(text_error.find("fix:"), std::string::npos);
 }
 
 TEST(SceneFile, every_changed_bit_is_found) {

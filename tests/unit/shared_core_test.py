@@ -66,7 +66,7 @@ def main():
         if "session two" in log("one"):
             sys.exit("FAILED the first one was alone when it started:\n" + log("one"))
         row = finding()
-        if row["level"] != "warn" or "(process %d)" % one.pid not in row["says"] or "(process %d)" % two.pid not in row["says"] or not row["mend"]:
+        if row["level"] != "warn" or "(process %d)" % one.pid not in row["says"] or "(process %d)" % two.pid not in row["says"] or not row["fix"]:
             sys.exit("FAILED the doctor's finding: %s" % row)
         two.send_signal(signal.SIGTERM)
         two.wait(PATIENCE_S)

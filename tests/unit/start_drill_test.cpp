@@ -20,6 +20,21 @@ TEST(StartDrill, the_configuration_says_what_the_tools_are) {
     EXPECT_FALSE(suction_tube.tool.cuts);
     EXPECT_DOUBLE_EQ(suction_tube.tool.radius_m, 1.5e-3);
     EXPECT_DOUBLE_EQ(suction_tube.tool.shaft_radius_m, 1.5e-3);
+    EXPECT_NEAR(burr.burr_rad_s, 6283.2, 0.1);
+    EXPECT_EQ(suction_tube.burr_rad_s, 0.0);
+}
+
+TEST(StartDrill, the_configuration_says_what_switches_the_tools_on) {
+    RtConfig c;
+    EXPECT_EQ(drill_switch(c, 0).by, DriveSwitch::button);
+    c.drilling.pedal = "line";
+    c.drilling.suction = "always";
+    EXPECT_EQ(drill_switch(c, 0).by, DriveSwitch::line);
+    EXPECT_EQ(drill_switch(c, 0).line, kLineBurr);
+    EXPECT_EQ(drill_switch(c, 1).by, DriveSwitch::always);
+    EXPECT_EQ(drill_switch(c, 1).line, kLineSuction);
+    c.drilling.irrigation_ml_min = 60.0;
+    EXPECT_DOUBLE_EQ(drill_rates(c).irrigation_m3_s, 1e-6);
 }
 
 TEST(StartDrill, every_sucker_that_the_configuration_allows_is_a_tool) {

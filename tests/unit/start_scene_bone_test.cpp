@@ -60,7 +60,7 @@ TEST(SceneBone, what_the_burr_takes_is_seen_in_the_region) {
     EXPECT_EQ(whole, 255ULL * 40 * 40 * 20);
 
     DrillModel model(meta, bone.bone(), DrillSettings{});
-    model.drive({6283.0, 1e-3});
+    model.turn_burr({6283.0, 1e-3});
     ToolState tool;
     tool.T_world_tool.p_m = Vec3(0.0, 0.0, 1e-3);
     model.reset(tool);

@@ -166,8 +166,7 @@ int verify(const VerifyCommand& o) {
 }
 
 void add_root(CLI::App& command, StationOptions& o) {
-    command
-        .add_option("--root", o.root, "Folder that holds the file system to work on; commands are not run")
+    command.add_option("--root", o.root, "Folder that replaces / for all files; commands are not run")
         ->type_name("DIR")
         ->check(CLI::ExistingDirectory)
         ->capture_default_str();
@@ -180,22 +179,26 @@ void add_root(CLI::App& command, StationOptions& o) {
 
 void add_station(CLI::App& app, int& exit_code) {
     auto* const station = app.add_subcommand(
-        "station", "set up this machine for a device (setup), undo that (undo), measure it (verify)");
+        "station",
+        "Set up this machine for a device (setup), undo the set-up (undo), measure the machine (verify)");
     station->require_subcommand(1);
     const auto o = std::make_shared<StationOptions>();
     if (const char* const user = std::getenv("SUDO_USER")) o->request.user = user;
 
-    auto* const setup_command = station->add_subcommand(
-        "setup",
-        "real-time kernel, a core for the servo, rights, processor settings; undo takes it all back");
+    auto* const setup_command =
+        station->add_subcommand("setup",
+                                "Set up a real-time kernel, a core for the servo, rights and processor "
+                                "settings; tact station undo reverts all of it");
     add_root(*setup_command, *o);
     setup_command->add_flag("--dry-run", o->dry_run, "Print the steps and change nothing");
     setup_command
         ->add_option("--core", o->request.core,
-                     "Core for the servo; its hardware threads are all kept free. Default: the last core")
+                     "Processor core for the servo, kept free with all of its hardware threads; default: the "
+                     "last core")
         ->type_name("N")
         ->check(CLI::Range(0, 65535));
-    setup_command->add_option("--user", o->request.user, "User who gets the rights. Default: who called sudo")
+    setup_command
+        ->add_option("--user", o->request.user, "User who gets the rights; default: the user of sudo")
         ->type_name("NAME");
     setup_command
         ->add_option("--skip", o->request.skip,
@@ -204,20 +207,19 @@ void add_station(CLI::App& app, int& exit_code) {
     setup_command->callback([o, &exit_code] { exit_code = setup(*o); });
 
     const auto v = std::make_shared<VerifyCommand>();
-    auto* const verify_command =
-        station->add_subcommand("verify",
-                                "run the controller on an emulated device and cyclictest, and write a "
-                                "report; exit code 1: it fails. Stop other "
-                                "controllers before");
-    verify_command->add_option("--minutes", v->minutes, "Duration of the measurement")
+    auto* const verify_command = station->add_subcommand(
+        "verify",
+        "Measure the machine with cyclictest and with the controller on an emulated device, and write a "
+        "report; stop other controllers first; exit code 1: the machine fails");
+    verify_command->add_option("--minutes", v->minutes, "Duration of the measurement (minutes)")
         ->type_name("N")
         ->check(CLI::Range(0.01, 10000.0))
         ->capture_default_str();
-    verify_command->add_option("--out", v->out, "Report file, which tact-rt and tact metrics read")
+    verify_command->add_option("--out", v->out, "Report file, read by tact-rt and tact metrics")
         ->type_name("FILE")
         ->capture_default_str();
     verify_command
-        ->add_option("--scene", v->measure.scene, "Baked scene to run. Default: a synthetic docking scene")
+        ->add_option("--scene", v->measure.scene, "Baked scene to run; default: a synthetic docking scene")
         ->type_name("SCENE")
         ->check(CLI::ExistingFile);
     verify_command
@@ -226,7 +228,7 @@ void add_station(CLI::App& app, int& exit_code) {
         ->check(CLI::ExistingFile);
     verify_command
         ->add_option("--core", v->measure.core,
-                     "Core of the servo. Default: the last isolated one, else the last one")
+                     "Processor core of the servo; default: the last isolated core, otherwise the last core")
         ->type_name("N")
         ->check(CLI::Range(0, 65535));
     verify_command->add_flag("--json", v->as_json, "Print the report as JSON");
@@ -234,7 +236,7 @@ void add_station(CLI::App& app, int& exit_code) {
 
     auto* const undo_command = station->add_subcommand(
         "undo",
-        "restore every file as it was before the set-up, byte for byte, also after an interrupted one");
+        "Restore every file as it was before the set-up, byte for byte, also after an interrupted set-up");
     add_root(*undo_command, *o);
     undo_command->add_flag("--force", o->force, "Also restore files that were changed since the set-up");
     undo_command->callback([o, &exit_code] { exit_code = undo(*o); });

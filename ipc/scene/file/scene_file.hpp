@@ -4,7 +4,7 @@
 //           table), section table (tag, index, version, offset, bytes, CRC-32), then the sections, each at a
 //           multiple of 64 bytes. Little endian. A section holds plain data; its own header says the counts.
 // Written   by tact-prep, to a temporary file beside the target that is synced and renamed: whole or absent.
-// Fails by  StartupError naming the file, the section, what is wrong and the mend. Everything is checked at
+// Fails by  StartupError naming the file, the section, what is wrong and the fix. Everything is checked at
 //           open(): magic, version, sizes, overlap, checksums. Contents are checked by their readers.
 // Thread    open() anywhere but the servo thread; views are immutable and may be read anywhere.
 #pragma once

@@ -30,32 +30,31 @@ SceneMeta read_meta(const SceneFile& file) {
     BytesIn in(file.section(SceneMeta::kTag, SceneMeta::kVersion), where(file));
     const auto meta = in.get<SceneMeta>("meta");
     in.finish();
-    if (meta.kind != SceneKind::docking && meta.kind != SceneKind::surface &&
-        meta.kind != SceneKind::drilling && meta.kind != SceneKind::field) {
-        in.fail("kind is " + std::to_string(static_cast<std::uint32_t>(meta.kind)) +
-                ", which is none of docking (1), surface (2), drilling (3), field (4)");
+    const SceneKindRow* const row = find_scene_kind(meta.kind);
+    if (row == nullptr) {
+        std::string known;
+        for (const SceneKindRow& k : scene_kinds())
+            known += (known.empty() ? "" : ", ") + std::string(k.name) + " (" +
+                     std::to_string(static_cast<std::uint32_t>(k.kind)) + ")";
+        in.fail("kind is " + std::to_string(static_cast<std::uint32_t>(meta.kind)) + ", which is none of " +
+                known);
     }
     const auto within = [&](const char* field, double value, double low, double high) {
         if (!(value >= low && value <= high)) {
-            in.fail(std::string(field) + " is " + std::to_string(value) + ", outside of what is possible");
+            in.fail(std::string(field) + " is " + std::to_string(value) + ", outside of the possible range");
         }
     };
     // Bounds are generous: a scene is between an atom and a landscape wide, and numbers stay far from
     // overflow.
     within("world_per_model", meta.world_per_model, 1e-9, 1e12);
     for (const double c : meta.centre_model_m) within("centre_model_m", c, -1e6, 1e6);
-    within("resolution_m", meta.resolution_m, 0.0, 1.0);
-    if (meta.kind == SceneKind::docking) {
-        within("resolution_m", meta.resolution_m, 0.0, 1e-7);
-        within("energy_j_per_sigma", meta.energy_j_per_sigma, 1e-12, 1e6);
-        within("map_sigma", meta.map_sigma, 1e-30, 1e30);
-        if (meta.body_count == 0 || meta.body_count > kSceneBodiesMax) {
-            in.fail("body_count is " + std::to_string(meta.body_count) + ", outside of 1 to " +
-                    std::to_string(kSceneBodiesMax));
-        }
-    } else {
-        within("energy_j_per_sigma", meta.energy_j_per_sigma, 0.0, 1e6);
-        within("map_sigma", meta.map_sigma, 0.0, 1e30);
+    const MetaLimits& limits = row->limits;
+    within("resolution_m", meta.resolution_m, 0.0, limits.resolution_max_m);
+    within("energy_j_per_sigma", meta.energy_j_per_sigma, limits.energy_min_j, 1e6);
+    within("map_sigma", meta.map_sigma, limits.map_sigma_min, 1e30);
+    if (meta.body_count < limits.bodies_min || meta.body_count > limits.bodies_max) {
+        in.fail("body_count is " + std::to_string(meta.body_count) + ", outside of " +
+                std::to_string(limits.bodies_min) + " to " + std::to_string(limits.bodies_max));
     }
     within("map_mean", meta.map_mean, -1e30, 1e30);
     within("map_background", meta.map_background, -1e30, 1e30);
@@ -70,6 +69,11 @@ SceneMeta read_meta(const SceneFile& file) {
     if (std::any_of(meta.title, zero,
                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
         in.fail("title holds a control character");
+    }
+    for (const SectionTag& tag : row->sections) {
+        if (file.count(tag) == 0)
+            in.fail(std::string("kind is ") + row->name + ", but there is no section " +
+                    std::string(tag.data(), tag.size()));
     }
     return meta;
 }

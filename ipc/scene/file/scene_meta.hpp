@@ -10,12 +10,9 @@
 
 #include "ipc/base/pose.hpp"
 #include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_kinds.hpp"
 
 namespace tact {
-
-enum class SceneKind : std::uint32_t { docking = 1, surface = 2, drilling = 3, field = 4 };
-
-inline constexpr std::uint32_t kSceneBodiesMax = 16;  // as many as a force model holds
 
 struct SceneMeta {
     static constexpr SectionTag kTag{'M', 'E', 'T', 'A'};
@@ -43,7 +40,7 @@ struct SceneMeta {
 static_assert(std::is_trivially_copyable_v<SceneMeta> && sizeof(SceneMeta) == 216);
 
 void write_meta(SceneWriter& out, const SceneMeta& meta, const std::string& note);
-// Checks every field: finite, positive where a scale, known kind, terminated title.
+// Checks every field: finite, positive where a scale, known kind, its sections present, terminated title.
 SceneMeta read_meta(const SceneFile& file);
 // Provenance as lines "key: value": source files, the origin rule applied, sizes, times.
 std::string read_note(const SceneFile& file);

@@ -13,8 +13,4 @@ namespace tact {
 
 [[nodiscard]] SceneMeta peek_scene(const std::filesystem::path& path);
 
-[[nodiscard]] inline const char* scene_kind_text(SceneKind kind) {
-    return kind == SceneKind::docking ? "docking" : kind == SceneKind::surface ? "surface" : "drilling";
-}
-
 }  // namespace tact

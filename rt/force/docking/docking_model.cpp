@@ -12,7 +12,26 @@
 #include "ipc/scene/density/docking_gain.hpp"
 #include "rt/force/docking/reach.hpp"
 
+#include "ipc/topics/command.hpp"
+
 namespace tact {
+namespace {
+
+// 0: a command for another system.
+std::uint32_t option_of(std::uint8_t command) noexcept {
+    switch (static_cast<CommandKind>(command)) {
+        case CommandKind::set_clash:
+            return kDockingClash;
+        case CommandKind::set_subtraction:
+            return kDockingSubtraction;
+        case CommandKind::set_laplacian:
+            return kDockingLaplacian;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
 
 DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
                            const std::vector<Structure>& structures, const std::vector<Codebook>& codebooks,
@@ -35,7 +54,7 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
       clash_gains_(like.clash_gains_),
       bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())) {
     const std::uint32_t asked = bodies.options_asked & kForceMapOptions;
-    const std::uint32_t asked_whole = asked & ~kOptionSubtraction;
+    const std::uint32_t asked_whole = asked & ~kDockingSubtraction;
     whole_ = like.whole_->options == asked_whole
                  ? like.whole_
                  : make_force_map(*parts_, newtons_per_gradient(), asked_whole, bodies);
@@ -72,12 +91,8 @@ std::uint32_t DockingModel::items(float fidelity) const noexcept {
 double DockingModel::stiffness_n_m() const noexcept {
     const double scene = parts_->meta.energy_j_per_sigma;
     const double scale = scene > 0.0 ? energy_j_per_sigma_ / scene : 1.0;
-    const bool clash = (bodies_.list().options & kOptionClash) != 0;
+    const bool clash = (bodies_.list().options & kDockingClash) != 0;
     return GainSettings{}.stiffness_n_m * scale + (clash ? clash_gains_.stiffness_n_m : 0.0);
-}
-
-PathLoad DockingModel::predict(float fidelity) const noexcept {
-    return bodies_.in_hand() ? blend().predict(fidelity) : PathLoad{};
 }
 
 StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
@@ -89,7 +104,7 @@ StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget
 
 void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const noexcept {
     const ModelBodies& list = bodies_.list();
-    if ((list.options_asked & kOptionClash) == 0 || !bodies_.in_hand() || !T_model_body.finite()) return;
+    if ((list.options_asked & kDockingClash) == 0 || !bodies_.in_hand() || !T_model_body.finite()) return;
     const Instant begin = Monotonic::now();
     std::array<ClashBody, ModelBodies::kMax> others{};
     std::size_t count = 0;
@@ -197,7 +212,8 @@ void DockingModel::let_go() noexcept {
 bool DockingModel::choose_density() noexcept {
     const ForceMap* const before = felt_;
     const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
-    const bool fits = (built_->options & kOptionSubtraction) == 0 || built_->active_id == bodies_.active_id();
+    const bool fits =
+        (built_->options & kDockingSubtraction) == 0 || built_->active_id == bodies_.active_id();
     if (fits && built_->options == asked) {
         felt_ = built_.get();
     } else if (!fits || whole_->options == asked) {
@@ -208,19 +224,21 @@ bool DockingModel::choose_density() noexcept {
 }
 
 void DockingModel::show_options() noexcept {
-    bodies_.list().options = felt_->options | (bodies_.list().options_asked & kOptionClash);
+    bodies_.list().options = felt_->options | (bodies_.list().options_asked & kDockingClash);
+}
+
+bool DockingModel::set_options(std::uint32_t options, bool on) noexcept {
+    if ((options & ~(kForceMapOptions | kDockingClash)) != 0 || options == 0) return false;
+    std::uint32_t& asked = bodies_.list().options_asked;
+    const std::uint32_t before = asked;
+    asked = on ? asked | options : asked & ~options;
+    const bool another = choose_density();
+    if (another || ((before ^ asked) & kDockingClash) != 0) fade(fade_);
+    return true;
 }
 
 bool DockingModel::order(const ModelOrder& order) noexcept {
-    if (order.kind == ModelOrder::Kind::option) {
-        if ((order.option & ~(kForceMapOptions | kOptionClash)) != 0 || order.option == 0) return false;
-        std::uint32_t& asked = bodies_.list().options_asked;
-        const std::uint32_t before = asked;
-        asked = order.on ? asked | order.option : asked & ~order.option;
-        const bool another = choose_density();
-        if (another || ((before ^ asked) & kOptionClash) != 0) fade(fade_);
-        return true;
-    }
+    if (order.kind == ModelOrder::Kind::setting) return set_options(option_of(order.command), order.on);
     ModelOrder checked = order;
     if (order.kind == ModelOrder::Kind::place || order.kind == ModelOrder::Kind::add) {
         if (!is_placeable(parts_->meta, order.T_model_body)) return false;
@@ -237,7 +255,7 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
             static_cast<void>(choose_density());
             break;
         case DockingBodies::Change::others:
-            if ((bodies_.list().options & kOptionClash) != 0) fade(fade_);
+            if ((bodies_.list().options & kDockingClash) != 0) fade(fade_);
             break;
         case DockingBodies::Change::none:
             break;
@@ -249,7 +267,7 @@ bool DockingModel::stale() const noexcept {
     if (!bodies_.in_hand()) return false;
     const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
     if (asked != felt_->options) return true;
-    return (asked & kOptionSubtraction) != 0 && felt_->others != bodies_.list().others;
+    return (asked & kDockingSubtraction) != 0 && felt_->others != bodies_.list().others;
 }
 
 std::unique_ptr<ForceModel> DockingModel::rebuild(const ModelBodies& bodies) const {
@@ -272,10 +290,10 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
 
 void DockingModel::give_up() noexcept {
     // What is felt goes on, unless it was made for another body in the hand or for other neighbours.
-    const bool stays = (felt_->options & kOptionSubtraction) == 0 ||
+    const bool stays = (felt_->options & kDockingSubtraction) == 0 ||
                        (felt_->active_id == bodies_.active_id() && felt_->others == bodies_.list().others);
     const std::uint32_t felt = stays ? felt_->options : whole_->options;
-    bodies_.list().options_asked = felt | (bodies_.list().options_asked & kOptionClash);
+    bodies_.list().options_asked = felt | (bodies_.list().options_asked & kDockingClash);
     if (choose_density()) fade(fade_);
 }
 

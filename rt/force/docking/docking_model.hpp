@@ -7,7 +7,7 @@
 //           reset(), when the clutch (button bit 0) is released, and when another body, or the same one
 //           elsewhere, comes into the hand. With the clutch held the body stays and the tool moves alone; so
 //           it does with a fixed body in the hand, of which nothing is felt.
-// Clash     with kOptionClash bodies push each other apart, clash_force.hpp; a constant-time order, as its
+// Clash     with kDockingClash bodies push each other apart, clash_force.hpp; a constant-time order, as its
 //           fields are made with the model. It is no part of the knob: a wall that comes and goes with the
 //           load would be worse than one that always costs.
 // Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
@@ -65,8 +65,8 @@ public:
     // The wrench on the active body, were it at this place: what step() shows once its ramp is over.
     // The clash is in it.
     [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
-    // Cost and error of a level before it is computed.
-    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
+    // Turns options on or off (DockingOption); constant time, as order(). False: there are no such options.
+    bool set_options(std::uint32_t options, bool on) noexcept TACT_RT;
 
     [[nodiscard]] const DensityMap& map() const { return felt_->map; }
     [[nodiscard]] const SceneMeta& meta() const { return parts_->meta; }

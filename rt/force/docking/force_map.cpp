@@ -96,8 +96,8 @@ double laplacian_unit(const DockingParts& parts, const DensityGrid& filtered) {
 
 DensityMap force_map(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
     const SceneMeta& meta = parts.meta;
-    const bool subtracted = (options & kOptionSubtraction) != 0;
-    if ((options & kOptionLaplacian) == 0) {
+    const bool subtracted = (options & kDockingSubtraction) != 0;
+    if ((options & kDockingLaplacian) == 0) {
         return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma};
     }
     const auto filtered = [&](const DensityGrid& grid) {

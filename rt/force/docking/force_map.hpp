@@ -1,6 +1,6 @@
 // A density that the hand feels, and what each level of each structure costs and errs in it.
 //
-// Options   which of kOptionSubtraction and kOptionLaplacian went into the density; kForceMapOptions are those
+// Options   which of kDockingSubtraction and kDockingLaplacian went into the density; kForceMapOptions are those
 //           that can be made.
 // Laplacian ipc/scene/density/laplacian_map.hpp, at the resolution of the map or 20 A, whichever is coarser. Its
 //           unit, in place of sigma, is such that the scene's own gain gives the force range of
@@ -18,6 +18,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/scene/density/density_map.hpp"
+#include "ipc/topics/bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
 #include "rt/force/force_model.hpp"
 
@@ -39,7 +40,7 @@ struct ForceMap {
 
 // On what a sample of poses showed.
 inline constexpr double kErrorMargin = 1.25;
-inline constexpr std::uint32_t kForceMapOptions = kOptionSubtraction | kOptionLaplacian;
+inline constexpr std::uint32_t kForceMapOptions = kDockingSubtraction | kDockingLaplacian;
 // The contours of finer maps are felt at this resolution: theirs are too narrow to be found (README.md).
 inline constexpr double kContourResolutionM = 20e-10;
 

@@ -8,7 +8,7 @@ namespace tact {
 
 std::unique_ptr<DockingModel> load_docking_model(const SceneFile& scene, const DockingSettings& settings) {
     const SceneMeta meta = read_meta(scene);
-    if (meta.kind != SceneKind::docking) {
+    if (meta.body_count == 0) {
         throw StartupError("loading '" + scene.name() + "'", "it is not a docking scene",
                            "bake one with tact-prep dock MAP MODEL -o SCENE");
     }

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "ipc/base/error.hpp"
+#include "ipc/topics/event.hpp"
+#include "rt/force/drilling/drill_publisher.hpp"
 
 namespace tact {
 namespace {
@@ -33,6 +35,7 @@ void check_drill_settings(const DrillSettings& s) {
     check_range(s.law.friction_share, 0.0, 10.0, "friction_share");
     check_range(s.depth_at_1_n_m, 0.0, 0.1, "depth_at_1_n_m");
     check_range(s.law.impact_n_s_m3, 0.0, 1e7, "impact_n_s_m3");
+    check_range(s.burr_rad_s, 0.0, 1e5, "burr_rad_s");
     check_range(s.rate_per_s, 0.0, 1e4, "rate_per_s");
     check_range(s.rate_at_rad_s, 1.0, 1e5, "rate_at_rad_s");
     check_range(s.soft, 1.0, 20.0, "soft");
@@ -74,9 +77,14 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
 }
 
 void DrillModel::drive(const ToolDrive& drive) noexcept {
+    driven_ = drive;
+    turn_burr({.burr_rad_s = drive.on ? settings_.burr_rad_s : 0.0, .step_s = drive.step_s});
+}
+
+void DrillModel::turn_burr(const BurrDrive& drive) noexcept {
     const bool right = std::isfinite(drive.burr_rad_s) && drive.burr_rad_s >= 0.0 && drive.burr_rad_s < 1e6 &&
                        drive.step_s > 0.0 && std::isfinite(drive.step_s);
-    drive_ = right ? drive : ToolDrive{};
+    drive_ = right ? drive : BurrDrive{};
     drive_.step_s = std::min(drive_.step_s, kStepSMost);
 }
 
@@ -116,40 +124,13 @@ ModelBodies DrillModel::bodies() const noexcept {
     return list;
 }
 
-ModelTouch DrillModel::touch() const noexcept {
-    ModelTouch t;
-    t.there = true;
-    t.probe_m = t.proxy_m = T_model_tool_.p_m;
-    t.radius_m = head_radius_m_ / meta_.world_per_model;
-    const double push_n = head_.wrench.force_n.norm();
-    if (depth_ > 0.0 && push_n > 0.0) {
-        t.planes = 1;
-        t.normal[0] = head_.wrench.force_n / push_n;
-        t.push_n[0] = push_n;
-    }
-    return t;
+void DrillModel::publish_to(DrillPublisher& publisher) {
+    publisher_ = &publisher;
+    publisher.attach();
 }
 
-ModelDrill DrillModel::drill() const noexcept {
-    ModelDrill d;
-    const DrillToolSettings& s = settings_.tool;
-    const bool ball = s.shape == BurrShape::sphere;
-    d.there = true;
-    d.cuts = s.cuts;
-    d.shape = static_cast<std::uint8_t>(s.shape);
-    d.T_model_tool = T_model_tool_;
-    d.radius_m = s.radius_m;
-    d.length_m = ball ? 2.0 * s.radius_m : s.length_m;
-    d.tip_radius_m = s.shape == BurrShape::cone ? s.tip_radius_m : s.radius_m;
-    d.shaft_radius_m = s.shaft_radius_m;
-    d.shaft_length_m = s.shaft_radius_m > 0.0 ? s.shaft_length_m : 0.0;
-    d.burr_rad_s = drive_.burr_rad_s;
-    d.depth = depth_;
-    d.elastic_n = elastic_n_;
-    d.removed_levels = removed_levels();
-    d.cut_levels = erosion_.pass().removed;
-    d.level_m3 = level_m3();
-    return d;
+void DrillModel::publish(const ModelCycle& cycle) noexcept {
+    if (publisher_ != nullptr) publisher_->add(*this, cycle);
 }
 
 DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurried,
@@ -300,6 +281,8 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
                 cut_turn();
         }
     }
+    if (drive_.burr_rad_s > 0.0) result.trace_flags |= kTraceBurrTurns;
+    if (erosion_.pass().removed > 0) result.trace_flags |= kTraceCuts;
     result.load.cost = std::max(Monotonic::now() - begin, Duration(1));
     return result;
 }

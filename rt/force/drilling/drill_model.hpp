@@ -49,6 +49,7 @@ struct DrillSettings {
     BurrLaw law;
     // c_e of each ball by elastic_for(); 0: law.elastic_pa of all.
     double depth_at_1_n_m = 1.25e-3;
+    double burr_rad_s = 0.0;   // while its drive is on
     double rate_per_s = 40.0;  // a of eq. 12 of solid bone, at this speed of the burr:
     double rate_at_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     double soft = 2.0;  // a of the softest bone over that of solid bone; linear between
@@ -56,6 +57,14 @@ struct DrillSettings {
     double vibration = 0.0;  // of the running burr, over the elastic force; 0 to 0.5
     std::uint64_t seed = 1;
 };
+
+// How the burr turns in the next step. What is not finite or below zero is a burr that stands.
+struct BurrDrive {
+    double burr_rad_s = 0.0;  // about the shaft's axis
+    double step_s = 1e-3;     // since the step before
+};
+
+class DrillPublisher;
 
 // Fails by StartupError where one is out of range.
 void check_drill_settings(const DrillSettings& settings);
@@ -74,8 +83,10 @@ public:
     // The bone must outlive the model.
     DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings);
 
-    // Until it is called, the burr stands.
+    // Turns the burr at settings.burr_rad_s while its drive is on.
     void drive(const ToolDrive& drive) noexcept TACT_RT override;
+    // At another speed. Until either is called, the burr stands.
+    void turn_burr(const BurrDrive& drive) noexcept TACT_RT;
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
@@ -84,8 +95,9 @@ public:
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return stiffness_n_m_; }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
-    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
-    [[nodiscard]] ModelDrill drill() const noexcept TACT_RT override;
+    // Before the first step; the publisher outlives the model.
+    void publish_to(DrillPublisher& publisher);
+    void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
     // Of the last step.
     [[nodiscard]] const ErosionPass& cut() const noexcept TACT_RT { return erosion_.pass(); }
@@ -93,6 +105,14 @@ public:
     [[nodiscard]] double depth() const noexcept TACT_RT {
         return depth_;
     }  // h / R of the head, its deepest ball
+    [[nodiscard]] double elastic_n() const noexcept TACT_RT {
+        return elastic_n_;
+    }  // sum of sizes, before limits
+    [[nodiscard]] const BurrForce& head_force() const noexcept TACT_RT { return head_; }  // of that ball
+    [[nodiscard]] const Pose& T_model_tool() const noexcept TACT_RT { return T_model_tool_; }
+    [[nodiscard]] double head_radius_m() const noexcept TACT_RT { return head_radius_m_; }
+    [[nodiscard]] const ToolDrive& driven() const noexcept TACT_RT { return driven_; }
+    [[nodiscard]] double burr_rad_s() const noexcept TACT_RT { return drive_.burr_rad_s; }
     // Since it was made.
     [[nodiscard]] std::uint64_t removed_levels() const noexcept TACT_RT { return erosion_.removed(); }
     // Of solid bone, in the world.
@@ -106,6 +126,7 @@ public:
     [[nodiscard]] std::uint64_t jumps() const noexcept TACT_RT { return jumps_; }
 
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
+    [[nodiscard]] const DrillSettings& settings() const { return settings_; }
     [[nodiscard]] const DrillTool& tool() const { return tool_; }
     // Smallest block looked at, over the radius.
     [[nodiscard]] static double block_of(float fidelity) noexcept TACT_RT;
@@ -130,7 +151,9 @@ private:
     const BrickKernels& kernels_;
     Erosion erosion_;
     ForceFade fade_;
-    ToolDrive drive_;
+    ToolDrive driven_;
+    BurrDrive drive_;
+    DrillPublisher* publisher_ = nullptr;
     double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;  // world metres of a voxel edge
     double head_radius_m_ = 0.0;
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres

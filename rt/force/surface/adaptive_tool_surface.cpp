@@ -2,6 +2,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/topics/command.hpp"
 
 namespace tact {
 namespace {
@@ -18,7 +19,7 @@ AdaptiveToolSurface::AdaptiveToolSurface(const SurfaceMesh& full, const VertexFo
 
 void AdaptiveToolSurface::slow_update(const Vec3& velocity_m_s) noexcept {
     const Whereabouts& now = whereabouts_.newest();
-    if (!now.there) return;
+    if (!now.valid) return;
     const Instant begin = Monotonic::now();
     refined_ = surface_.slow_update(now.proxy_m, velocity_m_s, now.fidelity, now.form);
     const double took_s = to_s(Monotonic::now() - begin);
@@ -35,18 +36,21 @@ void AdaptiveToolSurface::is_at(const Vec3& proxy_m, float fidelity) noexcept {
 }
 
 bool AdaptiveToolSurface::order(const ModelOrder& order) noexcept {
-    if (order.kind != ModelOrder::Kind::filter) return false;
-    const FilterForm form{static_cast<FilterForm::Shape>(order.shape), order.width, order.error_far};
+    const bool filter = order.kind == ModelOrder::Kind::setting &&
+                        static_cast<CommandKind>(order.command) == CommandKind::set_detail_filter;
+    if (!filter || order.body > 0xFFU) return false;
+    const FilterForm form{static_cast<FilterForm::Shape>(order.body), static_cast<float>(order.value),
+                          static_cast<float>(order.T_model_body.p_m.x())};
     if (!form.possible()) return false;
     form_ = form;
     return true;
 }
 
-ModelDetail AdaptiveToolSurface::detail() const noexcept {
-    return {.there = true,
+SurfaceDetail AdaptiveToolSurface::detail() const noexcept {
+    return {.valid = true,
             .full = news_.step.full_detail,
             .radius_m = surface_.radius_m(news_.fidelity),
-            .shape = static_cast<std::uint8_t>(form_.shape),
+            .shape = static_cast<DetailShape>(form_.shape),
             .width = form_.width,
             .error_far = form_.error_far,
             .deviation_m = static_cast<double>(news_.deviation_m),

@@ -1,7 +1,7 @@
-// The adaptive surface of a model: between its servo, which asks for triangles, and the thread that tends it.
+// The adaptive surface of a model: between its servo, which asks for triangles, and the thread of its slow update.
 //
 // Servo     around() before a step, is_at() after it is known where the proxy is; the rest for those who look on
-// Thread    slow_update() on the one that tends; all others the servo's, TACT_RT. No allocation after the constructor.
+// Thread    slow_update() on that one; all others the servo's, TACT_RT. No allocation after the constructor.
 // Unit      metres of the model.
 #pragma once
 
@@ -9,6 +9,7 @@
 
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_surface.hpp"
+#include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
 
 namespace tact {
@@ -32,7 +33,7 @@ public:
     void is_at(const Vec3& proxy_m, float fidelity) noexcept TACT_RT;
     // The filter's form. False: it is another order, or such a form is not possible.
     bool order(const ModelOrder& order) noexcept TACT_RT;
-    [[nodiscard]] ModelDetail detail() const noexcept TACT_RT;
+    [[nodiscard]] SurfaceDetail detail() const noexcept TACT_RT;
     [[nodiscard]] double turn_s() const noexcept TACT_RT { return news_.turn_s; }
 
     // The proxy goes where the tool goes, or less far.
@@ -47,7 +48,7 @@ private:
         Vec3 proxy_m = Vec3::Zero();
         float fidelity = 1.0F;
         FilterForm form;
-        bool there = false;
+        bool valid = false;
     };
     struct News {  // by slow_update()
         RefineStep step;
@@ -60,7 +61,7 @@ private:
     TripleBuffer<News> published_;
     FilterForm form_;  // as ordered
     News news_;        // as the servo had them last
-    // Of the thread that tends.
+    // Of the thread of the slow update.
     RefineStep refined_;
     double turn_s_ = 0.0;
     float deviation_m_ = 0.0F;

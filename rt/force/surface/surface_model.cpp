@@ -46,7 +46,7 @@ void check_surface_settings(const SurfaceSettings& s) {
 SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
                            const VertexForest* forest)
     : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)), full_(mesh) {
-    if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
+    if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
     if (settings.mode == SurfaceMode::chr)
         adaptive_ = tended_surface(mesh, forest, solver_.settings().radius_m, meta.world_per_model);
 }
@@ -69,10 +69,10 @@ void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
         const NearSurface& near = adaptive_->near();
         if (used_ != near.version()) solver_.use(near.mesh());
         used_ = near.version();
-        regime_ = SurfaceRegime::adaptive;
+        regime_ = TouchRegime::adaptive;
     } else {
         use_full_surface();
-        regime_ = SurfaceRegime::tree;
+        regime_ = TouchRegime::tree;
     }
     adaptive_->is_at(solver_.proxy_m(), fidelity);
 }
@@ -113,14 +113,13 @@ ModelBodies SurfaceModel::bodies() const noexcept {
     return list;
 }
 
-ModelTouch SurfaceModel::touch() const noexcept {
-    ModelTouch t;
-    t.there = true;
+SurfaceTouch SurfaceModel::touch() const noexcept {
+    SurfaceTouch t;
     t.probe_m = solver_.goal_m();
     t.proxy_m = solver_.proxy_m();
     t.radius_m = settings_.radius_m > 0.0 ? solver_.settings().radius_m : 0.0;
-    t.state = static_cast<std::uint8_t>(contact_.state);
-    t.regime = static_cast<std::uint8_t>(regime_);
+    t.state = static_cast<TouchState>(contact_.state);
+    t.regime = regime_;
     if (adaptive_ != nullptr) t.detail = adaptive_->detail();
     t.planes = contact_.planes;
     for (std::uint32_t i = 0; i < t.planes; ++i) {
@@ -128,6 +127,10 @@ ModelTouch SurfaceModel::touch() const noexcept {
         t.push_n[i] = settings_.stiffness_n_m * meta_.world_per_model * contact_.plane[i].weight_m;
     }
     return t;
+}
+
+void SurfaceModel::publish(const ModelCycle& cycle) noexcept {
+    if (topic_ != nullptr) topic_->publish(touch_topic(touch(), cycle));
 }
 
 Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& goal_model_m, double gone_m) noexcept {
@@ -154,9 +157,9 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
     StepResult result;
     result.load.items = items(budget.fidelity);
     fade_.begin_step();
-    const bool there = tool_is_there(tool.T_world_tool);
+    const bool valid = tool_is_there(tool.T_world_tool);
     const bool clutch = (tool.buttons & 1U) != 0;
-    if (!there) {
+    if (!valid) {
         fade_.cut();
         contact_ = {};
         seated_ = false;
@@ -208,7 +211,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
 
 std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const SurfaceSettings& settings) {
     const SceneMeta meta = read_meta(scene);
-    if (meta.kind != SceneKind::surface)
+    if (scene.count(SurfaceMesh::kTag) == 0)
         throw StartupError("loading '" + scene.name() + "'", "it is not a surface",
                            "bake one with tact-prep touch MESH -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);

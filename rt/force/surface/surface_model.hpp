@@ -35,14 +35,13 @@
 #include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
 #include "rt/force/surface/shading.hpp"
+#include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
 
 namespace tact {
 
 enum class SurfaceMode : std::uint8_t { off_brute, off_tree, chr };
 inline constexpr std::array kSurfaceModeNames{"off-brute", "off-tree", "chr"};
-// What the force of a step was computed on.
-enum class SurfaceRegime : std::uint8_t { tree, adaptive, brute };
 
 // In the hand's world.
 struct SurfaceSettings {
@@ -80,7 +79,10 @@ public:
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
-    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+    [[nodiscard]] SurfaceTouch touch() const noexcept TACT_RT;
+    // Where touch() is published each cycle; before the first step. Nowhere: the default.
+    void publish_to(Latest<TouchTopic>& topic) { topic_ = &topic; }
+    void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const Contact& contact() const { return contact_; }       // of the last step
@@ -97,7 +99,7 @@ public:
     }
     [[nodiscard]] bool has_slow_update() const noexcept override { return adaptive_ != nullptr; }
     void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
-    [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
+    [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
     // Of mode chr.
     [[nodiscard]] const RefineStep& refined() const { return adaptive_->refined(); }
     [[nodiscard]] const AdaptiveSurface* adaptive() const {
@@ -123,7 +125,8 @@ private:
     std::uint64_t lagging_ = 0, released_ = 0;
     SurfaceMesh full_;
     std::unique_ptr<AdaptiveToolSurface> adaptive_;
-    SurfaceRegime regime_ = SurfaceRegime::tree;
+    TouchRegime regime_ = TouchRegime::tree;
+    Latest<TouchTopic>* topic_ = nullptr;
     std::uint64_t used_ = 0;  // version of the adaptive surface; 0: the full one
 };
 

@@ -36,7 +36,7 @@ ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const Touch
       solver_(mesh, tool, tool_contact_settings(meta, tool, settings)),
       gyration_world_m_(solver_.points().gyration_m() * meta.world_per_model),
       torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {
-    if (settings.mode == SurfaceMode::off_brute) regime_ = SurfaceRegime::brute;
+    if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
     if (settings.mode == SurfaceMode::chr)
         adaptive_ = tended_surface(mesh, forest, solver_.points().reach_m(), meta.world_per_model);
 }
@@ -83,17 +83,17 @@ void ToolModel::reset(const ToolState& tool) noexcept {
     fade_.cut();
     touch_ = {};
     ++grips_;
-    const bool there = holds_tool(tool.T_world_tool);
+    const bool valid = holds_tool(tool.T_world_tool);
     // A proxy that is good is kept: it knows on which side of the surface it is.
     const bool keeps =
-        there && seated_ &&
+        valid && seated_ &&
         settings_.stiffness_n_m * meta_.world_per_model * solver_.way_m(goal(tool), solver_.proxy()).norm() <
             settings_.force_n_max;
-    if (there && !keeps) {
+    if (valid && !keeps) {
         solver_.seat(goal(tool));
         turn_.reset();
     }
-    seated_ = there;
+    seated_ = valid;
 }
 
 ModelBodies ToolModel::bodies() const noexcept {
@@ -105,16 +105,15 @@ ModelBodies ToolModel::bodies() const noexcept {
     return list;
 }
 
-ModelTouch ToolModel::touch() const noexcept {
-    ModelTouch t;
-    t.there = true;
+SurfaceTouch ToolModel::touch() const noexcept {
+    SurfaceTouch t;
     t.probe_m = solver_.goal().p_m;
     t.proxy_m = solver_.proxy().p_m;
-    t.state = static_cast<std::uint8_t>(touch_.state);
-    t.regime = static_cast<std::uint8_t>(regime_);
+    t.state = static_cast<TouchState>(touch_.state);
+    t.regime = regime_;
     if (adaptive_ != nullptr) t.detail = adaptive_->detail();
     double below_m = 1e300;  // the places go by their weights
-    for (t.planes = 0; t.planes < ModelTouch::kPlanesMax; ++t.planes) {
+    for (t.planes = 0; t.planes < kTouchPlanesMax; ++t.planes) {
         const TouchedPlace* next = nullptr;
         for (std::uint32_t i = 0; i < touch_.places; ++i) {
             const TouchedPlace& p = touch_.place[i];
@@ -126,6 +125,10 @@ ModelTouch ToolModel::touch() const noexcept {
         t.push_n[t.planes] = settings_.stiffness_n_m * meta_.world_per_model * next->weight_m;
     }
     return t;
+}
+
+void ToolModel::publish(const ModelCycle& cycle) noexcept {
+    if (topic_ != nullptr) topic_->publish(touch_topic(touch(), cycle));
 }
 
 Pose ToolModel::goal(const ToolState& tool) const noexcept {
@@ -190,8 +193,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             const double gone_m = solver_.way_m(solver_.goal(), to).norm();
             touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline,
                                     choose_surface(budget.fidelity));
-            if (adaptive_ != nullptr)
-                regime_ = touch_.adaptive ? SurfaceRegime::adaptive : SurfaceRegime::tree;
+            if (adaptive_ != nullptr) regime_ = touch_.adaptive ? TouchRegime::adaptive : TouchRegime::tree;
             const bool on_time = !hurried && !touch_.late;
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;
             if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
@@ -221,7 +223,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
 
 std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings) {
     const SceneMeta meta = read_meta(scene);
-    if (meta.kind != SceneKind::surface || !has_touch_tool(scene))
+    if (scene.count(SurfaceMesh::kTag) == 0 || !has_touch_tool(scene))
         throw StartupError("loading '" + scene.name() + "'", "it is not a surface with a tool",
                            "bake one with tact-prep touch MESH --tool TOOL -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);

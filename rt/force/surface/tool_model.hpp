@@ -46,7 +46,10 @@ public:
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
     // About the hand's point; the three places that push most.
-    [[nodiscard]] ModelTouch touch() const noexcept TACT_RT override;
+    [[nodiscard]] SurfaceTouch touch() const noexcept TACT_RT;
+    // Where touch() is published each cycle; before the first step. Nowhere: the default.
+    void publish_to(Latest<TouchTopic>& topic) { topic_ = &topic; }
+    void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
     // The filter's form, in mode chr.
     bool order(const ModelOrder& order) noexcept TACT_RT override {
@@ -57,7 +60,7 @@ public:
     }
     [[nodiscard]] bool has_slow_update() const noexcept override { return adaptive_ != nullptr; }
     void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
-    [[nodiscard]] SurfaceRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
+    [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
 
     // Cost and error of a level before it is computed.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
@@ -77,12 +80,13 @@ private:
     SurfaceSettings settings_;
     ToolContact solver_;
     std::unique_ptr<AdaptiveToolSurface> adaptive_;
-    SurfaceRegime regime_ = SurfaceRegime::tree;
+    TouchRegime regime_ = TouchRegime::tree;
     ToolTouch touch_;
     PacedTurn<Vec6> turn_;  // by shading
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;
+    Latest<TouchTopic>* topic_ = nullptr;
     std::uint64_t grips_ = 0, lagging_ = 0, released_ = 0;
 };
 

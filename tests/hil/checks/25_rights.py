@@ -58,6 +58,6 @@ os.chown(MINE, NOBODY, NOBODY)
 granted = said_as_nobody(*deployed_limits())
 assert "FIFO, pinned, isolated core, memory locked" in granted
 refused = said_as_nobody(0, 65536)
-for words in ("cannot use SCHED_FIFO", "cannot lock memory", "mend:", "ordinary scheduling"):
+for words in ("cannot use SCHED_FIFO", "cannot lock memory", "fix:", "ordinary scheduling"):
     assert words in refused, words
 print("doctor is content; an ordinary user gets FIFO and locked memory by deploy/limits.conf, and goes on without")

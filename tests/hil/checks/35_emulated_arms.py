@@ -60,7 +60,7 @@ def main():
             pass
         emulator.order("well LEFT")
         emulator.until("fault", "well", "LEFT")
-        while emulator.newest("amplifier", "LEFT")[1]["detail"] != "off":  # mended by the board's next step
+        while emulator.newest("amplifier", "LEFT")[1]["detail"] != "off":  # fixed by the board's next step
             left.command((0,) * 6, False)
             left.state()
 

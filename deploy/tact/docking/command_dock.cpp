@@ -1,0 +1,86 @@
+// tact dock MAP MODEL...: bakes the scene once, then runs it.
+// tact demo dock: the force draws a synthetic ring of six from a displaced start to its place in the 12 A map.
+#include <memory>
+
+#include "deploy/tact/baked_run.hpp"
+#include "deploy/tact/docking/docking.hpp"
+#include "deploy/tact/run.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr PassedOption kDockPrep[] = {
+    {"--contour", "LEVEL",
+     "Contour level of the drawn surface, in the map's unit; default: chosen from the histogram"},
+    {"--resolution-a", "A", "Resolution of the map (angstrom); default: four voxels"},
+    {"--force-map-resolution-a", "A",
+     "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from farther "
+     "away; default: "
+     "not smoothed"},
+    {"--vertices-max", "N", "Maximum number of vertices of the drawn surface; 0: no limit; default 1000000"},
+};
+
+constexpr PassedOption kDockController[] = {
+    {"--start-offset-a", "A", "Start distance of the first structure from the place in its file (angstrom)"},
+    {"--start-rotation-deg", "DEG",
+     "Start rotation of the first structure from the place in its file (degrees)"},
+    {"--copies", "N", "Number of bodies of the first structure; the copies are placed around the map"},
+    {"--poses", "FILE.json", "Start poses of the bodies, from the report of an earlier run (JSON)"},
+};
+
+struct DockOptions {
+    std::filesystem::path map;
+    std::vector<std::filesystem::path> models;
+    BakedRun baked;
+};
+
+int dock(const DockOptions& o) {
+    BakeRequest request{
+        .inputs = {o.map}, .words = {"dock", std::filesystem::absolute(o.map)}, .options = o.baked.prep};
+    for (const auto& m : o.models) {
+        request.inputs.push_back(m);
+        request.words.push_back(std::filesystem::absolute(m));
+    }
+    return bake_and_run(request, o.baked);
+}
+
+}  // namespace
+
+void add_dock(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand("dock", "Dock structures into a density map");
+    const auto o = std::make_shared<DockOptions>();
+    command->add_option("MAP", o->map, "Density map: MRC, CCP4 or Situs, also .gz")
+        ->required()
+        ->check(CLI::ExistingFile);
+    command->add_option("MODEL", o->models, "Structures: PDB or mmCIF, also .gz; one body per file")
+        ->required()
+        ->check(CLI::ExistingFile);
+    add_baked_run_options(*command, kDockPrep, o->baked);
+    command->callback([o, &exit_code] { exit_code = dock(*o); });
+}
+
+void add_docking_commands(CLI::App& app, int& exit_code) {
+    add_dock(app, exit_code);
+    add_eval(app, exit_code);
+}
+
+void add_docking_demo(CLI::App& demo, int& exit_code) {
+    auto* const command =
+        demo.add_subcommand("dock", "The force draws a ring of six subunits to its place in a 12 A map");
+    const auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    command->callback([options, &exit_code] {
+        // Far enough that the motion is visible, near enough that the force draws it back (tact dock on real data uses
+        // the same start).
+        for (const auto& [name, value] :
+             {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
+            if (!options->has_controller_option(name) && !options->has_controller_option("--poses"))
+                options->add_for_scene({name, value});
+        const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+}
+
+std::span<const PassedOption> docking_controller_options() { return kDockController; }
+
+}  // namespace tact::launch

@@ -1,0 +1,88 @@
+// tact info of a docking scene: transform, map, bodies, and the force in formulas.
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/docking/docking.hpp"
+#include "deploy/tact/docking/places.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact::launch {
+namespace {
+
+using nlohmann::json;
+
+// The force model in words and formulas; the numbers beside it are the letters.
+constexpr const char* kDockingFormulas[] = {
+    "x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres",
+    "rho(x) = tricubic B-spline through (value - background) / sigma at the voxels of the felt map (see the "
+    "note), where values outside the "
+    "box "
+    "are 0",
+    "the spline interpolates: at a voxel it has the map's value; it is twice continuously differentiable",
+    "a body at (c, q) has its points at r_i = c + q * p_i; at the file's place q is 1, c is "
+    "file_place_com_model_m",
+    "points: all atoms at level 1 (w_i their mass fractions), codebook vectors below, levels between two "
+    "blended",
+    "reduced correlation C = sum_i w_i rho(r_i), in sigma; the weights sum to 1",
+    "force on the hand, world, N: F = energy_j_per_sigma / world_per_model * sum_i w_i grad rho(r_i), grad "
+    "in "
+    "sigma per model metre",
+    "torque about c, world, N m: Q = energy_j_per_sigma * sum_i w_i (r_i - c) x grad rho(r_i)",
+    "so both are the slope of the energy U = -energy_j_per_sigma * C over the hand's motion; --force-scale "
+    "multiplies both",
+    "option laplacian: rho is -s^2 Laplacian of (Gaussian * (value - background)), s = 0.225 * "
+    "max(resolution, 20 angstrom), over a unit that gives the density's force range with the same gain",
+    "option subtraction: the other bodies' simulated map (Gaussians of s = 0.225 * resolution, weight Z), "
+    "scaled by least squares where it is above 5 % of its maximum, is taken out of value; not below the "
+    "background",
+    "option clash: U = F (sqrt(L^2 + D^2) - L) is added, D = world_per_model * depth of the overlap (soft "
+    "maximum over atoms at the surface), F = 2 N, L = F / K, K such that seeded encounters stay below 300 "
+    "N/m; F "
+    "and K times the force scale",
+    "the device gets F and Q behind the output chain (limits, slew, ramp-in); tact eval gives them before it",
+};
+
+json vec3(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+json vec_a(const Vec3& v) { return vec3(v / kAngstromM); }
+
+}  // namespace
+
+json docking_info(const SceneFile& file) {
+    const Places places(file);
+    const SceneMeta& m = places.meta();
+    const DensityGrid& g = places.grid();
+    json bodies = json::array();
+    for (std::uint32_t i = 0; i < m.body_count; ++i) {
+        const Structure& s = places.structures()[i];
+        const Codebook book = read_codebook(file, i);
+        json levels = json::array();
+        for (const auto& l : book.levels)
+            levels.push_back({{"vectors", l.size()},
+                              {"edges", l.edges.size()},
+                              {"rms_error_a", l.rms_error_m / kAngstromM}});
+        bodies.push_back({{"name", s.name},
+                          {"atoms", s.size()},
+                          {"chains", s.chain_names.size()},
+                          {"mass_u", s.mass_u},
+                          {"file_place_com_model_m", vec3(s.home_com_model_m)},
+                          {"file_place_quat_xyzw", {0, 0, 0, 1}},
+                          {"codebook", levels}});
+    }
+    return {{"world_per_model", m.world_per_model},
+            {"centre_model_m", {m.centre_model_m[0], m.centre_model_m[1], m.centre_model_m[2]}},
+            {"energy_j_per_sigma", m.energy_j_per_sigma},
+            {"force_n_per_sigma_per_model_m", m.energy_j_per_sigma / m.world_per_model},
+            {"map",
+             {{"size", {g.size[0], g.size[1], g.size[2]}},
+              {"spacing_a", vec_a(g.spacing_m)},
+              {"origin_a", vec_a(g.origin_m)},
+              {"mean", m.map_mean},
+              {"sigma", m.map_sigma},
+              {"background", m.map_background},
+              {"contour", m.contour},
+              {"contour_sigma", (m.contour - m.map_mean) / m.map_sigma},
+              {"resolution_a", m.resolution_m > 0.0 ? json(m.resolution_m / kAngstromM) : json(nullptr)}}},
+            {"bodies", bodies},
+            {"formulas", kDockingFormulas}};
+}
+
+}  // namespace tact::launch

@@ -1,0 +1,52 @@
+// How far a structure is from the place that its file gives it, and how well it explains the map there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/structure.hpp"
+#include "ipc/scene/file/scene_file.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/fit/fit_metrics.hpp"
+#include "ipc/topics/bodies.hpp"
+
+namespace tact::launch {
+
+struct Offset {
+    double distance_a = 0.0;  // of the centre of mass
+    double angle_deg = 0.0;
+};
+
+// A body of a run: a placed copy of a structure of the scene.
+struct BodyAt {
+    std::uint32_t id = 0;  // 0: of no run
+    std::uint32_t structure = 0;
+    Pose T_model_body;
+    bool fixed = false, in_hand = false;
+};
+
+// The map and the structures of a docking scene.
+class Places {
+public:
+    explicit Places(const SceneFile& file);  // throws StartupError
+    [[nodiscard]] const SceneMeta& meta() const { return meta_; }
+    [[nodiscard]] const std::vector<Structure>& structures() const { return structures_; }
+    [[nodiscard]] const DensityGrid& grid() const { return grid_; }
+
+    // Empty where the topic does not fit the scene or holds no numbers.
+    [[nodiscard]] std::optional<std::vector<BodyAt>> bodies(const BodiesTopic& topic) const;
+    // One of each structure, where its file has it.
+    [[nodiscard]] std::vector<BodyAt> file_bodies() const;
+    [[nodiscard]] Offset offset(const BodyAt& body) const;
+    // Empty where the map's resolution is not known. Takes up to seconds for large maps.
+    [[nodiscard]] std::optional<FitMetrics> fit(const std::vector<BodyAt>& bodies) const;
+
+private:
+    SceneMeta meta_;
+    DensityGrid grid_;
+    std::vector<Structure> structures_;
+};
+
+}  // namespace tact::launch

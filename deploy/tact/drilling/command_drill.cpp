@@ -1,0 +1,105 @@
+// tact drill SCAN: bakes the bone once, then runs it, with a burr in one hand and a suction tube in the other.
+// tact demo drill: a surgeon opens the mastoid of a synthetic temporal bone, a second hand sucks.
+#include <memory>
+
+#include "deploy/tact/baked_run.hpp"
+#include "deploy/tact/drilling/drilling.hpp"
+#include "deploy/tact/run.hpp"
+
+namespace tact::launch {
+namespace {
+
+constexpr PassedOption kDrillPrep[] = {
+    {"--threshold-hu", "HU", "Value at and below which a voxel holds no bone (HU); default 300"},
+    {"--solid-hu", "HU", "Value at and above which bone is solid (HU); default 1800"},
+    {"--voxel-mm", "MM", "Edge of a voxel of the bone (mm); default: finest spacing of the scan"},
+    {"--crop", "RANGES",
+     "Ranges first:end of columns, rows and slices, such as 0:256,0:256,10:90; default: all"},
+    {"--series", "N", "Number of the DICOM series, if the folder holds several"},
+    {"--critical", "WORD",
+     "Word in the names of critical structures, in addition to nerve, sinus, dura, ..."},
+    {"--unit", "m|cm|mm|um", "Unit of length of files that name none; default mm"},
+    {"--spacing-mm", "MM",
+     "Spacing of columns, rows and slices of an image stack (mm), or one number for all"},
+    {"--bone-colour", "R,G,B",
+     "Colour of bone in coloured images, each channel from 0 to 255; default 255,249,219"},
+    {"--face", "front|back|left|right|top|bottom", "Side of the patient that faces the user; default front"},
+};
+
+constexpr PassedOption kDrillController[] = {
+    {"--hand-at-mm", "X,Y", "Position at which an emulated surgeon works (mm)"},
+    {"--pedal", "button|line|always",
+     "Switch of the burr: stylus button, foot pedal on an input line, or always on"},
+    {"--burr-mm", "MM", "Burr diameter (mm)"},
+    {"--burr-shape", "sphere|cylinder|cone", "Burr shape"},
+    {"--burr-rpm", "RPM", "Burr speed (rpm)"},
+};
+
+struct DrillOptions {
+    std::filesystem::path scan, labels, label_names;
+    BakedRun baked;
+};
+
+int drill(DrillOptions& o) {
+    BakeRequest request{.inputs = scan_files(o.scan),
+                        .words = {"drill", std::filesystem::absolute(o.scan)},
+                        .options = o.baked.prep};
+    for (const auto& [name, file] : {std::pair("--labels", &o.labels), {"--label-names", &o.label_names}}) {
+        if (file->empty()) continue;
+        for (const auto& part : scan_files(*file)) request.inputs.push_back(part);
+        request.options.insert(request.options.end(), {name, std::filesystem::absolute(*file)});
+    }
+    let_the_hands_drill(o.baked.run);
+    return bake_and_run(request, o.baked);
+}
+
+}  // namespace
+
+void add_drill(CLI::App& app, int& exit_code) {
+    auto* const command = app.add_subcommand("drill", "Drill the bone of a CT scan");
+    const auto o = std::make_shared<DrillOptions>();
+    command
+        ->add_option(
+            "SCAN", o->scan,
+            "CT scan: a folder of DICOM files or of PNG images, or NRRD, NIfTI or MetaImage, also .gz")
+        ->required()
+        ->check(CLI::ExistingPath);
+    command
+        ->add_option("--labels", o->labels,
+                     "Label map with the structure of each voxel: NRRD, NIfTI or MetaImage")
+        ->check(CLI::ExistingFile);
+    command
+        ->add_option("--label-names", o->label_names,
+                     "Names of the labelled structures: label description file of ITK-SNAP")
+        ->check(CLI::ExistingFile);
+    add_baked_run_options(*command, kDrillPrep, o->baked);
+    command->callback([o, &exit_code] { exit_code = drill(*o); });
+}
+
+void add_drill_demo(CLI::App& demo, int& exit_code) {
+    auto* const command =
+        demo.add_subcommand("drill", "Two hands open a temporal bone with a burr and a suction tube");
+    const auto options = std::make_shared<RunOptions>();
+    const auto voxels = std::make_shared<std::string>("256");
+    command->add_option("--voxels", *voxels, "Number of voxels of the bone along each axis, from 16 to 1024")
+        ->capture_default_str();
+    add_run_options(*command, *options);
+    command->callback([options, voxels, &exit_code] {
+        let_the_hands_drill(*options);
+        if (options->has_controller_option("surgeon") && !options->has_controller_option("--hand-at-mm"))
+            options->add_for_scene({"--hand-at-mm", kMastoidMm});
+        const auto scene =
+            baked_scene({.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}});
+        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    });
+}
+
+std::span<const PassedOption> drilling_controller_options() { return kDrillController; }
+
+void let_the_hands_drill(RunOptions& options) {
+    if (!hand_is_free(options)) return;
+    options.add_for_scene({"--hand", "surgeon"});
+    if (!options.has_controller_option("--hand2")) options.add_for_scene({"--hand2", "suction-tube"});
+}
+
+}  // namespace tact::launch

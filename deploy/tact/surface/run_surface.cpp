@@ -1,0 +1,14 @@
+// A run on a surface: nothing of its own.
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/surface/surface.hpp"
+
+namespace tact::launch {
+
+std::unique_ptr<SystemRun> open_surface_run(const SceneFile& /*scene*/) {
+    return std::make_unique<SystemRun>();
+}
+
+std::string surface_summary(const nlohmann::json& /*report*/) { return {}; }
+
+}  // namespace tact::launch

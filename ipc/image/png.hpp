@@ -1,0 +1,45 @@
+// PNG files, read and written. Rows from the top, 8 bits per channel.
+//
+// Hostile   a file's size is known before anything is allocated: the caller checks it, then reads
+// Fails by  reading: PngError with libpng's text; writing: StartupError, and the file is whole or absent
+// Thread    any but the servo's: it waits for the disk
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace tact {
+
+struct PngError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+enum class PngFormat : std::uint8_t { grey = 1, rgb = 3, rgba = 4 };  // bytes of a pixel
+
+class PngReader {
+public:
+    explicit PngReader(const std::filesystem::path& path);
+    ~PngReader();
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+
+    [[nodiscard]] std::uint32_t width_px() const noexcept;
+    [[nodiscard]] std::uint32_t height_px() const noexcept;
+    [[nodiscard]] bool colour() const noexcept;  // channels of colour, or a palette
+    // Once: width times height pixels, converted to `format`.
+    [[nodiscard]] std::vector<std::uint8_t> read(PngFormat format);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// `pixels`: width times height pixels of `format`. The folder has to exist.
+void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
+               std::span<const std::uint8_t> pixels, PngFormat format = PngFormat::rgb);
+
+}  // namespace tact

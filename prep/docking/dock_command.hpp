@@ -1,0 +1,12 @@
+// tact-prep dock MAP MODEL..., tact-prep demo dock and tact-prep contour SCENE: docking scenes, and their surface at another
+// level.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tact {
+
+void add_dock(CLI::App& app, CLI::App& demo);
+void add_contour(CLI::App& app);
+
+}  // namespace tact

@@ -1,0 +1,280 @@
+#include "prep/drilling/import_bone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "ipc/base/error.hpp"
+#include "prep/drilling/note_line.hpp"
+#include "prep/input/read_file.hpp"
+#include "prep/volume/dicom.hpp"
+#include "prep/volume/png_stack.hpp"
+#include "prep/volume/raw_scan.hpp"
+
+namespace tact {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kThresholdHu = 300.0, kSolidHu = 1800.0, kAirHu = -500.0;
+constexpr const char* kFaceNames[] = {"front", "back", "left side", "right side", "top", "bottom"};
+
+struct OpenedScan {
+    Scan scan;
+    std::shared_ptr<StackPalette> palette;
+};
+
+bool has_pictures(const fs::path& folder) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (format_ending(entry.path()) == ".png") return true;
+    return false;
+}
+
+OpenedScan open_stack(const fs::path& folder, const Vec3& spacing_mm) {
+    if (!(spacing_mm.minCoeff() > 0.0))
+        throw StartupError("read the images in " + folder.string(), "images have no pixel spacing",
+                           "give the spacing of columns, rows and slices, as in --spacing-mm 0.2,0.2,0.2");
+    PngStack stack = read_png_stack(folder, spacing_mm);
+    return {std::move(stack.scan), std::move(stack.palette)};
+}
+
+OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& progress) {
+    const std::string attempt = "read scan " + path.string();
+    std::error_code error;
+    if (!fs::exists(path, error)) throw StartupError(attempt, "it does not exist", "check the path");
+    if (fs::is_directory(path, error)) {
+        if (has_pictures(path)) return open_stack(path, o.spacing_mm);
+        return {dicom_stack(list_dicom(path, progress), o.series, attempt), nullptr};
+    }
+    const std::string ending = format_ending(path);
+    if (ending == ".nrrd" || ending == ".nhdr")
+        return {read_raw_scan(path, "NRRD", nrrd_header, o.unit_mm), nullptr};
+    if (ending == ".nii") return {read_raw_scan(path, "NIfTI", nifti_header, o.unit_mm), nullptr};
+    if (ending == ".mha" || ending == ".mhd")
+        return {read_raw_scan(path, "MetaImage", meta_image_header, o.unit_mm), nullptr};
+    if (is_dicom(path)) {  // the series that it is of
+        const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+        std::vector<DicomSlice> all = list_dicom(folder, progress);
+        std::string uid;
+        for (const DicomSlice& s : all)
+            if (fs::equivalent(s.path, path, error)) uid = s.series_uid;
+        std::erase_if(all, [&](const DicomSlice& s) { return s.series_uid != uid; });
+        return {dicom_stack(std::move(all), o.series, attempt), nullptr};
+    }
+    throw StartupError(
+        attempt, "it is of no format that is known",
+        "give a folder of DICOM files or of PNG images, or a .nrrd, .nhdr, .nii, .mha or .mhd file");
+}
+
+struct DensityRange {
+    double low, high;
+    bool hounsfield;
+};
+
+bool reaches_air(const Scan& scan, const Progress& progress) {
+    std::vector<float> pixels(scan.pixels());
+    for (std::uint32_t k = 0; k < scan.slice.size(); ++k) {
+        report(progress, 0.0, "looking at the scan's values");
+        scan.read(k, pixels);
+        if (*std::min_element(pixels.begin(), pixels.end()) <= static_cast<float>(kAirHu)) return true;
+    }
+    return false;
+}
+
+DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress& progress) {
+    DensityRange range{0.0, 255.0, false};
+    if (scan.values == ScanValues::hounsfield ||
+        (scan.values == ScanValues::number && reaches_air(scan, progress)))
+        range = {kThresholdHu, kSolidHu, true};
+    else if (scan.values != ScanValues::grey && !(o.threshold && o.solid))
+        throw StartupError(
+            "separate bone from other tissue",
+            "no voxel of it is as low as air in Hounsfield units, so its values are of an unknown kind",
+            "give the values of the file for no bone and for solid bone: --threshold-hu and --solid-hu");
+    if (o.threshold) range.low = *o.threshold;
+    if (o.solid) range.high = *o.solid;
+    if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
+        throw StartupError("separate bone from other tissue",
+                           note_line("the threshold is %g and solid bone is %g", range.low, range.high),
+                           "give a --solid-hu above --threshold-hu");
+    return range;
+}
+
+// Turns labels of the file to rows of a table, 1 and up, in the order of their values.
+void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImport& o) {
+    std::array<std::uint64_t, 256> count{};
+    for (const std::uint8_t l : bone.label) ++count[l];
+    std::array<std::uint8_t, 256> row_of{};
+    for (std::size_t value = 1; value < 256; ++value) {
+        if (count[value] == 0) continue;
+        BoneStructure s;
+        const double hue = 2.399963 * static_cast<double>(value);
+        for (std::size_t c = 0; c < 3; ++c)
+            s.rgba[c] =
+                static_cast<std::uint8_t>(150.0 + 100.0 * std::cos(hue - 2.094395 * static_cast<double>(c)));
+        s.rgba[3] = 255;
+        s.name = "label " + std::to_string(value);
+        const auto named =
+            std::find_if(known.begin(), known.end(), [&](const ScanLabel& l) { return l.value == value; });
+        if (named != known.end()) {
+            if (!named->name.empty()) s.name = named->name;
+            s.rgba = named->rgba;
+        }
+        for (char& c : s.name)
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+        std::size_t size = std::min(s.name.size(), BoneStructure::kNameBytesMax);
+        while (size < s.name.size() && size > 0 &&
+               (static_cast<unsigned char>(s.name[size]) & 0xC0U) == 0x80U)
+            --size;
+        s.name.resize(size);  // not amid a letter
+        s.critical = critical_name(s.name, o.critical);
+        bone.structure.push_back(std::move(s));
+        row_of[value] = static_cast<std::uint8_t>(bone.structure.size());
+    }
+    for (std::size_t i = 0; i < bone.label.size(); ++i) {
+        std::uint8_t& l = bone.label[i];
+        if (l == 0) continue;
+        l = row_of[l];
+        if (bone.structure[l - 1U].critical) bone.density[i] = std::max(bone.density[i], kLabelDensity);
+    }
+}
+
+// A stack whose colours are structures: one of them is bone.
+void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& palette, const BoneImport& o,
+               std::vector<ScanLabel> known, BoneData& bone, const Progress& progress) {
+    bone.label = sample_labels(scan, plan, scan, progress);
+    bone.density.assign(bone.label.size(), 0);
+    std::vector<ScanLabel> colours;
+    std::size_t bone_colour = 256;
+    std::array<bool, 256> empty{};
+    for (std::size_t i = 0; i < palette.rgba.size(); ++i) {
+        const auto& c = palette.rgba[i];
+        empty[i] = c[3] == 0;
+        if (std::equal(o.bone_colour.begin(), o.bone_colour.end(), c.begin()) && c[3] != 0) bone_colour = i;
+        char name[16];
+        std::snprintf(name, sizeof name, "#%02X%02X%02X", c[0], c[1], c[2]);
+        ScanLabel label{static_cast<std::uint8_t>(i), name, c};
+        for (const ScanLabel& k : known)
+            if (std::equal(c.begin(), c.begin() + 3, k.rgba.begin())) label.name = k.name;
+        colours.push_back(std::move(label));
+    }
+    if (bone_colour == 256)
+        throw StartupError("separate bone from other tissue",
+                           note_line("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
+                                     o.bone_colour[1], o.bone_colour[2]),
+                           "give --bone-colour RED,GREEN,BLUE");
+    // The number 0 stands for no label: the first colour met, if it is a structure, takes a free one.
+    std::uint8_t first = 0;
+    if (!empty[0] && bone_colour != 0) {
+        if (palette.rgba.size() == 256)
+            throw StartupError("read the labels", "there are 256 colours", "255 and the empty one can be");
+        first = static_cast<std::uint8_t>(palette.rgba.size());
+        colours[0].value = first;
+    }
+    const bool outside_is_first = first != 0;
+    for (std::size_t i = 0; i < bone.label.size(); ++i) {
+        std::uint8_t& l = bone.label[i];
+        if (l == bone_colour) {
+            bone.density[i] = 255;
+            l = 0;
+        } else if (empty[l] && !(outside_is_first && l == 0)) {
+            l = 0;
+        } else {
+            if (l == 0) l = first;
+            bone.density[i] = kLabelDensity;
+        }
+    }
+    // Bricks' rest beyond the size was no colour.
+    const auto& n = plan.bricks.size;
+    const auto rest = plan.bricks.bricks();
+    for (std::uint32_t z = 0; z < 8 * rest[2]; ++z)
+        for (std::uint32_t y = 0; y < 8 * rest[1]; ++y)
+            for (std::uint32_t x = z < n[2] && y < n[1] ? n[0] : 0; x < 8 * rest[0]; ++x) {
+                bone.density[plan.bricks.voxel(x, y, z)] = 0;
+                bone.label[plan.bricks.voxel(x, y, z)] = 0;
+            }
+    put_structures(bone, std::move(colours), o);
+}
+
+}  // namespace
+
+BoneInput import_bone(const BoneImport& o, const Progress& whole) {
+    const Progress progress = [&whole](double fraction, const char* what) {
+        return !whole || whole(0.5 * fraction, what);
+    };
+    OpenedScan opened = open_scan(o.scan, o, progress);
+    Scan& scan = opened.scan;
+    const std::string size = note_line("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
+                                       scan.slice.size(), scan.column_mm, scan.row_mm);
+    if (o.crop) crop_scan(scan, *o.crop);
+    const SamplePlan plan = plan_samples(scan, o.voxel_mm, o.face);
+    const bool labelled = opened.palette || !o.labels.empty();
+    if (o.announce) {
+        const auto voxels = static_cast<double>(plan.bricks.bytes());
+        constexpr std::size_t kFieldsExpected = 8;
+        o.announce(voxels, bake_bytes(plan.bricks, labelled, kFieldsExpected) +
+                               8.0 * static_cast<double>(scan.pixels()) +
+                               (labelled ? static_cast<double>(scan.pixels() * scan.slice.size()) : 0.0));
+    }
+    std::vector<ScanLabel> known = scan.label;
+    if (!o.label_names.empty()) {
+        const std::vector<char> text = read_whole_file(o.label_names, 1U << 20);
+        known = parse_label_names({text.data(), text.size()}, "read label names " + o.label_names.string());
+    }
+    BoneInput input;
+    BoneData& bone = input.bone;
+    bone.bricks = plan.bricks;
+    if (opened.palette) {
+        if (!o.labels.empty())
+            throw StartupError("read the labels", "the images are labels already", "leave --labels out");
+        segmented(scan, plan, *opened.palette, o, std::move(known), bone, progress);
+    } else {
+        const DensityRange range = choose_range(scan, o, progress);
+        if (range.hounsfield) {
+            bone.hu_at_0 = static_cast<float>(range.low);
+            bone.hu_at_255 = static_cast<float>(range.high);
+        } else {
+            input.note.push_back(
+                note_line("bone: values above %g, solid at %g and above", range.low, range.high));
+        }
+        const double labels_from = o.labels.empty() ? 1.0 : 0.5;
+        bone.density = sample_density(scan, plan, range.low, range.high, part(progress, 0.0, labels_from));
+        if (!o.labels.empty()) {
+            OpenedScan labels = open_scan(o.labels, o, part(progress, labels_from, labels_from));
+            if (labels.palette)
+                throw StartupError("read the labels", "coloured images cannot be combined with a scan",
+                                   "save them as NRRD, NIfTI or MetaImage");
+            if (o.label_names.empty()) known = labels.scan.label;
+            if (o.crop && !(scan.oriented && labels.scan.oriented)) crop_scan(labels.scan, *o.crop);
+            bone.label = sample_labels(scan, plan, labels.scan, part(progress, labels_from, 1.0));
+            if (std::all_of(bone.label.begin(), bone.label.end(), [](std::uint8_t l) { return l == 0; }))
+                throw StartupError("put labels on the scan", "none of them lies in the volume",
+                                   "give labels that were made on this scan, or another --crop");
+            put_structures(bone, std::move(known), o);
+        }
+    }
+    input.title = "bone from " + scan.format;
+    input.note.insert(input.note.begin(),
+                      {"scan: " + scan.format + ", " + size,
+                       std::string("towards the user: ") +
+                           (scan.oriented ? "the patient's " : "as far as the file tells, the patient's ") +
+                           kFaceNames[static_cast<std::size_t>(o.face)]});
+    if (scan.oriented) {
+        const Vec3 middle =
+            scan.origin_mm + scan.axes * Vec3(plan.start_mm[0] + 0.5 * plan.voxel_mm * (plan.count[0] - 1.0),
+                                              plan.start_mm[1] + 0.5 * plan.voxel_mm * (plan.count[1] - 1.0),
+                                              plan.start_mm[2] + 0.5 * plan.voxel_mm * (plan.count[2] - 1.0));
+        input.note.push_back(note_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up in the scan",
+                                       middle.x(), middle.y(), middle.z()));
+    } else {
+        scan.warning.emplace_back("the file does not name the left side: the bone may be mirrored");
+    }
+    for (const std::string& line : scan.note) input.note.push_back(line);
+    for (const std::string& line : scan.warning) {
+        input.note.push_back("warning: " + line);
+        if (o.warn) o.warn(line);
+    }
+    return input;
+}
+
+}  // namespace tact

@@ -1,0 +1,53 @@
+#include <algorithm>
+
+#include "prep/drilling/import_bone.hpp"
+#include "prep/volume/header_text.hpp"
+
+namespace tact {
+namespace {
+
+constexpr const char* kCriticalWords[] = {"nerve",   "nerv",   "facial",  "chorda", "sinus",    "dura",
+                                          "carotid", "artery", "arteria", "vein",   "vena",     "vessel",
+                                          "jugular", "labyr",  "cochlea", "vestib", "semicirc", "incus",
+                                          "stapes",  "ossic",  "brain",   "orbit",  "optic"};
+
+}  // namespace
+
+std::vector<ScanLabel> parse_label_names(std::string_view text, const std::string& attempt) {
+    HeaderText in(text, attempt);
+    std::vector<ScanLabel> labels;
+    std::string_view line;
+    while (in.line(line)) {
+        line = HeaderText::trimmed(line);
+        if (line.empty() || line.front() == '#') continue;
+        const std::size_t quote = line.find('"'), end = line.rfind('"');
+        const auto words = HeaderText::words(line.substr(0, std::min(quote, line.size())));
+        if (quote == std::string_view::npos || end == quote || words.size() < 4)
+            throw StartupError(attempt, "a line is not: value red green blue opacity visible mesh \"name\"",
+                               "write the list as ITK-SNAP does (Segmentation, Export Label Descriptions)");
+        std::array<std::uint64_t, 4> number{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            number[i] = in.whole(words[i], "a number of a label");
+            if (number[i] > 255)
+                in.fail("a number of a label is " + std::to_string(number[i]) + "; 0 to 255 can be");
+        }
+        if (number[0] == 0) continue;  // "clear label"
+        labels.push_back({static_cast<std::uint8_t>(number[0]),
+                          std::string(line.substr(quote + 1, end - quote - 1)),
+                          {static_cast<std::uint8_t>(number[1]), static_cast<std::uint8_t>(number[2]),
+                           static_cast<std::uint8_t>(number[3]), 255}});
+    }
+    return labels;
+}
+
+bool critical_name(const std::string& name, const std::vector<std::string>& more) {
+    const std::string low = HeaderText::lower(name);
+    const auto holds = [&](const std::string& word) {
+        return !word.empty() && low.find(word) != std::string::npos;
+    };
+    return std::any_of(std::begin(kCriticalWords), std::end(kCriticalWords), holds) ||
+           std::any_of(more.begin(), more.end(),
+                       [&](const std::string& w) { return holds(HeaderText::lower(w)); });
+}
+
+}  // namespace tact

@@ -1,0 +1,13 @@
+// The mesh of a scene with a surface to touch in the report of tact-prep info.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "ipc/scene/file/scene_file.hpp"
+
+namespace tact {
+
+// Adds its keys. Fails by StartupError where a section is damaged.
+void report_surface(const SceneFile& file, nlohmann::ordered_json& json);
+
+}  // namespace tact

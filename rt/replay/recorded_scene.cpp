@@ -1,0 +1,50 @@
+#include "rt/replay/recorded_scene.hpp"
+
+#include <cstdlib>
+#include <system_error>
+#include <vector>
+
+#include "ipc/base/error.hpp"
+
+namespace tact {
+
+namespace fs = std::filesystem;
+
+SceneFile open_recorded_scene(const RecordingReader::About& about, const fs::path& recording,
+                              const fs::path& scene_path) {
+    if (!scene_path.empty()) {
+        SceneFile scene = SceneFile::open(scene_path);
+        if (scene.checksum() != about.scene_checksum)
+            throw StartupError("replaying on '" + scene.name() + "'",
+                               "this is another scene than the recorded one",
+                               "name the recorded one with --scene, or bake it again as it was");
+        return scene;
+    }
+    const fs::path recorded(about.scene_path), name = recorded.filename();
+    std::vector<fs::path> places{recording.parent_path() / name, name};
+    if (recorded.is_absolute()) places.insert(places.begin(), recorded);
+    const char* const cache = std::getenv("XDG_CACHE_HOME");
+    const char* const home = std::getenv("HOME");
+    if (cache != nullptr && *cache == '/')
+        places.push_back(fs::path(cache) / "tact" / name);
+    else if (home != nullptr && *home == '/')
+        places.push_back(fs::path(home) / ".cache" / "tact" / name);
+    bool another = false;
+    for (const fs::path& place : places) {
+        std::error_code unknown;
+        if (name.empty() || !fs::is_regular_file(place, unknown)) continue;
+        try {
+            SceneFile scene = SceneFile::open(place);
+            if (scene.checksum() == about.scene_checksum) return scene;
+        } catch (const StartupError&) {  // no scene: as good as another one
+        }
+        another = true;
+    }
+    throw StartupError(
+        "finding the recorded scene '" + name.string() + "'",
+        another ? "what has its name is another scene than the recorded one"
+                : "it is neither beside the recording, nor in this folder, nor among the baked ones",
+        "name the recorded one with --scene, or bake it again as it was");
+}
+
+}  // namespace tact

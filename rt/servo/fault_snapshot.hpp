@@ -1,0 +1,14 @@
+// The state of the loop at the first fault, for the log.
+//
+// Thread    servo; TACT_RT
+#pragma once
+
+#include "rt/servo/cycle.hpp"
+#include "rt/servo/servo_io.hpp"
+
+namespace tact::servo {
+
+// Publishes the snapshot in the mailbox and reports the fault.
+void note_fault(CycleState& c, const ServoIo& io) noexcept TACT_RT;
+
+}  // namespace tact::servo

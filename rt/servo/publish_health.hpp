@@ -1,0 +1,16 @@
+// How the controller and its devices are doing: ten times a second, and at every change of state.
+//
+// Thread    servo; TACT_RT
+#pragma once
+
+#include "rt/servo/cycle.hpp"
+
+namespace tact::servo {
+
+void publish_health(CycleState& c, const ServoSettings& settings,
+                    Latest<HealthTopic>& topic) noexcept TACT_RT;
+void publish_devices(CycleState& c, Latest<DevicesTopic>& topic) noexcept TACT_RT;
+// Since the start; once a second.
+void publish_lateness(const CycleState& c, Latest<LatenessTopic>& topic) noexcept TACT_RT;
+
+}  // namespace tact::servo

@@ -1,0 +1,52 @@
+#include "rt/servo/stage_shape.hpp"
+
+#include <algorithm>
+
+#include "rt/safety/stages.hpp"
+
+namespace tact::servo {
+
+namespace {
+
+// Of a hand and an arm together, the lightest: a damper is stable for it at a delay.
+constexpr double kHandMassLeastKg = 0.1;
+
+// Beyond what is stable at today's delay the whole field is felt weaker, so that no pose is unstable; walls and
+// damping have bounds of their own. While nothing is felt the gains settle at once.
+void smooth_gains(HandCycle& h, const ServoSettings& settings, const DelayBounds& bounds,
+                  double dt_s) noexcept {
+    const auto within = [](double wanted, double max) { return wanted > max ? max / wanted : 1.0; };
+    const bool felt = h.out.gain > 0.0;
+    const auto follow = [&](SmoothGain& g, double gain) {
+        if (felt)
+            g.follow(gain, dt_s);
+        else
+            g.settle(gain);
+    };
+    follow(h.field, within(settings.force_scale * h.model->stiffness_n_m(), bounds.stiffness_n_m));
+    follow(h.walls, within(h.chain.settings().wall_stiffness_n_m, bounds.stiffness_n_m));
+    follow(h.damper, within(settings.damping_n_s_m, bounds.damping_n_s_m));
+}
+
+}  // namespace
+
+void bound_by_delay(CycleState& c, const ServoSettings& settings) noexcept {
+    const double delay_s = static_cast<double>(c.statistics.metrics.delay_p99_ns) * 1e-9;
+    const double period_s = to_s(settings.period);
+    c.bounds.stiffness_n_m = stages::stiffness_max_n_m(settings.hand_damping_n_s_m, period_s, delay_s);
+    c.bounds.damping_n_s_m = stages::damping_max_n_s_m(kHandMassLeastKg, period_s, delay_s);
+}
+
+void shape(CycleState& c, const ServoSettings& settings) noexcept {
+    const double dt_s = to_s(std::min(c.dt, stages::kStepMax));
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        HandCycle& h = c.hand[i];
+        smooth_gains(h, settings, c.bounds, dt_s);
+        const double scale = settings.force_scale * h.field.gain();
+        h.wanted_world.force_n = scale * h.step.wrench_world.force_n -
+                                 settings.damping_n_s_m * h.damper.gain() * h.tool.twist_world.linear_m_s;
+        h.wanted_world.torque_n_m = h.torque ? Vec3(scale * h.step.wrench_world.torque_n_m) : Vec3::Zero();
+    }
+}
+
+}  // namespace tact::servo

@@ -1,0 +1,15 @@
+// Stage 8: field, walls and damping, each within what is stable at the delay of the devices.
+//
+// Thread    servo; TACT_RT
+#pragma once
+
+#include "rt/servo/cycle.hpp"
+
+namespace tact::servo {
+
+// Sets the bounds for the delay of the last second.
+void bound_by_delay(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;
+// Sets each hand's wanted wrench.
+void shape(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;
+
+}  // namespace tact::servo

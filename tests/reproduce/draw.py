@@ -1,0 +1,349 @@
+#!/usr/bin/python3
+"""Draws the figures of tact-reproduce from the CSV and JSON files in a folder.
+
+    draw.py FOLDER          draws every figure whose data is there, as PNG beside the data
+    draw.py --self-test     draws each kind of figure from synthetic data in a temporary folder
+
+Exit codes: 0 done; 1 error; 77 matplotlib is missing. tact-reproduce starts it; by hand it redraws figures after a change here.
+"""
+import csv
+import json
+import math
+import os
+import sys
+import tempfile
+
+try:
+    import matplotlib
+except ImportError:
+    sys.exit(77)
+matplotlib.use("Agg")
+import matplotlib.image as mpimg  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+
+# Okabe and Ito's colours, distinguishable with every kind of colour vision.
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7", "#000000"]
+WINDOW_S = 0.1
+SETTLE_S = 0.3
+DPI = 110
+
+plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True, "axes.spines.top": False,
+                     "axes.spines.right": False, "axes.titlesize": 10, "legend.frameon": False, "legend.fontsize": 9, "lines.linewidth": 1.6})
+
+
+def read_rows(path):
+    """Rows of a CSV file; numbers where a field is one."""
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    with open(path, encoding="utf-8", newline="") as f:
+        return [{k: value(v) for k, v in row.items()} for row in csv.DictReader(f)]
+
+
+def start(title, remark, panels, height=3.6, width=11.0):
+    figure, axes = plt.subplots(panels, 1, sharex=True, squeeze=False, figsize=(width, 1.1 + height * panels), layout="constrained")
+    # A title of two lines: the second, smaller one says the conditions.
+    figure.suptitle(title, x=0.012, ha="left", fontsize=14)
+    axes[0][0].set_title(remark, loc="left", color="#666666", pad=10)
+    return figure, [a[0] for a in axes]
+
+
+def legend(axes, handles=None):
+    """Outside of the data, to the right."""
+    options = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.0), "borderaxespad": 0.0}
+    if handles is not None:
+        options["handles"] = handles
+    axes.legend(**options)
+
+
+def save(figure, folder, name):
+    figure.align_ylabels()
+    figure.savefig(os.path.join(folder, name), dpi=DPI)
+    plt.close(figure)
+    print(f"  {name}")
+
+
+# Force rates over time (docking: figures 5, 7 and 8).
+class Runs:
+    def __init__(self, folder):
+        self.case = {}
+        for row in read_rows(os.path.join(folder, "rates.csv")):
+            self.case.setdefault(row["case"], []).append(row)
+        self.remark = "each point: the rate over 0.1 s"
+        report = os.path.join(folder, "docking.json")
+        if os.path.exists(report):
+            with open(report, encoding="utf-8") as f:
+                rates = json.load(f)["rates"]
+            most = max((r["triangles"] for rows in self.case.values() for r in rows), default=0)
+            self.remark = (f"all processes on one core, {rates['conditions']['precedence']}; {rates['scale']['points_summed']} points summed, "
+                           f"at most {most:.0f} triangles; {self.remark}")
+
+    def goal(self, case):
+        return self.case[case][0]["goal_hz"]
+
+    def law(self, case):
+        return self.case[case][0]["run"].split(",")[0]
+
+    def end(self, case):
+        return self.case[case][-1]["t_s"]
+
+    def load(self, case):
+        """Begin and end of the external load; infinity and the last time without one."""
+        times = [r["t_s"] for r in self.case[case] if r["external_load"]]
+        return (min(times), max(times)) if times else (math.inf, self.end(case))
+
+
+def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=None):
+    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time that is drawn."""
+    figure, (rates, triangles) = start(title, runs.remark, 2)
+    disturbed = False
+    for number, (case, label, colour) in enumerate(curves):
+        rows = [r for r in runs.case[case] if r["t_s"] > SETTLE_S and r["t_s"] <= (until or {}).get(case, math.inf)]
+        time = [r["t_s"] for r in rows]
+        rates.plot(time, [r["force_rate_100ms_hz"] for r in rows], color=COLOURS[colour], label=label)
+        triangles.plot(time, [1e-3 * r["triangles"] for r in rows], color=COLOURS[colour])
+        for row in rows:
+            if row["disturbed"]:
+                disturbed = True
+                rates.axvspan(row["t_s"] - WINDOW_S, row["t_s"], 1.0 - 0.022 * (number + 1), 1.0 - 0.022 * number - 0.004, color=COLOURS[colour],
+                              linewidth=0)
+    for hz, label in goals:
+        rates.axhline(hz, color="#222222", linestyle=":", linewidth=1.4, label=label)
+    handles, _ = rates.get_legend_handles_labels()
+    if load_of is not None:
+        begin, end = runs.load(load_of)
+        if begin < end:
+            for axes in (rates, triangles):
+                axes.axvspan(begin, end, color="#f0ece0", linewidth=0, zorder=0)
+            handles.append(Patch(color="#f0ece0", label="external load"))
+    if disturbed:
+        handles.append(Patch(color="#bbbbbb", label="strip above: disturbed by\nother programs"))
+    rates.set_ylabel("force updates per second (Hz)")
+    triangles.set_ylabel("triangles drawn (thousands)")
+    triangles.set_xlabel("time (s)")
+    for axes in (rates, triangles):
+        axes.set_ylim(bottom=0)
+        axes.set_ylim(top=1.1 * axes.get_ylim()[1])  # room for the strips
+        axes.margins(x=0.01)
+    legend(rates, handles)
+    save(figure, folder, name)
+
+
+def draw_rates(folder):
+    runs = Runs(folder)
+    if "low" in runs.case and "high" in runs.case:
+        rate_figure(runs, folder, "fig5_rates.png", "Figure 5: force rate without external load",
+                    [("off", "C: no adaptation\n(paper: about 550 Hz)", 0), ("low", f"B: goal {runs.goal('low'):.0f} Hz\n(paper: 800 Hz, held)", 1),
+                     ("high", f"A: goal {runs.goal('high'):.0f} Hz\n(paper: 1200 Hz, not reached)", 2)],
+                    [(runs.goal("low"), "goals of B and A"), (runs.goal("high"), None)],
+                    until={"off": min(runs.load("off")[0], runs.end("low"))})
+    rate_figure(runs, folder, "fig7_load_without_law.png", "Figure 7: force rate under an external load, no adaptation",
+                [("off", "no adaptation\n(paper: falls to 300 to 400 Hz)", 0)], [], load_of="off")
+    if "on" in runs.case:
+        curves = [("off", "no adaptation", 0), ("on", f"law {runs.law('on')}\n(paper: stays near its goal)", 1)]
+        if "on_paper" in runs.case:
+            curves.append(("on_paper", "law sensitus, the paper's own", 3))
+        rate_figure(runs, folder, "fig8_load_with_law.png", "Figure 8: force rate under an external load, with adaptation", curves,
+                    [(runs.goal("on"), f"goal {runs.goal('on'):.0f} Hz")], load_of="on")
+
+
+# Forces of a burr (drilling: figures 2 to 4).
+def ways(row, quantity):
+    """(column, label, dashed) for each size of block."""
+    for column in row:
+        if column.startswith(quantity + "_"):
+            size = column[len(quantity) + 1:]
+            yield column, ("voxel by voxel" if size == "voxels" else f"smallest block {size.replace('R', ' R')}"), size == "voxels"
+
+
+def burr_panel(axes, rows, radius, quantity, value, last_too=True):
+    some = [r for r in rows if r["radius_mm"] == radius]
+    for number, (column, label, dashed) in enumerate(ways(rows[0], quantity)):
+        if dashed and not last_too:
+            continue
+        # Each curve is thinner than the one before it, so that equal ones are all visible.
+        axes.plot([r["penetration_mm"] / radius for r in some], [value(r, column) for r in some], color=COLOURS[number],
+                  linestyle="--" if dashed else "-", linewidth=3.4 - 0.8 * number, label=label)
+    axes.margins(x=0.01)
+
+
+def draw_drilling(folder):
+    rows = read_rows(os.path.join(folder, "forces.csv"))
+    growth = read_rows(os.path.join(folder, "growth.csv"))
+    radii = sorted({r["radius_mm"] for r in rows})
+    ends = [radii[0], radii[-1]]
+
+    figure, axes = start("Figure 2a: force against penetration", "elastic force of flat, solid bone; voxels of 0.3 mm; no erosion", len(ends))
+    for panel, radius in zip(axes, ends):
+        burr_panel(panel, rows, radius, "force_n", lambda r, c: r[c])
+        panel.set_ylabel(f"R = {radius:.0f} mm\nforce (N)")
+        panel.set_ylim(bottom=0)
+        legend(panel)
+    axes[-1].set_xlabel("penetration / R")
+    save(figure, folder, "fig2a_force.png")
+
+    def error(row, column):
+        return 100.0 * (row[column] / row["true_n"] - 1.0) if row["true_n"] > 0.05 else math.nan
+    figure, axes = start("Figure 2b: error of the force",
+                         "against sums over 512 points in each voxel of the ball's surface; paper: a few percent or below", len(ends))
+    for panel, radius in zip(axes, ends):
+        burr_panel(panel, rows, radius, "force_n", error, last_too=False)
+        panel.set_ylabel(f"R = {radius:.0f} mm\nerror (%)")
+        legend(panel)
+    axes[-1].set_xlabel("penetration / R")
+    save(figure, folder, "fig2b_error.png")
+
+    figure, axes = start("Figure 3: time for one force", "one core; the least of several repetitions", len(radii), height=2.9)
+    for panel, radius in zip(axes, radii):
+        burr_panel(panel, rows, radius, "us", lambda r, c: r[c])
+        panel.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
+        panel.set_yscale("log")
+        panel.set_ylabel(f"R = {radius:.0f} mm\ntime (µs)")
+        legend(panel)
+    axes[-1].set_xlabel("penetration / R")
+    save(figure, folder, "fig3_time.png")
+
+    figure, (panel,) = start("Figure 4: time for one force by the radius of the burr",
+                             "half of R in the bone; paper: 1 to 6 mm, voxel by voxel beyond 1 ms from 2 mm on", 1, height=4.6)
+    for number, (column, label, dashed) in enumerate(ways(growth[0], "us")):
+        panel.plot([r["radius_mm"] for r in growth], [r[column] for r in growth], color=COLOURS[number], marker="o", markersize=4,
+                   linestyle="--" if dashed else "-", label=label)
+    panel.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
+    panel.set_yscale("log")
+    panel.set_ylabel("time (µs)")
+    panel.set_xlabel("radius R of the burr (mm)")
+    legend(panel)
+    save(figure, folder, "fig4_growth.png")
+
+
+# Force rates on surfaces (surface: table 1 and figure 3).
+def draw_table(folder):
+    rows = [r for r in read_rows(os.path.join(folder, "table1.csv")) if r["hand"] == "slow"]
+    figure, (rates, times) = start("Table 1: force rate by the size of the mesh", "one core; a point and a ball, moving at 55 mm/s", 2)
+    number = 0
+    for mode in ("off-tree", "off-brute", "chr"):
+        for tool in ("point", "3 mm"):
+            some = sorted((r for r in rows if r["mode"] == mode and str(r["tool"]) == tool), key=lambda r: r["triangles"])
+            size = [r["triangles"] for r in some]
+            style = {"color": COLOURS[number], "marker": "o", "markersize": 4, "linestyle": "-" if mode == "off-tree" else "--",
+                     "label": f"{mode}, {'point' if tool == 'point' else 'ball of 3 mm'}"}
+            number += 1
+            if not some:
+                continue
+            rates.plot(size, [r["rate_hz"] for r in some], **style)
+            if mode != "off-brute":
+                times.plot(size, [r["p999_us"] for r in some], **style)
+    rates.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 kHz")
+    times.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
+    for axes in (rates, times):
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+    rates.set_ylabel("force rate (Hz)")
+    times.set_ylabel("time of a step, 99.9th percentile (µs)")
+    times.set_xlabel("triangles")
+    legend(rates)
+    legend(times)
+    save(figure, folder, "table1.png")
+
+
+def draw_filters(folder):
+    rows = read_rows(os.path.join(folder, "filters.csv"))
+    figure, (axes,) = start("Figure 3: allowed error of the surface by the distance from the probe",
+                            "full detail within 3 mm; distance: the largest of |dx|, |dy| and |dz|", 1, height=4.6)
+    distance = [r["distance_mm"] for r in rows]
+    for number, (column, label) in enumerate((("exact_um", "1 - exp(-x²)"), ("bell_um", "bell, as computed"), ("frustums_um", "multiple frustums"))):
+        axes.plot(distance, [r[column] for r in rows], color=COLOURS[number], linestyle="--" if number == 0 else "-", label=label, zorder=3 - number)
+    axes.set_xlabel("distance from the probe (mm)")
+    axes.set_ylabel("allowed error (µm)")
+    axes.set_ylim(bottom=0)
+    axes.margins(x=0.01)
+    legend(axes)
+    save(figure, folder, "fig3_filters.png")
+
+
+# Meshes side by side (docking: figures 3, 4 and 6).
+def draw_panels(folder, name):
+    with open(os.path.join(folder, name), encoding="utf-8") as f:
+        picture = json.load(f)
+    images = [mpimg.imread(os.path.join(folder, p["file"])) for p in picture["panels"]]
+    height, width = images[0].shape[:2]
+    gap, head, foot = 16, 86, 64
+    wide, high = len(images) * (width + gap) + gap, head + height + foot
+    figure = plt.figure(figsize=(wide / 100.0, high / 100.0))
+    figure.text(gap / wide, 1.0 - 30 / high, picture["title"], fontsize=16, va="center")
+    figure.text(gap / wide, 1.0 - 60 / high, picture["remark"], fontsize=10.5, va="center", color="#666666")
+    for i, (panel, image) in enumerate(zip(picture["panels"], images)):
+        left = gap + i * (width + gap)
+        axes = figure.add_axes([left / wide, foot / high, width / wide, height / high])
+        axes.imshow(image, interpolation="nearest")
+        axes.axis("off")
+        middle = (left + 0.5 * width) / wide
+        figure.text(middle, (foot - 18) / high, panel["title"], fontsize=12, ha="center", va="center")
+        figure.text(middle, (foot - 42) / high, panel["remark"], fontsize=9.5, ha="center", va="center", color="#666666")
+    figure.savefig(os.path.join(folder, name[:-len(".panels.json")] + ".png"), dpi=100)
+    plt.close(figure)
+    print(f"  {name[:-len('.panels.json')]}.png")
+
+
+def draw(folder):
+    def have(*names):
+        return all(os.path.exists(os.path.join(folder, n)) for n in names)
+    if have("rates.csv"):
+        draw_rates(folder)
+    if have("forces.csv", "growth.csv"):
+        draw_drilling(folder)
+    if have("table1.csv"):
+        draw_table(folder)
+    if have("filters.csv"):
+        draw_filters(folder)
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(".panels.json"):
+            draw_panels(folder, name)
+
+
+def self_test():
+    """Every kind of figure from a few rows; among them gaps, a single run, and values that are not numbers."""
+    def write(folder, name, header, rows):
+        with open(os.path.join(folder, name), "w", encoding="utf-8", newline="") as f:
+            writer = csv.writer(f)
+            writer.writerow(header.split(","))
+            writer.writerows(rows)
+    with tempfile.TemporaryDirectory() as folder:
+        header = "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,disturbed,triangles"
+        rows = [[f"{case}, x", case, goal, 0.02 * i, int(with_load and i > 400), 900 - 300 * (with_load and i > 400), int(i % 50 < 3), 5000 + i]
+                for case, goal, with_load in (("off", 0, True), ("low", 800, False), ("high", 1200, False), ("on", 900, True))
+                for i in range(800 if with_load else 400)]
+        write(folder, "rates.csv", header, rows)
+        header = "radius_mm,penetration_mm,true_n,force_n_0.1R,force_n_voxels,us_0.1R,us_voxels"
+        write(folder, "forces.csv", header, [[r, r * i / 20, 0.1 * i, 0.1 * i, 0.101 * i, 2 + i, 90 + i] for r in (1, 5) for i in range(20)])
+        write(folder, "growth.csv", header, [[r, r / 2, 1, 1, 1, 2 * r, 90 * r * r] for r in (1, 2, 6)])
+        write(folder, "table1.csv", "triangles,tool,mode,hand,rate_hz,p999_us",
+              [[n, tool, mode, "slow", 1e6 / n, n / 50] for n in (2000, 92450) for tool in ("point", "3 mm") for mode in ("off-tree", "chr")])
+        write(folder, "filters.csv", "distance_mm,exact_um,bell_um,frustums_um", [[i, i, i, i] for i in range(9)])
+        plt.imsave(os.path.join(folder, "a.png"), [[0.0, 1.0], [1.0, 0.0]])
+        with open(os.path.join(folder, "fig3_border.panels.json"), "w", encoding="utf-8") as f:
+            json.dump({"title": "t", "remark": "r", "panels": [{"file": "a.png", "title": "(a)", "remark": ""}] * 2}, f)
+        draw(folder)
+        wanted = ["fig5_rates", "fig7_load_without_law", "fig8_load_with_law", "fig2a_force", "fig2b_error", "fig3_time", "fig4_growth", "table1",
+                  "fig3_filters", "fig3_border"]
+        missing = [n for n in wanted if not os.path.exists(os.path.join(folder, n + ".png"))]
+        for name in missing:
+            print(f"FAIL {name}.png was not drawn")
+        return 1 if missing else 0
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__)
+        return 1
+    if sys.argv[1] == "--self-test":
+        return self_test()
+    draw(sys.argv[1])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,209 @@
+// The stages between a pose and a force, each called by itself: exchange of models, model, shape, safety, actuate.
+#include <gtest/gtest.h>
+
+#include "rt/servo/model_exchange.hpp"
+#include "rt/servo/stage_actuate.hpp"
+#include "rt/servo/stage_model.hpp"
+#include "rt/servo/stage_safety.hpp"
+#include "rt/servo/stage_shape.hpp"
+#include "tests/support/cycle_fixture.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+TEST(ModelExchange, another_model_enters_with_a_reset_and_the_old_one_goes_back) {
+    CycleFixture f;
+    auto* const fresh = new SpringModel;
+    std::unique_ptr<ForceModel> offered(fresh);
+    ASSERT_TRUE(f.mailbox.model.offer(offered));
+    servo::exchange_models(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.hand[0].model, fresh);
+    EXPECT_EQ(fresh->resets, 1);
+    EXPECT_TRUE(f.reported(EventCode::model_swapped));
+    EXPECT_EQ(f.mailbox.model.collect().release(), &f.model);  // the fixture's own
+    delete fresh;
+}
+
+// Remembers how it was driven.
+class DrivenModel final : public ForceModel {
+public:
+    ToolDrive driven;
+    [[nodiscard]] KnobSpec knob() const noexcept override {
+        return {.path = "driven", .floor = 0.1F, .start = 1.0F, .haptic = true};
+    }
+    [[nodiscard]] std::uint32_t items(float /*fidelity*/) const noexcept override { return 1; }
+    void reset(const ToolState& /*tool*/) noexcept override {}
+    void drive(const ToolDrive& drive) noexcept override { driven = drive; }
+    StepResult step(const ToolState& /*tool*/, const Budget& /*budget*/) noexcept override { return {}; }
+    [[nodiscard]] ModelBodies bodies() const noexcept override { return {}; }
+};
+
+TEST(StageModel, the_model_steps_at_the_governors_level_between_two_readings_of_the_clock) {
+    CycleFixture f;
+    f.model.clock = &f.clock;
+    f.model.cost = microseconds(40);
+    servo::step_models(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.budget.fidelity, 1.0F);
+    EXPECT_EQ(f.c.model_cost, microseconds(40));
+    EXPECT_EQ(f.c.timestamps, 2U);
+    EXPECT_EQ(f.c.recomputed_fraction, 1.0);
+    EXPECT_LT((f.c.hand[0].step.wrench_world.force_n - 40.0 * f.model.rest_world_m).norm(), 1e-12);
+}
+
+TEST(StageModel, a_repeated_cycle_has_the_recorded_level) {
+    CycleFixture f;
+    const CycleScript script{.level = 0.25F, .deadline_check = {3, 0}};
+    f.io.script = &script;
+    servo::step_models(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.budget.fidelity, 0.25F);
+    EXPECT_TRUE(f.c.hand[0].deadline.replayed);
+    EXPECT_EQ(f.c.hand[0].deadline.passed_at, 3U);
+}
+
+TEST(StageModel, a_tool_is_driven_while_its_switch_and_the_force_are_on) {
+    CycleFixture f;
+    DrivenModel model;
+    f.c.hand[0].model = &model;
+    f.c.dt = milliseconds(2);
+    const auto on = [&] {
+        servo::step_models(f.c, f.settings, f.io);
+        return model.driven.on;
+    };
+    f.c.hand[0].tool.buttons = kDriveButton;
+    EXPECT_FALSE(on());  // no force
+    EXPECT_FALSE(model.driven.enabled);
+    f.c.run.state = RunState::active;
+    EXPECT_TRUE(on());
+    EXPECT_DOUBLE_EQ(model.driven.step_s, 2e-3);
+    f.c.dry = true;
+    EXPECT_FALSE(on());
+    f.c.dry = false;
+    f.c.hand[0].tool.buttons = 0;
+    EXPECT_FALSE(on());
+    EXPECT_TRUE(model.driven.enabled);
+    f.c.hand[0].drive.by = DriveSwitch::always;
+    EXPECT_TRUE(on());
+}
+
+TEST(StageModel, a_line_that_cannot_be_read_switches_nothing_on) {
+    CycleFixture f;
+    DrivenModel model;
+    f.c.hand[0].model = &model;
+    f.c.hand[0].drive = {DriveSwitch::line, 1U << 4};
+    f.c.run.state = RunState::active;
+    f.c.lines.sample.sequence = 1;
+    f.c.lines.sample.inputs = 1U << 4;
+    const auto on = [&] {
+        servo::step_models(f.c, f.settings, f.io);
+        return model.driven.on;
+    };
+    EXPECT_FALSE(on());  // none are fitted
+    f.c.lines.fitted = true;
+    EXPECT_TRUE(on());
+    f.c.lines.age = f.settings.lines_age_max + microseconds(1);
+    EXPECT_FALSE(on());
+    f.c.lines.age = Duration{0};
+    f.c.lines.sample.inputs = 1U << 5;
+    EXPECT_FALSE(on());
+}
+
+TEST(StageShape, a_force_is_scaled_and_damped) {
+    ServoSettings settings;
+    settings.force_scale = 0.5;
+    settings.damping_n_s_m = 2.0;
+    settings.hand_damping_n_s_m = 1e6;  // no bound
+    CycleFixture f(settings);
+    f.c.bounds = {1e9, 1e9};
+    HandCycle& h = f.c.hand[0];
+    h.step.wrench_world.force_n = Vec3(1.0, 0.0, 0.0);
+    h.tool.twist_world.linear_m_s = Vec3(0.0, 0.1, 0.0);
+    servo::shape(f.c, f.settings);
+    EXPECT_LT((h.wanted_world.force_n - Vec3(0.5, -0.2, 0.0)).norm(), 1e-12);
+}
+
+TEST(StageShape, at_a_delay_the_walls_are_no_stiffer_than_is_stable) {
+    CycleFixture f;
+    f.c.statistics.metrics.delay_p99_ns = 20'000'000;
+    servo::bound_by_delay(f.c, f.settings);
+    const double bound = f.c.bounds.stiffness_n_m;
+    EXPECT_GT(bound, 0.0);
+    ASSERT_LT(bound, f.c.hand[0].chain.settings().wall_stiffness_n_m);
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(f.c.hand[0].walls.gain(), bound / f.c.hand[0].chain.settings().wall_stiffness_n_m, 1e-9);
+    f.c.statistics.metrics.delay_p99_ns = 0;
+    servo::bound_by_delay(f.c, f.settings);
+    EXPECT_GT(f.c.bounds.stiffness_n_m, bound);
+}
+
+TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
+    CycleFixture f;
+    f.c.events.arm = true;
+    f.c.order.kind = static_cast<std::uint32_t>(CommandKind::arm);
+    f.c.order.sequence = 7;
+    f.c.hand[0].wanted_world.force_n = Vec3(1.0, 0.0, 0.0);
+    f.c.dt = milliseconds(1);
+    servo::make_safe(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.run.state, RunState::armed);
+    EXPECT_EQ(f.c.report.last_sequence, 7U);
+    EXPECT_EQ(f.c.report.last_result, CommandResult::done);
+    EXPECT_TRUE(f.c.hand[0].out.enable);
+    f.c.events = {};
+    double before_n = 0.0;
+    for (int i = 0; i < 600; ++i) {
+        servo::make_safe(f.c, f.settings, f.io);
+        const double now_n = f.c.hand[0].shown_world.force_n.norm();
+        EXPECT_GE(now_n, before_n);
+        before_n = now_n;
+    }
+    EXPECT_EQ(f.c.run.state, RunState::active);
+    EXPECT_NEAR(before_n, 1.0, 1e-9);
+}
+
+TEST(StageSafety, a_force_that_is_no_number_is_a_fault_with_a_snapshot_and_zero_force) {
+    CycleFixture f;
+    f.c.run.state = RunState::active;
+    f.c.hand[0].wanted_world.force_n = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    servo::make_safe(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.run.state, RunState::fault);
+    EXPECT_EQ(f.c.run.reason, RunReason::force_not_finite);
+    EXPECT_EQ(f.c.hand[0].shown_world.force_n, Vec3(Vec3::Zero()));
+    EXPECT_FALSE(f.c.hand[0].out.enable);
+    EXPECT_TRUE(f.reported(EventCode::fault_latched));
+    EXPECT_EQ(newest(f.mailbox.fault).reason, static_cast<std::uint64_t>(RunReason::force_not_finite));
+}
+
+TEST(StageSafety, a_stop_ends_the_run_once_no_force_is_shown) {
+    CycleFixture f;
+    f.mailbox.stop_signal.store(15);
+    servo::make_safe(f.c, f.settings, f.io);
+    EXPECT_TRUE(f.c.finished);
+    EXPECT_TRUE(f.reported(EventCode::stopping));
+    EXPECT_EQ(f.region->mailbox.pushed(), 1U);
+}
+
+TEST(StageSafety, a_dry_cycle_changes_no_state) {
+    CycleFixture f;
+    f.c.dry = true;
+    f.c.events.arm = true;
+    servo::make_safe(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.run.state, RunState::ready);
+}
+
+TEST(StageActuate, the_device_gets_the_wrench_after_the_chain) {
+    CycleFixture f;
+    f.c.cycle = 12;
+    f.c.hand[0].out.wrench_dev.force_n = Vec3(0.0, 0.3, 0.0);
+    f.c.hand[0].out.enable = true;
+    f.device.write_status = IoStatus::lost;
+    servo::actuate(f.c);
+    EXPECT_EQ(f.device.command.wrench_dev.force_n, Vec3(0.0, 0.3, 0.0));
+    EXPECT_TRUE(f.device.command.enable);
+    EXPECT_EQ(f.device.command.heartbeat, 12U);
+    EXPECT_EQ(f.c.hand[0].write_status, IoStatus::lost);
+}
+
+}  // namespace
+}  // namespace tact

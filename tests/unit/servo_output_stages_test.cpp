@@ -1,0 +1,180 @@
+// The stages after the force, each called by itself: publish, govern, close; and how a freely running loop keeps its rate.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "rt/servo/publish_levels.hpp"
+#include "rt/servo/rate_keeping.hpp"
+#include "rt/servo/record.hpp"
+#include "rt/servo/stage_close.hpp"
+#include "rt/servo/stage_govern.hpp"
+#include "rt/servo/stage_publish.hpp"
+#include "tests/support/cycle_fixture.hpp"
+
+namespace tact {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+TEST(StagePublish, the_tool_is_published_each_cycle_and_health_ten_times_a_second) {
+    CycleFixture f;
+    f.c.report.health_at = f.c.now;
+    f.c.cycle = 3;
+    f.c.hand[0].shown_world.force_n = Vec3(0.1, 0.2, 0.3);
+    servo::publish(f.c, f.settings, *f.region);
+    EXPECT_EQ(newest(f.region->tool[0]).cycle, 3U);
+    EXPECT_EQ(newest(f.region->tool[0]).force_world_n[2], 0.3);
+    EXPECT_EQ(newest(f.region->bodies).count, 1U);
+    EXPECT_EQ(f.region->health.count(), 0U);
+    f.c.now += milliseconds(100);
+    servo::publish(f.c, f.settings, *f.region);
+    EXPECT_EQ(newest(f.region->health).cycle, 3U);
+    EXPECT_EQ(newest(f.region->devices).hand[0].samples, 1U);
+}
+
+// Counts what it is asked to publish.
+class ShowingModel final : public ForceModel {
+public:
+    std::uint64_t shown_at = 0;
+    double force_n = 0.0;
+    [[nodiscard]] KnobSpec knob() const noexcept override { return {.path = "showing", .haptic = true}; }
+    [[nodiscard]] std::uint32_t items(float /*fidelity*/) const noexcept override { return 1; }
+    void reset(const ToolState& /*tool*/) noexcept override {}
+    StepResult step(const ToolState& /*tool*/, const Budget& /*budget*/) noexcept override { return {}; }
+    [[nodiscard]] ModelBodies bodies() const noexcept override { return {}; }
+    void publish(const ModelCycle& cycle) noexcept override {
+        shown_at = cycle.cycle;
+        force_n = cycle.step.wrench_world.force_n.norm();
+    }
+};
+
+TEST(StagePublish, a_model_publishes_its_own_topic) {
+    CycleFixture f;
+    ShowingModel model;
+    f.c.hand[0].model = &model;
+    f.c.hand[0].step.wrench_world.force_n = Vec3(0.0, 2.0, 0.0);
+    f.c.cycle = 9;
+    servo::publish(f.c, f.settings, *f.region);
+    EXPECT_EQ(model.shown_at, 9U);
+    EXPECT_EQ(model.force_n, 2.0);
+}
+
+TEST(PublishLevels, a_visual_path_shows_what_the_report_has_of_it) {
+    CycleFixture f;
+    f.c.housekeeping.gui_vertices_max = 1000;
+    f.c.housekeeping.gui_busy_s = 0.004;
+    servo::publish_levels(f.c, f.settings, *f.region);
+    const LevelsTopic t = newest(f.region->levels);
+    EXPECT_EQ(t.count, 2U);
+    EXPECT_STREQ(t.path[kDisplayPathIndex].path, "stub.display");
+    EXPECT_EQ(t.path[kDisplayPathIndex].items, 1000U);
+    EXPECT_EQ(t.path[kDisplayPathIndex].cost_s, 0.004);
+    EXPECT_STREQ(t.path[kForcePathIndex].path, "spring.force");
+    EXPECT_EQ(t.path[kForcePathIndex].items, 1000U);
+}
+
+TEST(StageGovern, a_rate_below_the_goal_lowers_the_level_after_an_interval) {
+    CycleFixture f;
+    servo::start_interval(f.c, f.c.now);
+    servo::set_display_present(f.c, f.settings, false);
+    const std::uint64_t sequence = f.c.report.levels_sequence;
+    for (int i = 0; i < 400; ++i) {  // 500 Hz
+        f.c.now += milliseconds(2);
+        f.c.overran = true;
+        ++f.c.govern.overruns;
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    EXPECT_LT(f.c.governor.level(kForcePathIndex), 1.0F);
+    EXPECT_NEAR(f.c.govern.law_rate_hz, 500.0, 10.0);
+    EXPECT_GT(f.c.report.levels_sequence, sequence);
+    EXPECT_TRUE(f.reported(EventCode::level_changed));
+}
+
+TEST(StageGovern, dry_cycles_count_and_ask_for_nothing) {
+    CycleFixture f;
+    f.c.dry = true;
+    f.c.now += milliseconds(500);
+    servo::govern(f.c, f.settings, *f.region);
+    EXPECT_EQ(f.c.govern.cycles, 1U);
+    EXPECT_EQ(f.region->levels.count(), 0U);
+}
+
+TEST(StageClose, a_cycle_is_recorded_and_traced_with_its_cost) {
+    CycleFixture f;
+    f.c.planned = f.c.now;
+    f.c.step = 5;
+    f.c.cycle = 5;
+    f.c.run.state = RunState::active;
+    f.c.hand[0].step.trace_flags = 1U << 17;
+    f.clock.advance(microseconds(300));
+    servo::close(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.cost, microseconds(300));
+    EXPECT_FALSE(f.c.overran);
+    CycleTopic cycle{};
+    HandTopic hand{};
+    TraceTopic trace{};
+    RingCursor a, b, t;
+    ASSERT_TRUE(f.region->cycles.next(a, cycle) && f.region->hand[0].next(b, hand) &&
+                f.region->trace.next(t, trace));
+    EXPECT_EQ(cycle.step, 5U);
+    EXPECT_EQ(cycle.cost_ns, 300000);
+    EXPECT_EQ(cycle.timestamps, 1U);
+    EXPECT_EQ(hand.step, 5U);
+    EXPECT_EQ(trace.status, static_cast<std::uint32_t>(RunState::active) | 1U << 17);
+}
+
+TEST(StageClose, a_cycle_that_ends_after_the_next_one_is_due_overran) {
+    CycleFixture f;
+    f.c.planned = f.c.now;
+    f.clock.advance(microseconds(1200));
+    servo::close(f.c, f.settings, f.io);
+    EXPECT_TRUE(f.c.overran);
+    EXPECT_EQ(f.c.behind, microseconds(200));
+    EXPECT_EQ(f.c.govern.overruns, 1U);
+    EXPECT_TRUE(f.reported(EventCode::overrun));
+}
+
+TEST(StageClose, a_dry_cycle_is_recorded_as_one_and_leaves_no_trace) {
+    CycleFixture f;
+    f.c.dry = true;
+    servo::close(f.c, f.settings, f.io);
+    CycleTopic cycle{};
+    RingCursor a;
+    ASSERT_TRUE(f.region->cycles.next(a, cycle));
+    EXPECT_EQ(cycle.flags, kCycleDry);
+    EXPECT_EQ(f.region->trace.pushed(), 0U);
+}
+
+TEST(Record, the_start_names_the_devices) {
+    CycleFixture f;
+    const StartTopic t = servo::start_topic(f.settings, {&f.hand, 1}, true);
+    EXPECT_EQ(t.hands, 1U);
+    EXPECT_EQ(t.flags, kStartLines);
+    EXPECT_EQ(t.period_ns, 1'000'000);
+    EXPECT_STREQ(t.device[0].name, "stub");
+}
+
+TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
+    CycleFixture f;
+    EXPECT_EQ(servo::work_fraction(f.c, f.settings), 1.0);
+    const Instant before = f.clock.now();
+    EXPECT_EQ(servo::rest(f.c, f.settings, f.clock), before);
+    EXPECT_EQ(f.c.timestamps, 1U);
+}
+
+TEST(RateKeeping, a_free_loop_behind_its_goal_keeps_part_of_its_sums) {
+    ServoSettings settings;
+    settings.free_running = true;
+    settings.governor.law = Law::elastic;
+    CycleFixture f(settings);
+    double least = 1.0;
+    for (int i = 0; i < 60; ++i) {
+        f.c.now += milliseconds(2);  // half the goal
+        least = std::min(least, servo::work_fraction(f.c, f.settings));
+    }
+    EXPECT_LT(least, 0.5);
+}
+
+}  // namespace
+}  // namespace tact
