@@ -47,7 +47,7 @@ struct Theme {
 // For a window of this size in pixels; steps of a quarter, so that fonts are rarely built anew.
 // density  of the display, 1 at 96 points an inch: what is small and dense has larger letters, as far as 1280x720 of
 //          their size still fit
-// wished   times that, by a person who sees it
+// requested   times that, by a person who sees it
 [[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
 // Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
 void build_theme(Theme& theme, float scale);

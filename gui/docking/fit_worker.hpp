@@ -1,6 +1,6 @@
 // Computes the fit of the bodies in the map beside the frame loop, as it takes longer than a frame.
 //
-// Thread   one of its own, at low priority. It works on the newest wish, at most once a second, never more
+// Thread   one of its own, at low priority. It works on the newest request, at most once a second, never more
 //          than a tenth of the time, and not again while nothing has moved.
 #pragma once
 

@@ -1,8 +1,8 @@
 // Extracts contours beside the frame loop, and has the final ones refined.
 //
-// A contour that is being moved is extracted again and again, the newest wish always, on a grid as coarse as
-// it must be (contour_extract.hpp). When nothing has been wished for kRest and a surface is still a plain
-// one, it is given to `refine`, which may take seconds; a wish in between stops it.
+// A contour that is being moved is extracted again and again, the newest request always, on a grid as coarse as
+// it must be (contour_extract.hpp). When nothing has been requested for kRest and a surface is still a plain
+// one, it is given to `refine`, which may take seconds; a request in between stops it.
 //
 // Thread   one of its own, at low priority. The callers never wait for it, except that the destructor waits
 //          for the slice under way.
@@ -55,7 +55,7 @@ public:
     ContourWorker(const ContourWorker&) = delete;
     ContourWorker& operator=(const ContourWorker&) = delete;
 
-    // A level that is not finite is no wish. Of an unchanged level nothing is done.
+    // A level that is not finite is no request. Of an unchanged level nothing is done.
     void request(std::size_t contour, std::optional<double> level);
     // Most vertices of the next plain meshes: the level of the governor while a contour is moved.
     void set_vertices_max(std::uint32_t vertices);
@@ -65,7 +65,7 @@ public:
 private:
     struct Contour {
         std::optional<double> requested;
-        std::uint64_t request = 0, shown = 0, refined = 0;  // numbers of wishes: asked, extracted, refined
+        std::uint64_t request = 0, shown = 0, refined = 0;  // numbers of requests: asked, extracted, refined
         std::optional<ContourOutcome> news;
         std::uint32_t stride = 0;
         Instant requested_at{};

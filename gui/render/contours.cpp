@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-// A level is obeyed in the next picture, at the cost of this picture being later by no more than another one.
+// A level is applied in the next picture, at the cost of this picture being later by no more than another one.
 constexpr double kAtOnceS = 0.033;
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Keeps a DetailCut beside the frame loop.
 //
-// Thread   wish() and take() on the frame thread, which never waits; the work on one of its own, at low priority,
-//          that sleeps while nothing is wished for. The destructor waits for the step under way.
+// Thread   request() and take() on the frame thread, which never waits; the work on one of its own, at low priority,
+//          that sleeps while nothing is requested for. The destructor waits for the step under way.
 // Fails by error(): the forest cannot be used; nothing comes then.
 #pragma once
 

@@ -26,7 +26,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--scene-switch", options.scene_switch,
-                   "folder in which the launcher takes the wish for another scene; tact gives it")
+                   "folder in which the launcher takes the request for another scene; tact gives it")
         ->check(CLI::ExistingDirectory);
     app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
         ->check(CLI::Range(0.0, 1e7));

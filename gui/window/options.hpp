@@ -18,13 +18,14 @@ struct GuiOptions {
     std::string
         window_state_file;     // settings of the window: read at the start, written at the end; empty: none
     WindowState window_state;  // as it was read
-    std::string scene_switch;  // the launcher's folder, where it takes wishes for another scene; empty: none
-    std::string screenshot;    // empty: none
-    std::string report;        // of drilling, JSON, at the end; empty: none
-    std::string frames;        // what frames took, JSON, at the end; empty: none
-    double every_s = 0.0;      // between pictures of a series beside the screenshot; 0: none
-    double seconds = 0.0;      // 0: until closed
-    double zoom = 1.0;         // of the home view
+    std::string
+        scene_switch;        // the launcher's folder, where it takes requests for another scene; empty: none
+    std::string screenshot;  // empty: none
+    std::string report;      // of drilling, JSON, at the end; empty: none
+    std::string frames;      // what frames took, JSON, at the end; empty: none
+    double every_s = 0.0;    // between pictures of a series beside the screenshot; 0: none
+    double seconds = 0.0;    // 0: until closed
+    double zoom = 1.0;       // of the home view
     int width_px = 1280, height_px = 720;
     float ui_scale = 1.0F;  // of letters and panels
     bool traces = false;    // in the place of the plots, at the start

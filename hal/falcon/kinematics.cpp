@@ -12,7 +12,7 @@
 //           points outwards is the smaller t.
 // Forward   Newton on the three G from a near position, steps held to kStepM. From any place of the workspace
 //           to any other it takes at most eight steps, from 2 mm beside at most four (200000 pairs at random);
-//           what is not solved then, or is solved out of reach, is no posture of a Falcon.
+//           what is not solved then, or is solved out of reach, is no configuration of a Falcon.
 // Jacobian  G_p dp + G_t dt = 0, so dp/dt = -M^-1 D with the rows of M the gradients G_p and D = diag(G_t).
 // Virtual   work: torque = J^T F.
 #include "hal/falcon/kinematics.hpp"

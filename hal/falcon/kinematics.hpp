@@ -55,7 +55,7 @@ struct ArmConfiguration {
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();  // of the grip's position by the legs' angles, m
     double spread = 0.0;    // volume spanned by the shins' directions, 0 to 1; 0: the grip gives way
     double leverage = 0.0;  // least share of a thigh's push that goes along its shin; 0: stretched
-    bool good = false;      // there is such a posture, and neither of the two is below kPoorest
+    bool good = false;      // there is such a configuration, and neither of the two is below kPoorest
 
     static constexpr double kPoorest = 0.1;
 };
@@ -85,7 +85,7 @@ public:
     [[nodiscard]] ArmConfiguration configuration(const Vec3& grip_m) const noexcept TACT_RT;
 
     // Steps of the command for a force at the grip. Beyond kForceMaxN or kTorqueMax the force is shortened as
-    // a whole and keeps its direction. Nothing for what is not a number, and where the posture is not good.
+    // a whole and keeps its direction. Nothing for what is not a number, and where the configuration is not good.
     [[nodiscard]] Drive drive(const ArmConfiguration& configuration,
                               const Vec3& force_n) const noexcept TACT_RT;
     // And back: the force that these steps push with.
