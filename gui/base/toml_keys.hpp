@@ -1,7 +1,7 @@
 // Keys of a TOML file that a person may type: each has a range, every one may be left out, and another is an error.
 //
 // Form     tables are one deep: "camera.distance_a" is distance_a in [camera]
-// Fails    by StartupError that names the file, the line or the key, what is wanted there, and `mend`
+// Fails    by StartupError that names the file, the line or the key, what is wanted there, and `fix`
 #pragma once
 
 #include <filesystem>

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kRecentPathMost = 4096;
 constexpr const char* kRecentsFix =
-    "mend it, or remove it: with the next scene it is set aside and written anew";
+    "fix it, or remove it: with the next scene it is set aside and written anew";
 constexpr std::int64_t kLatestUnixS = 253402300799;  // the year 9999
 
 }  // namespace
@@ -91,7 +91,7 @@ std::filesystem::path set_aside(const std::filesystem::path& file) {
     std::filesystem::rename(file, aside, failed);
     if (failed)
         throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.folder_of(),
-                           "move the file away, or mend the permissions of its folder");
+                           "move the file away, or fix the permissions of its folder");
     return aside;
 }
 

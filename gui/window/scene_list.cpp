@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kLookedAtMost = 20'000;  // entries of a folder
 constexpr std::size_t kOpenedMost = 16;        // of them, to see whether they are DICOM
 
-// The reason alone: attempt and mend are for a terminal.
+// The reason alone: attempt and fix are for a terminal.
 std::string reason_of(const std::string& error, const std::string& path) {
     std::string words = error.substr(0, error.find('\n'));
     if (const auto at = words.find(path); at != std::string::npos) words.erase(0, at + path.size());

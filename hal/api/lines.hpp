@@ -91,7 +91,7 @@ struct LinesHealth {
 class Lines {
 public:
     virtual ~Lines() = default;
-    virtual LinesInfo open() = 0;  // start-up; throws StartupError naming line, chip and mend
+    virtual LinesInfo open() = 0;  // start-up; throws StartupError naming line, chip and fix
     // The newest look; its age is now - taken_at. False, and the sample as it was, before the first.
     virtual bool read(LinesSample& newest, Instant now) noexcept TACT_RT = 0;
     virtual void write(const LinesCommand& command, Instant now) noexcept TACT_RT = 0;

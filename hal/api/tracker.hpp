@@ -71,7 +71,7 @@ struct TrackerHealth {
 class Tracker {
 public:
     virtual ~Tracker() = default;
-    virtual TrackerInfo open() = 0;  // start-up; throws StartupError with the mend
+    virtual TrackerInfo open() = 0;  // start-up; throws StartupError with the fix
     // The newest sample of a sensor as of now; what it returns is also newest.state. Lost before the first
     // sample leaves the pose at the identity.
     virtual TrackerState read(unsigned sensor, TrackerSample& newest, Instant now) noexcept TACT_RT = 0;

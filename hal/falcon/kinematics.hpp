@@ -1,6 +1,6 @@
 // Where the Falcon's three legs put its grip, and back; what its motors have to push for a force at the grip.
 //
-// Frame    device: x right, y up, z to the user, parallel to the desk; origin middle_z_m in front of the
+// Frame    device: x right, y up, z to the user, parallel to the table; origin middle_z_m in front of the
 //          base, about the middle of the workspace
 // Legs     0 top, 1 right, 2 left; angle of a thigh from the base's plane, more pushes the grip to the user
 // Lengths  as the open driver libnifalcon has them (FalconGeometry.h)

@@ -36,7 +36,7 @@ GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder) {
         int error = 0;
         if (!GpioAccess::describe(path, chip, error)) {
             refused += (refused.empty() ? "" : ", ") + path;
-            if (why != EACCES) why = error;  // rights are what a person can mend
+            if (why != EACCES) why = error;  // rights are what a person can fix
             continue;
         }
         seen += (seen.empty() ? "" : ", ") + words(chip);

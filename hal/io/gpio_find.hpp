@@ -1,6 +1,6 @@
 // Which GPIO chip a person means, and what to say where there is none.
 //
-// Fails by StartupError naming chip, line and mend
+// Fails by StartupError naming chip, line and fix
 // Thread   start-up, and a pump that looks for its adapter again
 #pragma once
 

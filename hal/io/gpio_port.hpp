@@ -2,7 +2,7 @@
 //
 // Identity  the device node that was opened is looked at before each reading: an adapter that was pulled
 //           out may still say yes to every write, and another chip may get its number
-// Fails by  StartupError at open(), naming line, chip and mend; by a reading that is not good afterwards
+// Fails by  StartupError at open(), naming line, chip and fix; by a reading that is not good afterwards
 #pragma once
 
 #include <sys/types.h>

@@ -126,7 +126,7 @@ void PhantomUsb::wait_for_first_state() {
                                        std::to_string(phantom::kVersion),
                                    "bring firmware and program to a common version");
             }
-            const std::string fix = "mend its firmware; hal/phantom/PROTOCOL.md says what it has to send";
+            const std::string fix = "fix its firmware; hal/phantom/PROTOCOL.md says what it has to send";
             if (news_.refusal == LinkRefusal::serial)
                 throw StartupError(what, "it gives another serial than its USB descriptor", fix);
             throw StartupError(what,

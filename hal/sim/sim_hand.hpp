@@ -20,9 +20,9 @@
 namespace tact {
 
 inline constexpr std::array kSimHandNames{"passive", "wander", "stroke", "drill", "surgeon", "suction-tube"};
-// "sucker" was the name of "suction-tube" before 2026-11-25; recordings hold it.
+// Recordings from before 2026-11-25 hold the former name.
 inline std::string current_hand_name(const std::string& name) {
-    return name == "sucker" ? "suction-tube" : name;
+    return name == "sucker" ? "suction-tube" : name;  // former name
 }
 
 // A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (maker's figure

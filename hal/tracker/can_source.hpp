@@ -27,7 +27,7 @@ struct CanBatch {
 class CanSource {
 public:
     virtual ~CanSource() = default;
-    virtual void open() = 0;             // throws StartupError with the mend
+    virtual void open() = 0;             // throws StartupError with the fix
     virtual bool reopen() noexcept = 0;  // after gone; true: it works again
     // Waits for `patience` at most until there is something, then gives what there is, kCanBatch at most and
     // no more than `into` holds.

@@ -4,7 +4,7 @@
 //          frames that found no room are counted (SO_RXQ_OVFL); the queue holds about one round of the
 //          reader
 // Thread   one; receive() does not allocate
-// Fails by open(): StartupError naming the interface and the command that mends it. Later by CanFault.
+// Fails by open(): StartupError naming the interface and the command that fixes it. Later by CanFault.
 #pragma once
 
 #include <linux/can.h>
@@ -22,7 +22,7 @@ namespace tact {
 // Exactly the frames of so many sensors; extended identifiers and remote requests never pass.
 [[nodiscard]] std::vector<can_filter> tracker_filters(CanFormat format, unsigned sensors);
 
-// Why an interface cannot be read, and the mend; `error` is the errno of the step.
+// Why an interface cannot be read, and the fix; `error` is the errno of the step.
 enum class CanStep : std::uint8_t { socket, interface, type, state, mtu, option, bind };
 [[noreturn]] void refuse_interface(CanStep step, const std::string& interface, int error);
 

@@ -206,14 +206,14 @@ def buttons(operator):
     rows = forces(operator, recording)
     states = [state for _, state, _ in rows]
     stop = states.index("fault")
-    felt_n = max(n for _, state, n in rows[max(stop - 1000, 0):stop] if state == "active")
+    least_force_n = max(n for _, state, n in rows[max(stop - 1000, 0):stop] if state == "active")
     at_stop = [n for _, state, n in rows if state == "fault"]
     none, since, before = [], 0.0, None
     for t, state, n in rows:
         since, before = (since, before) if state == before else (t, state)
         if state == "ready" and t - since > RAMPED_OUT_S:
             none.append(n)
-    return bad + expect("in the second before the stop the hand feels up to %.2f N" % felt_n, felt_n > 0.02) + \
+    return bad + expect("in the second before the stop the hand feels up to %.2f N" % least_force_n, least_force_n > 0.02) + \
         expect("from the cycle that sees the stop on there is no force: 0 N in each of %d" % len(at_stop), max(at_stop) == 0.0) + \
         expect("disarmed there is none: 0 N in each of %d cycles" % len(none), len(none) > 100 and max(none) == 0.0)
 

@@ -123,7 +123,7 @@ class Soak:
         words = [os.path.join(o.programs, "tact"), "run", o.scene, "--headless", "--quiet", "--session", "soak", "--seconds", o.seconds,
                  "--rate", o.rate, "--record", self.recording, *o.more]
         began = time.monotonic()
-        with open(self.log, "w") as log:  # a pipe that nobody reads would stop the controller's house once it is full
+        with open(self.log, "w") as log:  # a pipe that nobody reads would stop the controller's log once it is full
             run = subprocess.Popen(list(map(str, words)), env=self.env, stdout=subprocess.DEVNULL, stderr=log)
         names = {"tact-gui", "tact-rt", "tact-record"}
         try:

@@ -1,6 +1,6 @@
 // What is to go wrong, and when: the lines of a fault file, or of standard input.
 //
-// Line     [at SECONDS [s]] DEED [NUMBERS] [ARM]; # begins a comment; kActions has every action
+// Line     [at SECONDS [s]] ACTION [NUMBERS] [ARM]; # begins a comment; kActions has every action
 // Arm      by its serial; without one: every arm
 // Hostile  a line of any bytes: bounded, every number checked against its row
 // Fails by StartupError with the file, the line and what could stand there

@@ -10,6 +10,10 @@ if(Python3_FOUND)
     add_test(NAME tidy_servo_words COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     add_test(NAME tidy_servo_words_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py --self-test
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_words COMMAND ${Python3_EXECUTABLE} tests/tidy/words.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_words_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/words.py --self-test
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(tidy_words tidy_words_finds_violations PROPERTIES LABELS tidy)
     set_tests_properties(tidy_layers tidy_layers_finds_violations tidy_systems tidy_systems_finds_violations
         tidy_servo_words tidy_servo_words_finds_violations
         PROPERTIES LABELS tidy)

@@ -160,7 +160,7 @@ TEST(Config, an_unknown_key_is_refused_with_line_and_the_likely_one) {
 
 TEST(Config, keys_and_names_of_older_files_are_read) {
     const TempFile file(
-        "[device2]\nhand = \"sucker\"\n[drilling]\nsucker_diameter_mm = 3\n[governor]\npicture_goal_hz = "
+        "[device2]\nhand = \"sucker\"\n[drilling]\nsucker_diameter_mm = 3\n[governor]\npicture_goal_hz = "  // former names
         "20\n");
     RtConfig config;
     read_config(file.path(), config);

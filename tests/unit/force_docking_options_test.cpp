@@ -86,7 +86,7 @@ double density_at(const ForceModel& model, const Vec3& p_m) {
     return dynamic_cast<const DockingModel&>(model).map().sample(p_m, gradient);
 }
 
-Wrench felt_at(const ForceModel& model, const Pose& pose) {
+Wrench force_at(const ForceModel& model, const Pose& pose) {
     return dynamic_cast<const DockingModel&>(model).evaluate(pose, Budget{}).wrench_world;
 }
 
@@ -105,8 +105,8 @@ TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_
     // A body that lies where the other does is pulled home, not deeper in.
     Pose between = scene().structures[0].home();
     between.p_m.x() += 14.0 * kA;
-    EXPECT_LT(felt_at(*next, between).force_n.x(), -0.1);
-    EXPECT_GT(felt_at(*next, between).force_n.norm(), felt_at(*model, between).force_n.norm());
+    EXPECT_LT(force_at(*next, between).force_n.x(), -0.1);
+    EXPECT_GT(force_at(*next, between).force_n.norm(), force_at(*model, between).force_n.norm());
     // Off again: at once, without a build.
     ASSERT_TRUE(set_option(*next, kDockingSubtraction, false));
     EXPECT_FALSE(next->stale());
@@ -124,12 +124,12 @@ TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
     for (int i = 0; i < 300; ++i) {
         const Pose pose =
             start_pose(left.home(), 20.0 * kA * random.uniform(), 0.5 * random.uniform(), random.next());
-        const Vec3 force_n = felt_at(*next, pose).force_n;
+        const Vec3 force_n = force_at(*next, pose).force_n;
         most_n = std::max(most_n, force_n.norm());
         Pose fore = pose, back = pose;
         const int a = i % 3;
         fore.p_m[a] += 0.5 * kA, back.p_m[a] -= 0.5 * kA;
-        const double stiffness_n_m = (felt_at(*next, fore).force_n - felt_at(*next, back).force_n).norm() /
+        const double stiffness_n_m = (force_at(*next, fore).force_n - force_at(*next, back).force_n).norm() /
                                      (kA * scene().meta.world_per_model);
         ASSERT_LT(stiffness_n_m, 330.0);
     }
@@ -138,7 +138,7 @@ TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
     // Alone in its place it is at rest, and pulled back from beside.
     Pose away = left.home();
     away.p_m.z() += 6.0 * kA;
-    EXPECT_LT(felt_at(*next, away).force_n.z(), -0.05);
+    EXPECT_LT(force_at(*next, away).force_n.z(), -0.05);
 }
 
 TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
@@ -189,11 +189,11 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
         return most;
     };
     EXPECT_LT(steps(), 0.06);
-    const Wrench without = felt_at(*model, overlapping);
+    const Wrench without = force_at(*model, overlapping);
     ASSERT_TRUE(set_option(*model, kDockingClash, true));
     EXPECT_FALSE(model->stale());
     EXPECT_EQ(model->bodies().options, kDockingClash);
-    const Wrench with = felt_at(*model, overlapping);
+    const Wrench with = force_at(*model, overlapping);
     const ClashField left(scene().structures[0]), right(scene().structures[1]);
     const ClashBody other{&right, model->bodies().T_model_body[1]};
     const Wrench clash =
@@ -211,7 +211,7 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     EXPECT_EQ(model->bodies().options, kDockingClash);
     EXPECT_FALSE(model->stale());
     ASSERT_TRUE(set_option(*model, kDockingClash, false));
-    EXPECT_LT((felt_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
+    EXPECT_LT((force_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
 }
 
 TEST(DockingOptions, an_order_between_take_over_and_step_does_not_cut_the_force) {
@@ -237,7 +237,7 @@ TEST(DockingOptions, force_scale_scales_the_clash_too) {
     Pose overlapping = scene().structures[1].home();
     overlapping.p_m.x() -= 18.0 * kA;
     for (DockingModel* model : {full.get(), half.get()}) ASSERT_TRUE(set_option(*model, kDockingClash, true));
-    EXPECT_LT((0.5 * felt_at(*full, overlapping).force_n - felt_at(*half, overlapping).force_n).norm(), 1e-9);
+    EXPECT_LT((0.5 * force_at(*full, overlapping).force_n - force_at(*half, overlapping).force_n).norm(), 1e-9);
 }
 
 TEST(DockingOptions, a_command_turns_its_option_on_and_off) {

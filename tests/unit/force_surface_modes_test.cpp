@@ -73,13 +73,13 @@ Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool has_slow_upd
 
 // To the bit: the same triangles are looked at in the same order, however they were found.
 void expect_same_force(const Felt& a, const Felt& b) {
-    double felt_n = 0.0;
+    double force_sum_n = 0.0;
     std::size_t different = 0;
     for (std::size_t i = 0; i < a.force_n.size(); ++i) {
         different += a.force_n[i] == b.force_n[i] ? 0 : 1;
-        felt_n += b.force_n[i].norm();
+        force_sum_n += b.force_n[i].norm();
     }
-    EXPECT_GT(felt_n / static_cast<double>(b.force_n.size()), 0.3);
+    EXPECT_GT(force_sum_n / static_cast<double>(b.force_n.size()), 0.3);
     EXPECT_EQ(different, 0U);
 }
 
@@ -189,7 +189,7 @@ TEST(SurfaceModes, more_fidelity_is_a_wider_radius_of_more_triangles) {
     }
 }
 
-// A hand at rest over the sphere, tended `turns` times.
+// A hand at rest over the sphere after `turns` slow updates.
 std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder& order = {}) {
     auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
     static_cast<void>(model->order(order));

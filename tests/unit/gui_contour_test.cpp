@@ -141,7 +141,7 @@ TEST(ContourWorker, tells_what_went_wrong_and_is_not_stuck) {
     worker.request(0, -0.5);
     const auto bad = take_until(worker, 0, [](const ContourOutcome& o) { return !o.error.empty(); });
     EXPECT_NE(bad.error.find("no such luck"), std::string::npos);
-    worker.request(0, std::nan(""));  // no wish
+    worker.request(0, std::nan(""));  // no request
     worker.request(9, 1.0);           // no contour
     worker.request(0, -0.4);
     (void)take_until(worker, 0, [](const ContourOutcome& o) { return o.plain && o.level == -0.4; });

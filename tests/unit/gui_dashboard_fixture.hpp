@@ -10,9 +10,9 @@
 
 namespace tact::test {
 
-class Desk {
+class TestDashboard {
 public:
-    Desk(float width_px, float height_px, float scale) : width_(width_px), height_(height_px) {
+    TestDashboard(float width_px, float height_px, float scale) : width_(width_px), height_(height_px) {
         IMGUI_CHECKVERSION();
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
@@ -26,9 +26,9 @@ public:
         frame();
         frame();
     }
-    ~Desk() { ImGui::DestroyContext(); }
-    Desk(const Desk&) = delete;
-    Desk& operator=(const Desk&) = delete;
+    ~TestDashboard() { ImGui::DestroyContext(); }
+    TestDashboard(const TestDashboard&) = delete;
+    TestDashboard& operator=(const TestDashboard&) = delete;
 
     void frame() {
         ImGui::GetIO().DeltaTime = 1.0F / 60.0F;

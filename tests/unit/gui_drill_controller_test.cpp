@@ -1,4 +1,4 @@
-// The window's desk of drilling, with a controller that is published by hand: what is shown, said and reported.
+// The window's dashboard of drilling, with a controller that is published by hand: what is shown, said and reported.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -53,23 +53,23 @@ void write_ear(const std::filesystem::path& path) {
 class DrillControllerTest : public testing::Test {
 protected:
     void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "tact-desk-XXXXXX").string();
+        std::string name = (std::filesystem::temp_directory_path() / "tact-dashboard-XXXXXX").string();
         ASSERT_NE(mkdtemp(name.data()), nullptr);
         folder_ = name;
         setenv("TACT_RUNTIME_DIR", name.c_str(), 1);
         write_ear(folder_ / "ear.tact");
         content_ = load_scene(folder_ / "ear.tact");
-        running_.emplace("desk", (folder_ / "ear.tact").string(), content_->checksum);
+        running_.emplace("dashboard", (folder_ / "ear.tact").string(), content_->checksum);
         own_.mark_ready();
-        gui_.emplace("desk", own_.fd());
-        desk_.use(content_);
+        gui_.emplace("dashboard", own_.fd());
+        dashboard_.use(content_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     void attach() {
         for (int i = 0; i < 2000 && !gui_->attached(); ++i) {
             running_->serve(2);
-            if (gui_->poll().arrived) desk_.meet();
+            if (gui_->poll().arrived) dashboard_.meet();
         }
         ASSERT_TRUE(gui_->attached());
     }
@@ -107,7 +107,7 @@ protected:
     }
     void frame(std::span<const BrickChange> changes) {
         static_cast<void>(gui_->read());
-        desk_.follow(*gui_, changes, state_, drilling_);
+        dashboard_.follow(*gui_, changes, state_, drilling_);
     }
     [[nodiscard]] long message(const std::string& text) const {
         return std::count_if(state_.events.begin(), state_.events.end(),
@@ -119,7 +119,7 @@ protected:
     std::optional<fake::Controller> running_;
     OwnedRegion<GuiRegion> own_;
     std::optional<Controller> gui_;
-    DrillController desk_;
+    DrillController dashboard_;
     DashboardState state_;
     DrillingState drilling_;
     int ms_ = 0;
@@ -176,9 +176,9 @@ TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
     EXPECT_EQ(message("facial nerve cut"), 1);
     EXPECT_EQ(drilling_.injuries, 1U);
     const auto file = folder_ / "report.json";
-    desk_.save("", std::nullopt);
+    dashboard_.save("", std::nullopt);
     EXPECT_FALSE(std::filesystem::exists(file));
-    desk_.save(file.string(), BurrVisibility{4.0, 3.0});
+    dashboard_.save(file.string(), BurrVisibility{4.0, 3.0});
     std::ifstream in(file);
     const auto report = nlohmann::json::parse(in);
     EXPECT_EQ(report["injuries"], 1);
@@ -194,7 +194,7 @@ TEST_F(DrillControllerTest, cycles_that_nobody_saw_are_counted) {
     for (int i = 0; i < 20000; ++i) running_->region().trace.push(c);  // more than the ring holds
     frame({});
     const auto file = folder_ / "report.json";
-    desk_.save(file.string(), std::nullopt);
+    dashboard_.save(file.string(), std::nullopt);
     std::ifstream in(file);
     EXPECT_GT(nlohmann::json::parse(in)["unseen_cycles"].get<int>(), 3000);
 }

@@ -91,11 +91,11 @@ protected:
             state.traces.scope.add(t, 1'000'000);
         }
     }
-    void hours(test::Desk& desk, double h) {
+    void hours(test::TestDashboard& dashboard, double h) {
         const auto until = frame_ + static_cast<std::uint64_t>(h * 3600.0 * 60.0);
         while (frame_ < until) {
-            tick(desk.state);
-            if (frame_ % 3600 == 0) desk.frame();
+            tick(dashboard.state);
+            if (frame_ % 3600 == 0) dashboard.frame();
         }
     }
 
@@ -110,24 +110,24 @@ protected:
 };
 
 TEST_F(Hours, take_no_more_memory_than_the_first_minutes) {
-    test::Desk desk(1280.0F, 720.0F, 1.0F);
-    desk.state.have_levels = true;
-    desk.state.levels = levels_;
+    test::TestDashboard dashboard(1280.0F, 720.0F, 1.0F);
+    dashboard.state.have_levels = true;
+    dashboard.state.levels = levels_;
     for (int strip : {0, 1}) {
-        desk.state.strip = strip;
-        desk.state.span_choice = 4;
-        if (strip == 1) desk.state.traces.scope.choose_run(TraceRun::automatic);
-        for (int i = 0; i < 5; ++i) desk.frame();
-        hours(desk, 0.05);
-        for (int i = 0; i < 5; ++i) desk.frame();
+        dashboard.state.strip = strip;
+        dashboard.state.span_choice = 4;
+        if (strip == 1) dashboard.state.traces.scope.choose_run(TraceRun::automatic);
+        for (int i = 0; i < 5; ++i) dashboard.frame();
+        hours(dashboard, 0.05);
+        for (int i = 0; i < 5; ++i) dashboard.frame();
         const long long before = live_bytes;
-        hours(desk, 1.0);
-        desk.frame();
+        hours(dashboard, 1.0);
+        dashboard.frame();
         // Buffers of what is drawn follow what is seen, a plot that has filled for one.
         EXPECT_LT(live_bytes - before, 512 * 1024) << "strip " << strip;
     }
     EXPECT_GT(cycle_, 7'000'000);
-    EXPECT_GT(desk.state.history.knobs.forgotten(), 1000U);
+    EXPECT_GT(dashboard.state.history.knobs.forgotten(), 1000U);
 }
 
 TEST_F(Hours, no_allocation_for_a_sample_once_it_runs) {

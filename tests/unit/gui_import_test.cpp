@@ -25,10 +25,10 @@ protected:
         std::ofstream(folder_ / "wrong.ply") << "no mesh";
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
-    void until_done(BrowserController& desk) {
+    void until_done(BrowserController& dashboard) {
         const Instant until = Monotonic::now() + std::chrono::minutes(2);
         do {
-            desk.follow(state_);
+            dashboard.follow(state_);
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         } while (state_.importing && Monotonic::now() < until);
         EXPECT_FALSE(state_.importing);
@@ -47,21 +47,21 @@ protected:
 TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
     const auto scene_switch = folder_ / "scene_switch";
     std::filesystem::create_directory(scene_switch);
-    BrowserController desk(scene_switch);
-    desk.drop({folder_ / "tetra.obj"}, state_);
-    until_done(desk);
+    BrowserController dashboard(scene_switch);
+    dashboard.drop({folder_ / "tetra.obj"}, state_);
+    until_done(dashboard);
     const auto asked = take_asked_scene(scene_switch);
     ASSERT_TRUE(asked) << state_.message;
     EXPECT_EQ(asked->parent_path(), folder_ / "cache" / "tact");
     EXPECT_TRUE(std::filesystem::exists(*asked));
     refuse_scene(scene_switch, "not now");
-    desk.follow(state_);
+    dashboard.follow(state_);
     EXPECT_EQ(state_.message, "not now");
     EXPECT_EQ(state_.message_grade, Grade::bad);
 }
 
 TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
-    BrowserController desk({});
+    BrowserController dashboard({});
     state_.open = true;
     state_.folder = folder_;
     const auto row = [&](const char* name) -> SceneRow& {
@@ -72,10 +72,10 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     };
     const auto press = [&](const std::string& file) {
         state_.mark_wanted = file;
-        desk.follow(state_);
+        dashboard.follow(state_);
     };
-    desk.follow(state_);
-    while (state_.reading) desk.follow(state_);
+    dashboard.follow(state_);
+    while (state_.reading) dashboard.follow(state_);
     ASSERT_FALSE(state_.here.empty());
     EXPECT_TRUE(state_.marks_text.empty());
     press(folder_ / "tetra.obj");
@@ -85,26 +85,26 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     EXPECT_TRUE(row("wrong.ply").marked && !state_.marks_import);
     EXPECT_EQ(state_.marks_text, "2 marked. One mesh at a time.");
     state_.import_wanted = true;  // the button is not to be pressed now
-    desk.follow(state_);
+    dashboard.follow(state_);
     EXPECT_FALSE(state_.importing);
     press(folder_ / "wrong.ply");
     EXPECT_TRUE(!row("wrong.ply").marked && row("tetra.obj").marked);
     state_.import_wanted = true;
-    desk.follow(state_);
+    dashboard.follow(state_);
     EXPECT_TRUE(state_.marks_text.empty() && !row("tetra.obj").marked);
-    until_done(desk);
+    until_done(dashboard);
     EXPECT_EQ(scenes(), 1U) << state_.message;
     for (std::size_t i = 0; i < 3 * kDroppedMost; ++i)
         press(std::string("/a/").append(std::to_string(i)).append(".pdb"));
     EXPECT_EQ(state_.marks_text.substr(0, 3), "18 ") << state_.marks_text;
     state_.clear_wanted = true;
-    desk.follow(state_);
+    dashboard.follow(state_);
     EXPECT_TRUE(state_.marks_text.empty());
 }
 
 TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
-    BrowserController desk({});
-    desk.drop({"/a/notes.txt"}, state_);
+    BrowserController dashboard({});
+    dashboard.drop({"/a/notes.txt"}, state_);
     EXPECT_TRUE(state_.open);
     EXPECT_NE(state_.message.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
         << state_.message;
@@ -112,19 +112,19 @@ TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
 }
 
 TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {
-    BrowserController desk({});
-    desk.drop({folder_ / "wrong.ply"}, state_);
-    until_done(desk);
+    BrowserController dashboard({});
+    dashboard.drop({folder_ / "wrong.ply"}, state_);
+    until_done(dashboard);
     EXPECT_TRUE(state_.message.starts_with("tact-prep: ")) << state_.message;
     EXPECT_NE(state_.message.find("fix:"), std::string::npos);
     EXPECT_EQ(scenes(), 0U);
 }
 
 TEST_F(Import, a_cancelled_import_leaves_nothing) {
-    BrowserController desk({});
-    desk.drop({folder_ / "tetra.obj"}, state_);
+    BrowserController dashboard({});
+    dashboard.drop({folder_ / "tetra.obj"}, state_);
     state_.cancel_wanted = true;
-    until_done(desk);
+    until_done(dashboard);
     EXPECT_NE(state_.message.find("cancelled"), std::string::npos) << state_.message;
     EXPECT_EQ(scenes(), 0U);
 }
@@ -135,8 +135,8 @@ TEST_F(Import, a_list_of_scenes_that_cannot_be_read_is_kept_aside) {
     std::filesystem::create_directories(list.parent_path());
     std::ofstream(list) << "by hand, and wrong";
     {
-        BrowserController desk(folder_);
-        desk.used("/a/b.tact", state_);
+        BrowserController dashboard(folder_);
+        dashboard.used("/a/b.tact", state_);
     }  // waits for the disk
     EXPECT_EQ(read_recents(list).at(0).path, "/a/b.tact");
     std::ifstream aside(list.string() + ".damaged");
@@ -144,8 +144,8 @@ TEST_F(Import, a_list_of_scenes_that_cannot_be_read_is_kept_aside) {
 }
 
 TEST_F(Import, without_a_launcher_the_window_says_how_to_open_a_scene) {
-    BrowserController desk({});
-    desk.drop({"/a/b.tact"}, state_);
+    BrowserController dashboard({});
+    dashboard.drop({"/a/b.tact"}, state_);
     EXPECT_TRUE(state_.open);
     EXPECT_NE(state_.message.find("tact run /a/b.tact"), std::string::npos) << state_.message;
 }

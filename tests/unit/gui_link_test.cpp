@@ -1,4 +1,4 @@
-// What the visual process believes of the controller: records checked, levels obeyed, commands followed.
+// What the visual process believes of the controller: records checked, levels applied, commands followed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -20,17 +20,17 @@ namespace {
 namespace fs = std::filesystem;
 using sample::error_of;
 
-class Desk : public testing::Test {
+class TestDashboard : public testing::Test {
 protected:
     void SetUp() override {
-        char name[] = "/tmp/tact-desk-test-XXXXXX";
+        char name[] = "/tmp/tact-dashboard-test-XXXXXX";
         folder_ = mkdtemp(name);
     }
     void TearDown() override { fs::remove_all(folder_); }
     fs::path folder_;
 };
 
-TEST_F(Desk, what_was_used_is_read_again_newest_first_once_and_no_more_than_fit) {
+TEST_F(TestDashboard, what_was_used_is_read_again_newest_first_once_and_no_more_than_fit) {
     std::vector<RecentScene> scenes;
     for (std::int64_t i = 0; i < 40; ++i)
         scenes = with_recent(scenes, {std::string("/s/").append(std::to_string(i)), i});
@@ -42,7 +42,7 @@ TEST_F(Desk, what_was_used_is_read_again_newest_first_once_and_no_more_than_fit)
     EXPECT_TRUE(read_recents(folder_ / "none.json").empty());
 }
 
-TEST_F(Desk, a_list_that_is_wrong_is_told_with_its_mend) {
+TEST_F(TestDashboard, a_list_that_is_wrong_is_told_with_its_mend) {
     for (const char* const bad :
          {"", "[", "{}", "{\"scenes\": 3}", "{\"scenes\": [3]}", "{\"scenes\": [{\"path\": \"/a\"}]}",
           "{\"scenes\": [{\"path\": \"a\", \"used_unix_s\": 1}]}",
@@ -59,7 +59,7 @@ TEST_F(Desk, a_list_that_is_wrong_is_told_with_its_mend) {
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
 
-TEST_F(Desk, a_file_that_is_set_aside_is_kept_once) {
+TEST_F(TestDashboard, a_file_that_is_set_aside_is_kept_once) {
     const fs::path file = folder_ / "recent.json";
     for (const char* const content : {"first", "second"}) {
         std::ofstream(file) << content;
@@ -73,7 +73,7 @@ TEST_F(Desk, a_file_that_is_set_aside_is_kept_once) {
     EXPECT_NE(error_of([&] { (void)set_aside(file); }).find("fix:"), std::string::npos);
 }
 
-TEST_F(Desk, the_state_folder_is_the_users_own) {
+TEST_F(TestDashboard, the_state_folder_is_the_users_own) {
     setenv("XDG_STATE_HOME", "/x/state", 1);
     EXPECT_EQ(state_folder(), "/x/state/tact");
     setenv("XDG_STATE_HOME", "relative", 1);
@@ -81,7 +81,7 @@ TEST_F(Desk, the_state_folder_is_the_users_own) {
     EXPECT_EQ(state_folder(), "/home/someone/.local/state/tact");
 }
 
-TEST_F(Desk, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
+TEST_F(TestDashboard, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
     const fs::path good = folder_ / "good.tact", broken = folder_ / "broken.tact";
     sample::scene().write(good);
     const auto bytes = sample::scene().to_bytes();
@@ -96,7 +96,7 @@ TEST_F(Desk, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
     EXPECT_TRUE(rows[2].trouble.starts_with("missing: ")) << rows[2].trouble;
 }
 
-TEST_F(Desk, a_peek_sees_the_same_as_a_whole_read_and_no_changed_byte_of_what_it_reads) {
+TEST_F(TestDashboard, a_peek_sees_the_same_as_a_whole_read_and_no_changed_byte_of_what_it_reads) {
     const fs::path file = folder_ / "scene.tact";
     const auto bytes = sample::scene().to_bytes();
     sample::scene().write(file);
@@ -114,7 +114,7 @@ TEST_F(Desk, a_peek_sees_the_same_as_a_whole_read_and_no_changed_byte_of_what_it
     EXPECT_EQ(refused, 28);
 }
 
-TEST_F(Desk, a_folder_shows_the_way_up_its_folders_and_its_scenes) {
+TEST_F(TestDashboard, a_folder_shows_the_way_up_its_folders_and_its_scenes) {
     sample::scene().write(folder_ / "b.tact");
     std::ofstream(folder_ / "notes.txt") << "no scene";
     std::ofstream(folder_ / "a.tact") << "no scene either";
@@ -135,7 +135,7 @@ TEST_F(Desk, a_folder_shows_the_way_up_its_folders_and_its_scenes) {
     EXPECT_FALSE(many.trouble.empty());
 }
 
-TEST_F(Desk, dropped_files_are_a_scene_an_import_or_told_in_words) {
+TEST_F(TestDashboard, dropped_files_are_a_scene_an_import_or_told_in_words) {
     using Words = std::vector<std::string>;
     EXPECT_EQ(meaning_of({"/a/x.tact"}).scene, "/a/x.tact");
     EXPECT_EQ(meaning_of({"/a/x.PLY.gz"}).import, (Words{"touch", "/a/x.PLY.gz"}));
@@ -154,7 +154,7 @@ TEST_F(Desk, dropped_files_are_a_scene_an_import_or_told_in_words) {
     }
 }
 
-TEST_F(Desk, what_would_be_made_of_files_is_one_line) {
+TEST_F(TestDashboard, what_would_be_made_of_files_is_one_line) {
     const auto words = [](const std::vector<std::string>& files) { return meaning_text(meaning_of(files)); };
     EXPECT_EQ(words({"/a/1abc.pdb", "/a/emd.mrc"}), "Dock 1abc.pdb into emd.mrc.");
     EXPECT_EQ(words({"/a/1.pdb", "/a/m.mrc", "/a/2.cif", "/a/3.cif"}), "Dock 1.pdb and 2 more into m.mrc.");
@@ -169,7 +169,7 @@ TEST_F(Desk, what_would_be_made_of_files_is_one_line) {
               "Touch b" + name.substr(0, 22) + "..." + name.substr(0, 8) + ".stl.");
 }
 
-TEST_F(Desk, a_folder_shows_the_raw_data_that_tact_reads_by_their_endings) {
+TEST_F(TestDashboard, a_folder_shows_the_raw_data_that_tact_reads_by_their_endings) {
     sample::scene().write(folder_ / "z.tact");
     for (const char* const name :
          {"emd.MRC", "1abc.pdb.gz", "bunny.ply", "ear.nii.gz", "notes.txt", ".hidden.pdb"})
@@ -196,7 +196,7 @@ TEST_F(Desk, a_folder_shows_the_raw_data_that_tact_reads_by_their_endings) {
     EXPECT_EQ(meaning_of({whole.path}).import, (std::vector<std::string>{"drill", folder_}));
 }
 
-TEST_F(Desk, raw_data_and_folders_share_the_rows_that_scenes_leave) {
+TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_that_scenes_leave) {
     sample::scene().write(folder_ / "z.tact");
     const auto fill = [&](const char* ending, bool folders) {
         for (std::size_t i = 0; i < kFolderRowsMost; ++i) {
@@ -221,7 +221,7 @@ TEST_F(Desk, raw_data_and_folders_share_the_rows_that_scenes_leave) {
     EXPECT_EQ(count([](const SceneRow& row) { return row.kind == "docking"; }), 1U);
 }
 
-TEST_F(Desk, what_an_import_printed_tells_how_far_it_is) {
+TEST_F(TestDashboard, what_an_import_printed_tells_how_far_it_is) {
     EXPECT_EQ(share_done(""), std::nullopt);
     EXPECT_EQ(share_done("reading\n[no share]\n[ 12 % of it\n"), std::nullopt);
     EXPECT_EQ(share_done("[ 45 %] simplify\nwarning: a [99 %] b\n"), 0.45);
@@ -232,7 +232,7 @@ TEST_F(Desk, what_an_import_printed_tells_how_far_it_is) {
     EXPECT_EQ(error_text("[  0 %] reading\ntact-prep: no\n  fix: x\n"), "tact-prep: no\n  fix: x");
 }
 
-TEST_F(Desk, sizes_and_times_read_well) {
+TEST_F(TestDashboard, sizes_and_times_read_well) {
     EXPECT_EQ(size_text(12), "12 B");
     EXPECT_EQ(size_text(820'000), "820 kB");
     EXPECT_EQ(size_text(12'345'678), "12.3 MB");

@@ -25,44 +25,44 @@ protected:
             t.status = static_cast<std::uint32_t>(RunState::active);
             scope().add(t, 1'000'000);
         }
-        desk_.frame();
+        dashboard_.frame();
     }
-    TraceScope& scope() { return desk_.state.traces.scope; }
+    TraceScope& scope() { return dashboard_.state.traces.scope; }
     void open() {
-        desk_.click(kCard, "Traces");
-        ASSERT_EQ(desk_.state.strip, 1);
+        dashboard_.click(kCard, "Traces");
+        ASSERT_EQ(dashboard_.state.strip, 1);
         run(5000);
     }
     ImVec2 on_lanes(float share) {
         const Layout l =
-            layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true);
-        return {l.plots.x + desk_.theme.px(60.0F) + share * (l.plots.width - desk_.theme.px(80.0F)),
+            layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
+        return {l.plots.x + dashboard_.theme.px(60.0F) + share * (l.plots.width - dashboard_.theme.px(80.0F)),
                 l.plots.y + 0.7F * l.plots.height};
     }
 
-    test::Desk desk_{1280.0F, 720.0F, 1.0F};
+    test::TestDashboard dashboard_{1280.0F, 720.0F, 1.0F};
     std::int64_t cycle_ = 0;
 };
 
 TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
     const float before =
-        layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), false).plots.height;
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), false).plots.height;
     open();
     EXPECT_GT(
-        layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true).plots.height,
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true).plots.height,
         1.4F * before);
-    desk_.click(kCard, "Load and detail");
-    EXPECT_EQ(desk_.state.strip, 0);
+    dashboard_.click(kCard, "Load and detail");
+    EXPECT_EQ(dashboard_.state.strip, 0);
 }
 
 TEST_F(TracesPanel, pause_holds_the_picture_still_and_run_goes_on) {
     open();
-    desk_.click(kCard, "Pause");
+    dashboard_.click(kCard, "Pause");
     EXPECT_TRUE(scope().held());
     const std::int64_t end_ns = scope().end_ns();
     run(1000);
     EXPECT_EQ(scope().end_ns(), end_ns);
-    desk_.click(kCard, "Run");
+    dashboard_.click(kCard, "Run");
     EXPECT_FALSE(scope().held());
     EXPECT_GT(scope().end_ns(), end_ns);
 }
@@ -74,7 +74,7 @@ TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
     s.level = 5.0;  // never
     scope().set_trigger(s);
     scope().set_span(0.1);
-    desk_.click(kCard, "single");
+    dashboard_.click(kCard, "single");
     EXPECT_EQ(scope().run(), TraceRun::single);
     run(1000);
     EXPECT_EQ(scope().captures(), 0U);
@@ -83,7 +83,7 @@ TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
     run(1000);
     EXPECT_EQ(scope().captures(), 1U);
     EXPECT_STREQ(scope().status(), "captured");
-    desk_.click(kCard, "Arm trigger");
+    dashboard_.click(kCard, "Arm trigger");
     EXPECT_STREQ(scope().status(), "waiting for the trigger");
     run(1000);
     EXPECT_STREQ(scope().status(), "captured");
@@ -91,28 +91,28 @@ TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
 
 TEST_F(TracesPanel, the_edge_is_turned_by_a_click) {
     open();
-    desk_.click(kCard, "normal");
+    dashboard_.click(kCard, "normal");
     EXPECT_TRUE(scope().trigger().rising);
-    desk_.click(kCard, "rising");
+    dashboard_.click(kCard, "rising");
     EXPECT_FALSE(scope().trigger().rising);
 }
 
 TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
     open();
-    desk_.click(kCard, "Cursors");
+    dashboard_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
     const double begun_s = scope().span_s();
-    const Layout l = layout_for(desk_.theme, 1280.0F, 720.0F, middle_card(desk_.state, desk_.panels), true);
+    const Layout l = layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
     // The lanes begin behind their numbers, 44 wide, inside the card's padding.
     const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
     const float y = l.plots.y + 0.7F * l.plots.height;
     const auto x = [&](double share) { return x0 + static_cast<float>(share) * (x1 - x0); };
-    desk_.drag({x(scope().cursor[0]), y}, {x(0.5), y});
+    dashboard_.drag({x(scope().cursor[0]), y}, {x(0.5), y});
     EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
     EXPECT_FALSE(scope().held());
     EXPECT_EQ(scope().span_s(), begun_s);
     const std::int64_t end_ns = scope().end_ns();
-    desk_.drag({x(0.1), y}, {x(0.3), y});
+    dashboard_.drag({x(0.1), y}, {x(0.3), y});
     EXPECT_TRUE(scope().held());
     EXPECT_NEAR(1e-9 * static_cast<double>(end_ns - scope().end_ns()), 0.2, 0.03);
     EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
@@ -120,28 +120,28 @@ TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
 
 TEST_F(TracesPanel, the_wheel_looks_nearer_about_the_mouse) {
     open();
-    desk_.click(kCard, "Pause");
+    dashboard_.click(kCard, "Pause");
     const ImVec2 at = on_lanes(0.5F);
     const double before = scope().span_s();
-    desk_.wheel(at, 3.0F);
+    dashboard_.wheel(at, 3.0F);
     EXPECT_NEAR(scope().span_s(), before * std::pow(0.8, 3.0), 1e-6);
-    desk_.wheel(at, -3.0F);
+    dashboard_.wheel(at, -3.0F);
     EXPECT_NEAR(scope().span_s(), before, 1e-6);
 }
 
 TEST_F(TracesPanel, export_asks_the_application) {
-    desk_.click(kCard, "Traces");
-    desk_.click(kCard, "Export");
-    EXPECT_FALSE(desk_.state.traces.export_wanted);  // there is nothing yet
+    dashboard_.click(kCard, "Traces");
+    dashboard_.click(kCard, "Export");
+    EXPECT_FALSE(dashboard_.state.traces.export_wanted);  // there is nothing yet
     run(100);
-    desk_.click(kCard, "Export");
-    EXPECT_TRUE(desk_.state.traces.export_wanted);
+    dashboard_.click(kCard, "Export");
+    EXPECT_TRUE(dashboard_.state.traces.export_wanted);
 }
 
 TEST_F(TracesPanel, nothing_known_garbage_and_every_mode_are_drawn) {
     for (int strip : {0, 1}) {
-        desk_.state.strip = strip;
-        desk_.frame();
+        dashboard_.state.strip = strip;
+        dashboard_.frame();
         for (int mode = 0; mode < 4; ++mode) {
             scope().choose_run(static_cast<TraceRun>(mode));
             run(300);
@@ -153,11 +153,11 @@ TEST_F(TracesPanel, nothing_known_garbage_and_every_mode_are_drawn) {
         t.taken_at_ns = 1'000'000'000 + 1'000'000 * ++cycle_;
         scope().add(t, 1'000'000);
     }
-    desk_.state.traces.channels.set();
+    dashboard_.state.traces.channels.set();
     scope().cursors = true;
     run(10);
-    desk_.state.traces.channels.reset();
-    desk_.frame();
+    dashboard_.state.traces.channels.reset();
+    dashboard_.frame();
     SUCCEED();
 }
 

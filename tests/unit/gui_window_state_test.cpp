@@ -92,7 +92,7 @@ TEST(WindowStateFile, what_is_wrong_is_named) {
 
 TEST(WindowStateFile, a_file_that_is_not_there_is_a_beginning_and_a_broken_one_stays) {
     const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("tact-desk-test-" + std::to_string(getpid()));
+        std::filesystem::temp_directory_path() / ("tact-dashboard-test-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
     const std::filesystem::path file = folder / "window.toml";
     EXPECT_EQ(read_window_state_file(file).scene, 0U);

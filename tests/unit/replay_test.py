@@ -41,7 +41,7 @@ class Sessions:
         self.bad += not good
         print("%s %s%s" % ("ok  " if good else "FAIL", what, "" if good else ": " + str(more)))
 
-    def session(self, name, scene, *options, felt_n=0.05):
+    def session(self, name, scene, *options, least_force_n=0.05):
         recording = self.path(name + ".h5")
         self.must("tact", "run", scene, "--no-gui", "--quiet", "--seconds", self.seconds, "--record", recording, *options)
         code, out, err = self.run("tact", "replay", recording, "--json")
@@ -53,7 +53,7 @@ class Sessions:
         self.claim("%s names the build that recorded it" % name, said["recorded_by"] == version != "", (said["recorded_by"], version))
         self.claim("%s: %d steps, up to %.2f N, the same to the bit" % (name, said["steps"], said["force_n_most"]),
                    code == 0 and said["different"] == 0 and said["obstacle"] == "" and said["lost"] == 0 and
-                   said["force_n_most"] > felt_n and said["steps"] > 300 * self.seconds, said)
+                   said["force_n_most"] > least_force_n and said["steps"] > 300 * self.seconds, said)
         return recording, said
 
     def late(self, scene):

@@ -12,7 +12,7 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import desk as at_desk
+import person_at_arms as at_station
 import parts
 
 BIN = sys.argv[1]
@@ -42,22 +42,22 @@ timing_latches = "{parts.TIMING_LATCHES}"
     words = [word for arm in arms for word in ("--arm", arm)]
     with parts.Emulator(BIN, *words, "--rate-hz", str(rate_hz), "--watchdog-ms", str(watchdog_ms), "--hand", "wander",
                         "--slow", "0.6") as emulator:
-        at_desk.names_of_the_kernel(*arms)
+        at_station.names_of_the_kernel(*arms)
         with parts.Controller(BIN, config) as rt, parts.Person(BIN) as person:
-            desk = at_desk.Desk(emulator, rt, person)
-            desk.arm()
-            story(desk)
+            person_at_arms = at_station.PersonAtArms(emulator, rt, person)
+            person_at_arms.arm()
+            story(person_at_arms)
             parts.unhurt(rt.status())
             cycles = rt.status()["servo"]["cycles"]
             os.kill(rt.process.pid, signal.SIGKILL)  # the board's own watchdog is what is left
-            parts.wait_for(lambda: not desk.flowing(), "zero after SIGKILL")
+            parts.wait_for(lambda: not person_at_arms.flowing(), "zero after SIGKILL")
             assert emulator.status("LEFT")["flowing"] == 0
             return cycles
 
 
-def rates(desk):
+def rates(person_at_arms):
     def look():
-        return desk.rt.status()["servo"]["cycles"], desk.emulator.status("LEFT")["states"], time.monotonic()
+        return person_at_arms.rt.status()["servo"]["cycles"], person_at_arms.emulator.status("LEFT")["states"], time.monotonic()
 
     before = look()
     time.sleep(0.5)
@@ -67,14 +67,14 @@ def rates(desk):
           "a second", flush=True)
 
 
-def docked(desk):
-    rates(desk)
+def docked(person_at_arms):
+    rates(person_at_arms)
     for order in SPOILT:  # a few bad packets: nobody feels them
-        desk.emulator.order(order + " LEFT")
-        desk.new_states(order)
-        print(f"-- {order}: {desk.rt.state()}", flush=True)
-    desk.arm()
-    desk.rt.watch_servo()
+        person_at_arms.emulator.order(order + " LEFT")
+        person_at_arms.new_states(order)
+        print(f"-- {order}: {person_at_arms.rt.state()}", flush=True)
+    person_at_arms.arm()
+    person_at_arms.rt.watch_servo()
 
 
 def holds(rt):
@@ -84,24 +84,24 @@ def holds(rt):
     return len(os.listdir(f"{folder}/fd")), len(os.listdir(f"{folder}/task")), int(data.split()[1])
 
 
-def faults(desk):
+def faults(person_at_arms):
     for order in FAULTS:
-        desk.fault(order)
+        person_at_arms.fault(order)
         SEEN.append(order)
     # Seen only where a motor pushes against it while the others move: one encoder after the other.
-    if any(desk.fault(f"encoder stuck {i}", patience_s=3.0) for i in (0, 1, 2, 0, 1, 2)):
+    if any(person_at_arms.fault(f"encoder stuck {i}", patience_s=3.0) for i in (0, 1, 2, 0, 1, 2)):
         SEEN.append("encoder stuck")
     else:
         print("-- skipped: encoder stuck: no motor pushed for long enough", flush=True)
     held = []
     for _ in range(UNPLUGS):
-        desk.fault("unplug")
-        desk.arm()
-        held.append(holds(desk.rt))
+        person_at_arms.fault("unplug")
+        person_at_arms.arm()
+        held.append(holds(person_at_arms.rt))
     print(f"-- descriptors, threads, kB of data after the second and the last of {UNPLUGS} unplugs: {held[1]}, {held[-1]}",
           flush=True)
     assert held[1][:2] == held[-1][:2] and held[-1][2] - held[1][2] <= GROWTH_KB_MAX, held
-    desk.rt.watch_servo()
+    person_at_arms.rt.watch_servo()
 
 
 def main():

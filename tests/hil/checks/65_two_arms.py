@@ -8,7 +8,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import desk as at_desk
+import person_at_arms as at_station
 import parts
 
 BIN = sys.argv[1]
@@ -33,14 +33,14 @@ timing_latches = "{parts.TIMING_LATCHES}"
 def main():
     with parts.Emulator(BIN, "--arm", "LEFT", "--arm", "RIGHT", "--rate-hz", str(RATE_HZ), "--watchdog-ms", str(WATCHDOG_MS),
                         "--hand", "wander", "--slow", "0.6") as emulator:
-        at_desk.names_of_the_kernel("LEFT", "RIGHT")
+        at_station.names_of_the_kernel("LEFT", "RIGHT")
         with parts.Controller(BIN, CONFIG) as rt, parts.Person(BIN) as person:
-            desk = at_desk.Desk(emulator, rt, person, ("LEFT", "RIGHT"))
-            desk.arm()
-            desk.fault("unplug", "RIGHT")
-            desk.fault("safety open", "RIGHT")
-            desk.fault("unplug", "LEFT")
-            desk.arm()
+            person_at_arms = at_station.PersonAtArms(emulator, rt, person, ("LEFT", "RIGHT"))
+            person_at_arms.arm()
+            person_at_arms.fault("unplug", "RIGHT")
+            person_at_arms.fault("safety open", "RIGHT")
+            person_at_arms.fault("unplug", "LEFT")
+            person_at_arms.arm()
             rt.watch_servo()
             now = rt.status()
             parts.unhurt(now)

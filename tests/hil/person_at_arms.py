@@ -1,4 +1,4 @@
-"""A person at a desk with emulated arms: arms until the motors pull, makes faults, and sees each end in zero."""
+"""A person at a person_at_arms with emulated arms: arms until the motors pull, makes faults, and sees each end in zero."""
 import re
 import time
 
@@ -9,7 +9,7 @@ TOLD = ("safety open", "hot", "over-current", "brown-out", "count lost", "encode
 TOLD_COMMANDS_MAX = 8  # of the controller, from such a fault to no current
 
 
-class Desk:
+class PersonAtArms:
     """The emulator, the controller and the person; faults are those of the arm LEFT unless another is named."""
 
     def __init__(self, emulator, rt, person, arms=("LEFT",)):
