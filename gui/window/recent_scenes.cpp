@@ -90,7 +90,7 @@ std::filesystem::path set_aside(const std::filesystem::path& file) {
     std::error_code failed;
     std::filesystem::rename(file, aside, failed);
     if (failed)
-        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.folder_of(),
+        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.message(),
                            "move the file away, or fix the permissions of its folder");
     return aside;
 }

@@ -22,7 +22,7 @@ constexpr PassedOption kFieldPrep[] = {
     {"--value-unit", "TEXT", "Unit of the values, as the window shows it; default: none"},
 };
 
-constexpr const char* kFormulas[] = {
+constexpr const char* kFieldFormulas[] = {
     "x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres",
     "F = -force_n_m_per_unit * mean over the ball of grad(phi); grad per model metre, world axes, N",
     "phi: tricubic B-spline through the values; outside of the box F fades to zero over four grid steps",
@@ -83,7 +83,7 @@ nlohmann::json field_info(const SceneFile& file) {
             {"force_n_max", f.force_n_max},
             {"stiffness_n_m", f.stiffness_n_m},
             {"probe_radius_model_m", f.probe_radius_m},
-            {"formulas", kFormulas}};
+            {"formulas", kFieldFormulas}};
 }
 
 std::unique_ptr<SystemRun> open_field_run(const SceneFile& /*scene*/) {
