@@ -132,8 +132,8 @@ TEST(FieldBake, a_field_that_would_be_too_stiff_gets_a_smaller_gain) {
 TEST(FieldBake, the_scene_reads_back_the_same) {
     FieldInput input;
     input.grid = two_charges_grid({}, 17);
-    input.title = "two charges";
-    input.unit = "V";
+    input.title = std::string("two charges");
+    input.unit = std::string("V");
     SceneWriter out;
     const BakedField baked = bake_field(input, out);
     const std::vector<std::byte> bytes = out.to_bytes();
