@@ -243,9 +243,13 @@ public:
     StepResult step(const ToolState&, const Budget&) noexcept override { return {}; }
     [[nodiscard]] ModelBodies bodies() const noexcept override { return bodies_; }
     bool order(const ModelOrder& o) noexcept override {
-        if (o.kind == ModelOrder::Kind::option)
-            bodies_.options_asked =
-                o.on ? bodies_.options_asked | o.option : bodies_.options_asked & ~o.option;
+        if (o.kind == ModelOrder::Kind::setting) {
+            const auto command = static_cast<CommandKind>(o.command);
+            const std::uint32_t option = command == CommandKind::set_clash         ? kDockingClash
+                                         : command == CommandKind::set_subtraction ? kDockingSubtraction
+                                                                                   : kDockingLaplacian;
+            bodies_.options_asked = o.on ? bodies_.options_asked | option : bodies_.options_asked & ~option;
+        }
         if (o.kind == ModelOrder::Kind::place) bodies_.T_model_body[0] = o.T_model_body;
         return true;
     }

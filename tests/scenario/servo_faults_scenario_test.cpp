@@ -152,8 +152,8 @@ TEST(ServoFaults, overruns_are_counted_and_skip_forward_without_a_burst) {
     const Instant begin = loop.clock_.now();
     loop.cycles(100);
     EXPECT_EQ(loop.clock_.now() - begin, 100 * milliseconds(3) + microseconds(300));
-    EXPECT_EQ(loop.servo_->pacer().overruns(), 100U);
-    EXPECT_EQ(loop.servo_->pacer().skipped(), 200U);
+    EXPECT_EQ(loop.servo_->state().pacer.overruns(), 100U);
+    EXPECT_EQ(loop.servo_->state().pacer.skipped(), 200U);
     EXPECT_EQ(loop.state(), RunState::active);
     EXPECT_EQ(before.overruns, 0U);
     EXPECT_EQ(before.overrun_at_ns, 0);
