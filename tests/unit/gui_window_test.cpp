@@ -13,6 +13,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
+#include "ipc/image/png.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact {
