@@ -86,7 +86,8 @@ std::vector<Input> seeds() {
     surface.body_count = 0;
     SceneWriter alone;
     write_meta(alone, surface, "");
-    alone.add(SceneMeta::kTag, 2, 1, Input(3));  // nobody's, in a format that grows
+    alone.add({'S', 'U', 'R', 'F'}, 1, 0, Input(3));  // of others only their number counts
+    alone.add(SceneMeta::kTag, 2, 1, Input(3));       // nobody's, in a format that grows
     std::vector<Input> all;
     for (const Input& scene : {sample::scene().to_bytes(), alone.to_bytes()})
         for (const std::byte first : {std::byte{0}, std::byte{1}}) {

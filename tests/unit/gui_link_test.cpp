@@ -499,7 +499,7 @@ TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
     h.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
     EXPECT_NE(stop_notice(h).why.find("emergency stop"), std::string::npos);
     h.state = static_cast<std::uint8_t>(RunState::ready);
-    EXPECT_NE(stop_notice(h).fix.find("turn the button free"), std::string::npos);
+    EXPECT_NE(stop_notice(h).fix.find("release the button"), std::string::npos);
     EXPECT_EQ(stop_notice(h).fix.find("Reset"), std::string::npos);
     h.lines = static_cast<std::uint8_t>(LinesShown::permitted);
     EXPECT_TRUE(stop_notice(h).why.empty());
@@ -513,7 +513,7 @@ TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and
     EXPECT_EQ(distance_status(1.99e-3, 0.0, false).grade, Grade::watch);
     EXPECT_EQ(distance_status(2.01e-3, 0.0, false).grade, Grade::good);
     // 4 mm away and 10 mm/s: at 1 mm in 0.3 s, if it turns.
-    EXPECT_EQ(distance_status(4e-3, 1e-2, true).text, "at 1 mm in 0.3 s");
+    EXPECT_EQ(distance_status(4e-3, 1e-2, true).text, "1 mm in 0.3 s");
     EXPECT_EQ(distance_status(4e-3, 1e-2, true).grade, Grade::watch);
     EXPECT_EQ(distance_status(4e-3, 1e-2, false).grade, Grade::good);
     EXPECT_EQ(distance_status(4e-3, 2e-3, true).grade, Grade::good);

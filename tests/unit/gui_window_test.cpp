@@ -123,7 +123,7 @@ protected:
         const std::vector<std::uint8_t> rgb = picture.read(PngFormat::rgb);
         std::set<std::uint32_t> colours;
         for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
-            colours.insert(static_cast<std::uint32_t>(rgb[i] << 16U | rgb[i + 1] << 8U | rgb[i + 2]));
+            colours.insert(static_cast<std::uint32_t>(rgb[i] | rgb[i + 1] << 8U | rgb[i + 2] << 16U));
         return colours;
     }
 
