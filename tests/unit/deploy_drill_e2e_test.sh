@@ -27,7 +27,7 @@ report = json.load(open(os.path.join(folder, "run.json")))
 assert report["ended"]["ok"], report["ended"]
 assert report["servo"]["allocations"] == 0 and report["servo"]["locks"] == 0, report["servo"]
 drilling = report["drilling"]
-assert abs(drilling["burr"]["diameter_mm"] - 6) < 1e-3 and abs(drilling["suction-tube"]["diameter_mm"] - 2) < 1e-3, drilling
+assert abs(drilling["burr"]["diameter_mm"] - 6) < 1e-3 and abs(drilling["suction_tube"]["diameter_mm"] - 2) < 1e-3, drilling
 trainee = drilling["trainee"]
 assert trainee["drilling_s"] >= trainee["cutting_s"] >= 1, trainee
 assert trainee["strokes"]["count"] >= 1 and trainee["force"]["max_n"] > 0.1, trainee
