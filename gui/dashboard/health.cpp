@@ -115,8 +115,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     ImGui::BeginGroup();
     text_small(theme, colour::kDim, "force rate, goal " + rate_text(h.goal_hz), false);
     ImGui::SetCursorScreenPos({at.x + beside + theme.px(10.0F), at.y + theme.small->FontSize});
-    text_small(theme, grade_colour(rate.grade), std::string(grade_text(rate.grade)) + ": " + rate.text,
-               false);
+    text_small(theme, grade_colour(rate.grade), rate.text, false);
     ImGui::EndGroup();
     ImGui::SetCursorScreenPos(below);
     rate_bar(theme, h, grade_colour(rate.grade));
@@ -143,7 +142,7 @@ void free_running(const Theme& theme, const HealthTopic& h) {
 void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
     row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        format("p99; stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+        format("stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {

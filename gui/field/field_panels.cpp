@@ -39,7 +39,6 @@ void FieldPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) 
     ImGui::Checkbox("Force", &state.toggles.force);
     ImGui::SameLine(theme.px(104.0F));
     ImGui::Checkbox("Box", &state.toggles.box);
-    ImGui::SameLine(theme.px(196.0F));
     ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
 }
 

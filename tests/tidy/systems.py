@@ -20,7 +20,6 @@ TABLES = {
 }
 # Folders of one system each: PROGRAM/SYSTEM.
 SYSTEM_FOLDERS = ["prep", "deploy/tact", "rt/force", "gui"]
-# Programs whose table is not there yet.
 EXEMPT = []
 NAMES = re.compile(r"\bSceneKind::(\w+)")
 ENUM = re.compile(r"enum class SceneKind[^{]*\{([^}]*)\}")
