@@ -237,7 +237,8 @@ TEST(DockingOptions, force_scale_scales_the_clash_too) {
     Pose overlapping = scene().structures[1].home();
     overlapping.p_m.x() -= 18.0 * kA;
     for (DockingModel* model : {full.get(), half.get()}) ASSERT_TRUE(set_option(*model, kDockingClash, true));
-    EXPECT_LT((0.5 * force_at(*full, overlapping).force_n - force_at(*half, overlapping).force_n).norm(), 1e-9);
+    EXPECT_LT((0.5 * force_at(*full, overlapping).force_n - force_at(*half, overlapping).force_n).norm(),
+              1e-9);
 }
 
 TEST(DockingOptions, a_command_turns_its_option_on_and_off) {

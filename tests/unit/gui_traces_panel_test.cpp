@@ -34,8 +34,8 @@ protected:
         run(5000);
     }
     ImVec2 on_lanes(float share) {
-        const Layout l =
-            layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
+        const Layout l = layout_for(dashboard_.theme, 1280.0F, 720.0F,
+                                    middle_card(dashboard_.state, dashboard_.panels), true);
         return {l.plots.x + dashboard_.theme.px(60.0F) + share * (l.plots.width - dashboard_.theme.px(80.0F)),
                 l.plots.y + 0.7F * l.plots.height};
     }
@@ -46,10 +46,12 @@ protected:
 
 TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
     const float before =
-        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), false).plots.height;
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), false)
+            .plots.height;
     open();
     EXPECT_GT(
-        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true).plots.height,
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true)
+            .plots.height,
         1.4F * before);
     dashboard_.click(kCard, "Load and detail");
     EXPECT_EQ(dashboard_.state.strip, 0);
@@ -102,7 +104,8 @@ TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
     dashboard_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
     const double begun_s = scope().span_s();
-    const Layout l = layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
+    const Layout l =
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
     // The lanes begin behind their numbers, 44 wide, inside the card's padding.
     const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
     const float y = l.plots.y + 0.7F * l.plots.height;
