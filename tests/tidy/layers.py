@@ -12,8 +12,9 @@ Prints file:line: what, and exits 1 if there was anything. --self-test proves on
 """
 import os
 import re
-import sys
 import tempfile
+
+import tree_check
 
 # What the systems of the launcher may use of it.
 LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/files", "deploy/tact/observer", "deploy/tact/run",
@@ -303,14 +304,5 @@ def self_test():
     return bad
 
 
-def main():
-    if "--self-test" in sys.argv:
-        return 1 if self_test() else 0
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    found = check(root)
-    print("\n".join(found) if found else "includes follow USES")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    tree_check.run(check, self_test, "includes follow USES")

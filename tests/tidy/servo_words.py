@@ -6,8 +6,9 @@ Prints file:line: word, and exits 1 if there was any.
 """
 import os
 import re
-import sys
 import tempfile
+
+import tree_check
 
 FOLDER = "rt/servo"
 # Parts of words too: kBoneKnob, gui_particles_max.
@@ -38,14 +39,5 @@ def self_test():
     return bad
 
 
-def main():
-    if "--self-test" in sys.argv:
-        return 1 if self_test() else 0
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    found = check(root)
-    print("\n".join(found) if found else "rt/servo names no system")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    tree_check.run(check, self_test, "rt/servo names no system")

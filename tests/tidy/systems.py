@@ -6,8 +6,9 @@ exits 1 if there is one. --self-test proves on a small tree that it finds each.
 """
 import os
 import re
-import sys
 import tempfile
+
+import tree_check
 
 # One row per system.
 TABLES = {
@@ -90,14 +91,5 @@ def self_test():
     return bad
 
 
-def main():
-    if "--self-test" in sys.argv:
-        return 1 if self_test() else 0
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    found = check(root, EXEMPT)
-    print("\n".join(found) if found else "systems are named by their tables and folders alone")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    tree_check.run(lambda root: check(root, EXEMPT), self_test, "systems are named by their tables and folders alone")

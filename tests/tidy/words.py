@@ -8,8 +8,9 @@ comment "former name", or is listed in ALLOWED. --self-test proves that it finds
 import os
 import re
 import subprocess
-import sys
 import tempfile
+
+import tree_check
 
 # pattern (whole words, any case) -> replacement, reason
 BANNED = {
@@ -78,14 +79,5 @@ def self_test():
     return bad
 
 
-def main():
-    if "--self-test" in sys.argv:
-        return 1 if self_test() else 0
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    found = check(root)
-    print("\n".join(found) if found else "no word that was replaced has come back")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    tree_check.run(check, self_test, "no word that was replaced has come back")
