@@ -1,6 +1,7 @@
 #include "prep/console/scene_report.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -70,6 +71,19 @@ std::string scene_text(const SceneFile& file, SystemReport add_system) {
         << json["title"].get<std::string>() << "\", checksum " << json["checksum"].get<std::string>() << '\n';
     out << read_note(file);
     return out.str();
+}
+
+void print_written_scene(const std::string& scene, const std::string& note, double seconds, bool as_json,
+                         const nlohmann::ordered_json& report) {
+    if (as_json) {
+        nlohmann::ordered_json json{{"scene", scene}};
+        json.update(report);
+        json["seconds"] = seconds;
+        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    } else {
+        std::printf("%s%s: %.1f MB in %.1f s\n", note.c_str(), scene.c_str(),
+                    static_cast<double>(std::filesystem::file_size(scene)) * 1e-6, seconds);
+    }
 }
 
 }  // namespace tact

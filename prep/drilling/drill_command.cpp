@@ -13,6 +13,7 @@
 #include "ipc/base/whole_numbers.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
+#include "prep/console/scene_report.hpp"
 #include "prep/console/target.hpp"
 #include "prep/drilling/bake_bone.hpp"
 #include "prep/drilling/import_bone.hpp"
@@ -131,20 +132,13 @@ void drill(const DrillSettings& o, bool made) {
     out.write(o.scene);
     console.clear();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    if (o.json) {
-        const nlohmann::ordered_json json{{"scene", o.scene},
-                                          {"size", bricks.size},
-                                          {"voxel_m", bricks.voxel_m},
-                                          {"bone_voxels", baked.bone_voxels},
-                                          {"bone_m3", baked.bone_m3},
-                                          {"structures", structures},
-                                          {"distance_fields", baked.distance_fields},
-                                          {"seconds", seconds}};
-        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-    } else {
-        std::printf("%s%s: %.1f MB in %.1f s\n", baked.note.c_str(), o.scene.c_str(),
-                    static_cast<double>(fs::file_size(o.scene)) * 1e-6, seconds);
-    }
+    print_written_scene(o.scene, baked.note, seconds, o.json,
+                        {{"size", bricks.size},
+                         {"voxel_m", bricks.voxel_m},
+                         {"bone_voxels", baked.bone_voxels},
+                         {"bone_m3", baked.bone_m3},
+                         {"structures", structures},
+                         {"distance_fields", baked.distance_fields}});
 }
 
 }  // namespace

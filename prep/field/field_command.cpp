@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
+#include "prep/console/scene_report.hpp"
 #include "prep/console/target.hpp"
 #include "prep/field/bake_field.hpp"
 #include "prep/field/charges.hpp"
@@ -77,22 +77,15 @@ void bake(const FieldSettings& o, bool made) {
     out.write(o.scene);
     console.clear();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    if (o.json) {
-        const nlohmann::ordered_json json{{"scene", o.scene},
-                                          {"points", input.grid.size},
-                                          {"low", baked.field.low},
-                                          {"high", baked.field.high},
-                                          {"force_n_m_per_unit", baked.field.force_n_m_per_unit},
-                                          {"force_n_max", baked.field.force_n_max},
-                                          {"stiffness_n_m", baked.field.stiffness_n_m},
-                                          {"world_per_model", baked.meta.world_per_model},
-                                          {"picture_vertices", baked.vertices},
-                                          {"seconds", seconds}};
-        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-    } else {
-        std::printf("%s%s: %.1f MB in %.1f s\n", baked.note.c_str(), o.scene.c_str(),
-                    static_cast<double>(fs::file_size(o.scene)) * 1e-6, seconds);
-    }
+    print_written_scene(o.scene, baked.note, seconds, o.json,
+                        {{"points", input.grid.size},
+                         {"low", baked.field.low},
+                         {"high", baked.field.high},
+                         {"force_n_m_per_unit", baked.field.force_n_m_per_unit},
+                         {"force_n_max", baked.field.force_n_max},
+                         {"stiffness_n_m", baked.field.stiffness_n_m},
+                         {"world_per_model", baked.meta.world_per_model},
+                         {"picture_vertices", baked.vertices}});
 }
 
 }  // namespace

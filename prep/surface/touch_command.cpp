@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
+#include "prep/console/scene_report.hpp"
 #include "prep/console/target.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
 #include "prep/surface/bake_surface.hpp"
@@ -137,23 +138,16 @@ void touch(const TouchSettings& o, bool made) {
     out.write(o.scene);
     console.clear();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    if (o.json) {
-        const nlohmann::ordered_json json{{"scene", o.scene},
-                                          {"vertices", baked.vertices},
-                                          {"triangles", baked.triangles},
-                                          {"closed", baked.closed},
-                                          {"tool_points", baked.tool_points},
-                                          {"picture_vertices", baked.picture_vertices},
-                                          {"world_per_model", baked.meta.world_per_model},
-                                          {"bytes_per_triangle", baked.bytes_per_triangle},
-                                          {"build_s", baked.build_s},
-                                          {"forest_s", baked.forest_s},
-                                          {"seconds", seconds}};
-        std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-    } else {
-        std::printf("%s%s: %.1f MB in %.1f s\n", baked.note.c_str(), o.scene.c_str(),
-                    static_cast<double>(fs::file_size(o.scene)) * 1e-6, seconds);
-    }
+    print_written_scene(o.scene, baked.note, seconds, o.json,
+                        {{"vertices", baked.vertices},
+                         {"triangles", baked.triangles},
+                         {"closed", baked.closed},
+                         {"tool_points", baked.tool_points},
+                         {"picture_vertices", baked.picture_vertices},
+                         {"world_per_model", baked.meta.world_per_model},
+                         {"bytes_per_triangle", baked.bytes_per_triangle},
+                         {"build_s", baked.build_s},
+                         {"forest_s", baked.forest_s}});
 }
 
 }  // namespace
