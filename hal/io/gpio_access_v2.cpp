@@ -81,16 +81,16 @@ GpioAccess::GpioAccess(const std::string& path, std::span<const GpioLine> lines)
     l.events.reset(gpiod_edge_event_buffer_new(kEvents));
     if (!config || !request || !settings || !l.events) throw GpioRefusal{.error = ENOMEM, .detail = path};
     gpiod_request_config_set_consumer(request.get(), kConsumer);
-    for (const GpioLine& request : lines.first(std::min(lines.size(), kLinesMax))) {
-        const int found = find_line(l.chip.get(), request.line);
-        if (found < 0) throw GpioRefusal{.line = request.line};
+    for (const GpioLine& line : lines.first(std::min(lines.size(), kLinesMax))) {
+        const int found = find_line(l.chip.get(), line.line);
+        if (found < 0) throw GpioRefusal{.line = line.line};
         const auto offset = static_cast<unsigned>(found);
         gpiod_line_settings_reset(settings.get());
-        set_up(settings.get(), request);
+        set_up(settings.get(), line);
         if (gpiod_line_config_add_line_settings(config.get(), &offset, 1, settings.get()) != 0)
-            throw GpioRefusal{.line = request.line, .error = errno, .detail = "its settings"};
-        l.rows.push_back({.offset = offset, .output = request.output});
-        l.edges = l.edges || (request.edges && !request.output);
+            throw GpioRefusal{.line = line.line, .error = errno, .detail = "its settings"};
+        l.rows.push_back({.offset = offset, .output = line.output});
+        l.edges = l.edges || (line.edges && !line.output);
     }
     l.request.reset(gpiod_chip_request_lines(l.chip.get(), request.get(), config.get()));
     if (l.request) return;
