@@ -34,14 +34,16 @@ enum class LevelReason : std::uint8_t {
     picture_high
 };
 
-// What one step cost and how wrong it may be. The unit of the error belongs to the path (N for forces).
+// Cost and error of one step. The unit of the error belongs to the path (N for forces).
 struct PathLoad {
     Duration cost{0};
-    Duration cost_predicted{0};
+    Duration cost_predicted{0};  // of a whole step at the level, ForceModel::predict(); 0: unknown
     double error = 0.0;
-    std::uint32_t items = 0;  // vertices drawn, points felt, particles moved
+    std::uint32_t items = 0;  // vertices drawn, points summed, particles moved
     float recomputed_fraction =
-        1.0F;  // of the items, those that this step did anew; the rest is of steps before
+        1.0F;  // of the items: summed in this step; the rest are sums of earlier steps
+    // In (0, 1]: of the level's work, the part finished before the deadline. 1 where no deadline cut the step.
+    float work_done = 1.0F;
 };
 
 // Checks of one deadline: their number, and the one that found it passed. Kept by the owner of the deadline and

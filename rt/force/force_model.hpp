@@ -95,6 +95,9 @@ public:
     [[nodiscard]] virtual KnobSpec knob() const noexcept TACT_RT = 0;
     // Points, blocks or vertices felt at a level; the governor publishes it.
     [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
+    // Cost (cost_predicted), error and items of a whole step at a level, for the body in the hand, before it is made.
+    // The cost may be off by a factor common to all levels: the governor measures that factor. Constant time.
+    [[nodiscard]] virtual PathLoad predict(float /*fidelity*/) const noexcept TACT_RT { return {}; }
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
     // The largest stiffness that the hand can meet in it, N/m; 0: nobody knows.
     [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
