@@ -16,8 +16,13 @@ namespace {
 using namespace rod;
 
 INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract,
-                         testing::Values(ForceModelCase{"rod", [] { return make_model(); }, kGrip, kTouch,
-                                                        0.05, 0.05}),
+                         testing::Values(ForceModelCase{.name = "rod",
+                                                        .make = [] { return make_model(); },
+                                                        .grip = kGrip,
+                                                        .touch = kTouch,
+                                                        .force_n_min = 0.05,
+                                                        .step_n_max = 0.05,
+                                                        .predicts = false}),
                          [](const auto& tested) { return tested.param.name; });
 
 // -k_E sum w rho, in double precision, atom by atom.

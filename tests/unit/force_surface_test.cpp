@@ -146,15 +146,31 @@ struct Hand {
     [[nodiscard]] Vec3 proxy() const { return kWorldPerModel * model->contact().proxy_m; }
 };
 
+// About the sphere's axis, from p on, by as much a step.
+std::function<Pose(int)> around(const Vec3& p, double step_rad) {
+    return [=](int i) { return Pose{Eigen::AngleAxisd(step_rad * i, Vec3::UnitZ()) * p, Quat::Identity()}; };
+}
+
+// At rest one move is all that a step needs: the knob matters where the tool is led fast over ground that is not smooth.
 INSTANTIATE_TEST_SUITE_P(Surface, ForceModelContract,
                          testing::Values(ForceModelCase{"point",
                                                         [] { return smooth().model({}); },
                                                         {Vec3(0.0, 0.056, 0.0), Quat::Identity()},
-                                                        {Vec3(0.004, 0.048, 0.003), Quat::Identity()}},
+                                                        {Vec3(0.004, 0.048, 0.003), Quat::Identity()},
+                                                        0.01,
+                                                        0.1,
+                                                        around(Vec3(0.004, 0.048, 0.003), 0.01),
+                                                        200,
+                                                        0.2},
                                          ForceModelCase{"ball",
                                                         [] { return rough().model({.radius_m = 0.003}); },
                                                         {Vec3(0.0, 0.066, 0.0), Quat::Identity()},
-                                                        {Vec3(0.004, 0.05, 0.003), Quat::Identity()}}),
+                                                        {Vec3(0.004, 0.05, 0.003), Quat::Identity()},
+                                                        0.01,
+                                                        0.1,
+                                                        around(Vec3(0.004, 0.05, 0.003), 0.01),
+                                                        200,
+                                                        0.2}),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(Surface, a_plane_pushes_back_by_stiffness_times_depth) {

@@ -284,16 +284,41 @@ TEST(TwistHalfSpaces, the_answer_is_the_nearest_twist_that_keeps_every_guard) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tool, ForceModelContract,
-                         testing::Values(ForceModelCase{"box",
-                                                        [] { return box_on_plane().model({}); },
-                                                        {Vec3(0.0, 0.02, 0.0), Quat::Identity()},
-                                                        pose({0.01, 0.003, 0.005}, {0.05, 0.2, -0.1})},
-                                         ForceModelCase{"scaler",
-                                                        [] { return scaler_on_rough().model({}); },
-                                                        {Vec3(0.0, 0.075, 0.0), Quat::Identity()},
-                                                        pose({0.004, 0.06, 0.003}, {0.1, 0.0, 0.1})}),
-                         [](const auto& tested) { return tested.param.name; });
+// Flat on a ball that pokes between the points: here they matter.
+const World& box_on_rough() {
+    static const auto made = world(rough_sphere(40), box_mesh({0.015, 0.005, 0.01}), {.points = 1000});
+    return *made;
+}
+ForceModelCase tool_case(const char* name, const World& (*on)(), double grip_y_m, const Pose& touch) {
+    ForceModelCase c;
+    c.name = name;
+    c.make = [on] { return on().model({}); };
+    c.grip = pose({0.0, grip_y_m, 0.0});
+    c.touch = touch;
+    return c;
+}
+ForceModelCase sliding(ForceModelCase c) {
+    c.path = [touch = c.touch](int i) {
+        return Pose{Eigen::AngleAxisd(5e-4 * i, Vec3::UnitZ()) * touch.p_m, touch.q};
+    };
+    c.path_steps = 100;
+    return c;
+}
+ForceModelCase without_error(ForceModelCase c, const char* why) {
+    c.error_free = why;
+    return c;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Tool, ForceModelContract,
+    testing::Values(without_error(tool_case("box", &box_on_plane, 0.02,
+                                            pose({0.01, 0.003, 0.005}, {0.05, 0.2, -0.1})),
+                                  "a plane is held off by the corners, which are the first points"),
+                    without_error(tool_case("scaler", &scaler_on_rough, 0.075,
+                                            pose({0.004, 0.06, 0.003}, {0.1, 0.0, 0.1})),
+                                  "its tip touches, which is among the first points"),
+                    sliding(tool_case("flat_box", &box_on_rough, 0.075, pose({0.004, 0.053, 0.003})))),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(Tool, a_box_on_a_plane_pushes_along_the_normal_by_its_depth) {
     Hand hand(box_on_plane(), plain(), pose({0.003, 0.02, -0.002}));

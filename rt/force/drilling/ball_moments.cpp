@@ -178,6 +178,7 @@ private:
         constexpr double kPer = 1.0 / kSumOne;
         add_whole(from, kPer * sums.m0, 0.5 * kPer * Vec3(sums.m1[0], sums.m1[1], sums.m1[2]), weight);
         sums_.blocks += 512;
+        ++sums_.bricks;
     }
 
     const MomentOctree& octree_;
@@ -193,6 +194,9 @@ private:
 
 }  // namespace
 
+// The less the ball is in, the fewer blocks it touches and the more each matters: eq. 8.
+double depth_part(double depth) noexcept { return std::clamp(depth / kDepthWhole, kBlockPart, 1.0); }
+
 BallMoments ball_moments(const MomentOctree& octree, const BrickKernels& kernels, const Vec3& centre_voxels,
                          double radius_voxels, double block_voxels, double depth) noexcept {
     const double radius = std::max(radius_voxels, kRadiusLeast), most = kBlockMost * radius;
@@ -202,8 +206,7 @@ BallMoments ball_moments(const MomentOctree& octree, const BrickKernels& kernels
         looked_at = rough.blocks;
         depth = std::sqrt(rough.m0 / (255.0 * std::numbers::pi)) / (radius * std::sqrt(radius));
     }
-    // The less the ball is in, the fewer blocks it touches and the more each matters: eq. 8.
-    const double part = std::clamp(depth / kDepthWhole, kBlockPart, 1.0);
+    const double part = depth_part(depth);
     BallMoments sums =
         Walk(octree, kernels, centre_voxels, radius, std::clamp(part * block_voxels, 1.0, most), kMixed)
             .run();

@@ -18,7 +18,8 @@ namespace tact {
 struct BallMoments {
     double m0 = 0.0;
     Vec3 m1 = Vec3::Zero();    // about the ball's centre
-    std::uint32_t blocks = 0;  // looked at
+    std::uint32_t blocks = 0;  // visited, voxels included
+    std::uint32_t bricks = 0;  // of them summed voxel by voxel, each of which counts 512 in `blocks`
 };
 
 // block: edge of the smallest block looked at, at most kBlockMost of the radius; below 4 single voxels are counted, below 2 they alone. Blocks
@@ -28,6 +29,8 @@ struct BallMoments {
 [[nodiscard]] BallMoments ball_moments(const MomentOctree& octree, const BrickKernels& kernels,
                                        const Vec3& centre_voxels, double radius_voxels, double block_voxels,
                                        double depth = -1.0) noexcept TACT_RT;
+// The part of `block` that is used at a depth.
+[[nodiscard]] double depth_part(double depth) noexcept TACT_RT;
 inline constexpr double kBlockMost = 0.5;
 inline constexpr double kRadiusLeast = 1.0;
 

@@ -13,8 +13,6 @@ namespace tact {
 namespace {
 
 constexpr double kNoHandM = 1e3;  // no hand is there
-// Of the force of a level: bounds of what README.md's table measured. By (block / R)^2, and by (voxel / R)^2.
-constexpr double kErrorLeast = 0.01, kErrorPerBlock = 0.2, kErrorPerVoxel = 0.5;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -50,14 +48,14 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
       tool_(make_drill_tool(settings.tool)),
       kernels_(best_brick_kernels()),
       erosion_(bone.octree, bone.density, bone.revision, settings.seed) {
+    depths_.fill(-1.0);
     per_voxel_m_ = meta.world_per_model * bone.octree.bricks().voxel_m;
     if (!std::isfinite(per_voxel_m_) || !(per_voxel_m_ > 0.0))
         throw StartupError("preparing the drill", "the scene has no scale", "bake it anew");
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         if (tool_.ball[i].cuts || i == 0) head_radius_m_ = std::max(head_radius_m_, tool_.ball[i].radius_m);
     }
-    while (turn_count_ < kTurnsMost && head_radius_m_ > kTurnVoxels * turn_count_ * per_voxel_m_)
-        turn_count_ *= 2;
+    turns_ = ErosionTurns(head_radius_m_ / per_voxel_m_);
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const double radius_m = tool_.ball[i].radius_m;
         if (radius_m < kRadiusLeast * per_voxel_m_)
@@ -95,20 +93,41 @@ double DrillModel::block_of(float fidelity) noexcept {
 }
 
 KnobSpec DrillModel::knob() const noexcept {
-    // 0.3 R: log(0.3 / 0.5) / log(0.1 / 0.5)
-    return {.path = kKnobPath, .floor = 0.0F, .start = 0.3174F, .slew_per_s = 4.0F, .haptic = true};
+    // 0.3 R: log(0.3 / 0.5) / log(0.1 / 0.5). A large head starts where it fits any budget.
+    const float start = turns_.groups() > ErosionTurns::kGroupsLeast ? 0.0F : 0.3174F;
+    return {.path = kKnobPath, .floor = 0.0F, .start = start, .slew_per_s = 4.0F, .haptic = true};
 }
 
-std::uint32_t DrillModel::items(float fidelity) const noexcept {
-    const double block = block_of(fidelity);  // of a sphere's surface, half of which is in bone
-    return tool_.count * static_cast<std::uint32_t>(std::lround(2.0 * std::numbers::pi / (block * block)));
+double DrillModel::rate_per_s() const noexcept {
+    return cuts_ ? settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s * fade_.gain() : 0.0;
+}
+
+DrillWork DrillModel::expected(float fidelity) const noexcept {
+    DrillWork work = expected_work(felt_.work, felt_.look, block_of(fidelity) * felt_.look.radius);
+    if (led_) work.cut = turns_.bricks() * turns_.groups_at(fidelity, drive_.step_s) / turns_.groups();
+    return work;
+}
+
+PathLoad DrillModel::predict(float fidelity) const noexcept {
+    PathLoad load;
+    const DrillWork work = expected(fidelity);
+    load.items = work.items();
+    load.cost_predicted = drill_cost(work);
+    // A group waits for all steps between its cuts.
+    const double steps = static_cast<double>(turns_.groups()) / turns_.groups_at(fidelity, drive_.step_s);
+    const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;
+    const double voxel = per_voxel_m_ / head_radius_m_;
+    load.error = block_error_share(block_of(fidelity), voxel, false) *
+                     std::min(felt_.elastic_n, settings_.force_n_max) +
+                 std::min(felt_.pending_n * pending, 2.0 * settings_.force_n_max);
+    return load;
 }
 
 void DrillModel::reset(const ToolState& tool) noexcept {
     asked_ = true;
     led_ = false;
     fade_.cut();
-    depths_ = {};
+    depths_.fill(-1.0);
     ways_out_.fill(Vec3::Zero());
     ++grips_;
     if (hand_is_there(tool.T_world_tool))
@@ -144,13 +163,15 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
     const bool known = twist.linear_m_s.allFinite() && twist.angular_rad_s.allFinite();
     const Vec3 axis = q * Vec3::UnitZ();
     BurrLaw law = settings_.law;
+    std::uint32_t most_blocks = 0;
     const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const ToolBall& ball = tool_.ball[i];
         if (!felt.late && i > 0) felt.late = deadline.passed();
         const double radius = ball.radius_m / per_voxel_m_;
-        const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius,
-                                           (felt.late ? kBlockCoarse : block) * radius, depths_[i]);
+        const double used = (felt.late ? kBlockCoarse : block) * radius, depth = felt.late ? 1.0 : depths_[i];
+        const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius, used, depth);
+        felt.work.add(m);
         depths_[i] = 0.0;
         if (!(m.m0 > 0.0)) {
             ways_out_[i].setZero();
@@ -163,7 +184,18 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
         law.elastic_pa = elastic_pa_[i];
         const BurrForce f = burr_force(law, ball.radius_m, volume * m.m0, volume * per_voxel_m_ * m.m1,
                                        velocity_m_s, spin_rad_s, ways_out_[i]);
+        depths_[i] = f.depth;
         if (f.depth < kWayOutFrom) ways_out_[i] = f.normal;
+        if (m.blocks > most_blocks) {
+            most_blocks = m.blocks;
+            // As if it had been asked for at this depth.
+            const double part = depth_part(depth < 0.0 ? f.depth : depth);
+            felt.look = {radius, f.depth, used * part / depth_part(f.depth)};
+        }
+        if (ball.cuts)
+            felt.pending_n += ball.weight * ball.weight *
+                              pending_error_n(law, ball.radius_m, settings_.soft, f, volume * m.m0,
+                                              volume * per_voxel_m_ * m.m1.norm(), velocity_m_s.norm());
         const Vec3 force_n = ball.weight * f.wrench.force_n;
         felt.wrench.force_n += force_n;
         felt.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
@@ -175,38 +207,6 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
         }
     }
     return felt;
-}
-
-void DrillModel::forget_way() noexcept {
-    for (Turn& turn : turns_) {
-        turn.from_voxels = now_voxels_;
-        turn.exposure = 0.0;
-    }
-}
-
-void DrillModel::expose(double exposure) noexcept {
-    const double most = exposure / drive_.step_s * kStepSMost;  // at this speed
-    for (Turn& turn : turns_) {
-        if (exposure > 0.0 && turn.exposure < most) turn.exposure = std::min(turn.exposure + exposure, most);
-    }
-}
-
-void DrillModel::cut_turn() noexcept {
-    Turn& turn = turns_[turn_];
-    for (std::uint32_t i = 0; turn.exposure > 0.0 && i < tool_.count; ++i) {
-        const ToolBall& ball = tool_.ball[i];
-        if (!ball.cuts) continue;
-        erosion_.cut(kernels_, {.from_voxels = turn.from_voxels[i],
-                                .to_voxels = now_voxels_[i],
-                                .radius_voxels = ball.radius_m / per_voxel_m_,
-                                .exposure = turn.exposure * ball.weight,
-                                .soft = settings_.soft,
-                                .groups = turn_count_,
-                                .group = turn_});
-    }
-    turn.from_voxels = now_voxels_;
-    turn.exposure = 0.0;
-    turn_ = (turn_ + 1) % turn_count_;
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
@@ -222,12 +222,14 @@ Vec3 DrillModel::shaken_n(const ToolState& tool, double elastic_n) noexcept {
 StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    result.load.items = items(budget.fidelity);
+    const DrillWork planned = expected(budget.fidelity);
+    result.load.cost_predicted = drill_cost(planned);
+    felt_ = {};
     fade_.begin_step();
     if (asked_) erosion_.begin();
     if (!hand_is_there(tool.T_world_tool)) {
         fade_.cut();
-        led_ = false;
+        led_ = cuts_ = false;
         depth_ = elastic_n_ = 0.0;
         result.status = StepStatus::out_of_range;
     } else if (asked_) {
@@ -251,34 +253,54 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             fade_.rise();
         const bool hurried = budget.deadline.passed();
         const double block = block_of(budget.fidelity);
-        const Felt felt = feel(tool, block, hurried, budget.deadline);
+        const double pending = turns_.pending();
+        felt_ = feel(tool, block, hurried, budget.deadline);
+        Felt& felt = felt_;
         elastic_n_ = felt.elastic_n;
         Wrench wrench = felt.wrench;
         wrench.force_n += shaken_n(tool, felt.elastic_n);
         const double size_n = wrench.force_n.norm(),
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
+        felt.pending_n *= scale;
         const double gain = fade_.gain() * scale;
         result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
-        const double used_block = felt.late ? kBlockCoarse : block, voxel = per_voxel_m_ / head_radius_m_;
         const double share =
-            kErrorLeast + kErrorPerBlock * used_block * used_block + kErrorPerVoxel * voxel * voxel;
-        result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max);
+            block_error_share(felt.late ? kBlockCoarse : block, per_voxel_m_ / head_radius_m_, felt.late);
+        result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max) +
+                            std::min(felt.pending_n * pending, 2.0 * settings_.force_n_max);
 
-        const bool cuts = !clutch && drive_.burr_rad_s > 0.0;
-        const bool late = felt.late || budget.deadline.passed();
-        if (late) result.status = StepStatus::out_of_time;
+        cuts_ = !clutch && drive_.burr_rad_s > 0.0;
+        bool late = felt.late || budget.deadline.passed();
         if (!led_) {
-            forget_way();
+            turns_.forget(now_voxels_);
             led_ = true;
         } else {
-            const double rate_per_s =
-                cuts ? settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s * fade_.gain()
-                     : 0.0;
-            expose(rate_per_s * drive_.step_s);
-            if (late && cuts)
+            const double rate = rate_per_s();
+            turns_.expose(rate * drive_.step_s, rate * kStepSMost);
+            if (late && turns_.pending() > 0.0) {
                 ++postponed_;
-            else
-                cut_turn();
+            } else {
+                const ErosionTurns::Done done =
+                    turns_.cut(erosion_, {.kernels = &kernels_,
+                                          .tool = &tool_,
+                                          .now_voxels = &now_voxels_,
+                                          .per_voxel_m = per_voxel_m_,
+                                          .soft = settings_.soft,
+                                          .groups = turns_.groups_at(budget.fidelity, drive_.step_s),
+                                          .deadline = &budget.deadline});
+                if (done.cut < done.wanted) {
+                    late = true;
+                    ++postponed_;
+                }
+            }
+        }
+        if (late) result.status = StepStatus::out_of_time;
+        felt_.work.cut = erosion_.pass().visited;
+        result.load.items = felt_.work.items();
+        if (late) {
+            const auto done = static_cast<double>(drill_cost(felt_.work).count()),
+                       whole = static_cast<double>(std::max(drill_cost(planned).count(), Duration::rep{1}));
+            result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
     }
     if (drive_.burr_rad_s > 0.0) result.trace_flags |= kTraceBurrTurns;

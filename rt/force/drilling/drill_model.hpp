@@ -5,12 +5,12 @@
 // Cutting  balls of the head that cut take bone along their way since the last step (erosion.hpp), after the force of
 //          the step. a is in proportion to the burr's speed; a burr that stands takes nothing. Harder pressed it
 //          goes deeper, and so takes more: eq. 12 knows no other pressure.
-// Knob     "drilling.force": smallest block looked at, 0.5 R to 0.1 R (eq. 8; the default is 0.3 R). Turning it is smooth.
-// Turns    a head of more than 12 voxels cuts a half of its bricks in a step, of more than 24 a quarter, of more than
-//          48 an eighth, in turn: each along the straight way since its last turn, with what it was exposed to since.
-// Late     past the deadline the remaining balls are felt at 0.5 R and nothing is cut; the next turn in time cuts for all
-//          the time since, kStepSMost at most, so nothing is left out.
-// Error    of a level: its share of the force, measured (README.md).
+// Knob     "drilling.force": smallest block looked at, 0.5 R to 0.1 R (eq. 8), less where the last step was shallow; and
+//          the groups of bricks that a step cuts (erosion_turns.hpp), from one to all. Turning it is smooth.
+// Late     past the deadline the remaining balls are felt in blocks of 0.5 R, whatever the depth, and nothing more is cut;
+//          steps in time cut for all the time since, kStepSMost at most, so nothing is left out.
+// Error    of a level: of its blocks, and of the bone that waits to be cut (drill_load.hpp).
+// Items    balls, blocks and voxels that were summed and cut; predict() expects them from the last step's.
 // Jumps    a tool that goes farther in a step than kJumpRadii of its radius, and 5 mm, was not led there by a hand: it
 //          cuts nothing on the way; counted.
 // Clutch   held, the force fades out and nothing is cut. Reset: the force fades in from zero, and cutting with it.
@@ -28,7 +28,9 @@
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
 #include "rt/force/drilling/burr_shapes.hpp"
+#include "rt/force/drilling/drill_load.hpp"
 #include "rt/force/drilling/erosion.hpp"
+#include "rt/force/drilling/erosion_turns.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 
@@ -74,8 +76,6 @@ public:
     static constexpr const char* kKnobPath = "drilling.force";
     static constexpr double kBlockFine = 0.1, kBlockDefault = 0.3,
                             kBlockCoarse = kBlockMost;  // of the radius
-    static constexpr std::uint32_t kTurnsMost = 8;
-    static constexpr double kTurnVoxels = 12.0;  // of the head, up to which there is one turn
     static constexpr double kJumpRadii = 4.0, kJumpM = 5e-3;
     static constexpr double kRadiusMost = 200.0;  // voxels
     static constexpr double kStepSMost = 0.1;     // that a step, or steps that were late, can stand for
@@ -89,7 +89,10 @@ public:
     void turn_burr(const BurrDrive& drive) noexcept TACT_RT;
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
-    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override {
+        return predict(fidelity).items;
+    }
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     // On a flat surface, at force_n_max.
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return stiffness_n_m_; }
@@ -136,12 +139,14 @@ private:
         Wrench wrench;           // at the tool's origin, world, before limits
         double elastic_n = 0.0;  // sum of sizes
         bool late = false;
+        DrillWork work;
+        BallLook look;           // at the ball with most work
+        double pending_n = 0.0;  // error per exposure that waits
     };
     [[nodiscard]] Felt feel(const ToolState& tool, double block, bool hurried,
                             const Deadline& deadline) noexcept TACT_RT;
-    void forget_way() noexcept TACT_RT;
-    void expose(double exposure) noexcept TACT_RT;
-    void cut_turn() noexcept TACT_RT;
+    [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
+    [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
     SceneMeta meta_;
@@ -157,15 +162,13 @@ private:
     double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;  // world metres of a voxel edge
     double head_radius_m_ = 0.0;
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
-    struct Turn {
-        std::array<Vec3, DrillTool::kMax> from_voxels{};
-        double exposure = 0.0;  // since then, of a ball of weight 1
-    };
-    std::array<Turn, kTurnsMost> turns_;
-    std::uint32_t turn_count_ = 1, turn_ = 0;
-    bool asked_ = false;                            // reset() was called
-    bool led_ = false;                              // now_voxels_ are of a tool that was led here
-    std::array<double, DrillTool::kMax> depths_{};  // h / R of the step before
+    ErosionTurns turns_{1.0};
+    Felt felt_;           // of the last step
+    bool cuts_ = false;   // the clutch is open
+    bool asked_ = false;  // reset() was called
+    bool led_ = false;    // now_voxels_ are of a tool that was led here
+    // h / R of the step before; below 0: unknown.
+    std::array<double, DrillTool::kMax> depths_{};
     std::array<Vec3, DrillTool::kMax> ways_out_{};
     std::array<double, DrillTool::kMax> elastic_pa_{};
     double depth_ = 0.0, elastic_n_ = 0.0, phase_rad_ = 0.0;

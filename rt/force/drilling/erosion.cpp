@@ -14,7 +14,7 @@ struct Erosion::Way {
     Vec3 from, way;
     double radius, per_way2;  // 1 / |way|^2; 0: it stands
     std::uint64_t key;
-    std::uint32_t groups, group;
+    std::uint32_t groups, mask;
     ErodeJob job;
 
     // Of the centre of a block from the ball's way.
@@ -55,7 +55,7 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
     w.way = ball.to_voxels - ball.from_voxels;
     w.radius = ball.radius_voxels;
     w.groups = ball.groups;
-    w.group = ball.group;
+    w.mask = ball.mask;
     if (w.way.squaredNorm() < 1e-8 * w.radius * w.radius) {  // the bend would be lost in rounding
         w.from += 0.5 * w.way;
         w.way.setZero();
@@ -97,7 +97,7 @@ void Erosion::visit(const Way& way, std::uint32_t level, std::uint32_t x, std::u
     const Vec3 centre((x + 0.5) * edge - 0.5, (y + 0.5) * edge - 0.5, (z + 0.5) * edge - 0.5);
     if (way.distance2(centre) >= reach * reach) return;
     if (level == 0) {
-        if (((x + 3 * y + 5 * z) & (way.groups - 1)) == way.group) cut_brick(way, x, y, z);
+        if ((way.mask >> ((x + 3 * y + 5 * z) & (way.groups - 1)) & 1U) != 0) cut_brick(way, x, y, z);
         return;
     }
     const auto& n = octree_.blocks(level - 1);
@@ -113,6 +113,7 @@ void Erosion::cut_brick(const Way& way, std::uint32_t x, std::uint32_t y, std::u
     const std::uint32_t place[3] = {x, y, z};
     for (int a = 0; a < 3; ++a) job.first[a] = static_cast<float>(8.0 * place[a] - way.from[a]);
     job.key = static_cast<std::uint32_t>(SeededRandom(way.key + i).next() >> 32U);
+    ++pass_.visited;
     const std::uint32_t levels = way.kernels->erode(job, density_.data() + i * BoneBricks::kVoxels);
     if (levels == 0) return;
     const MomentOctree::Brick lost = octree_.refresh(x, y, z);

@@ -28,6 +28,7 @@ struct BoneDust {
 struct ErosionPass {
     std::uint64_t removed = 0;   // levels
     std::uint32_t bricks = 0;    // that lost something
+    std::uint32_t visited = 0;   // bricks whose voxels were computed: the work of the pass
     std::uint64_t unlisted = 0;  // of `removed`, what found no room in the list of dust
 };
 
@@ -37,9 +38,8 @@ struct CuttingBall {
     double radius_voxels = 1.0;
     double exposure = 0.0;  // a times the step's time: solid bone in the ball's centre keeps exp(-exposure)
     double soft = 1.0;      // the rate in the softest bone over that in solid bone; linear between
-    // Of bricks in so many groups, a power of two, those of this one: a large ball goes over them in turn, each with the
-    // way and the exposure since its last one.
-    std::uint32_t groups = 1, group = 0;
+    // Of bricks in so many groups, a power of two up to 32, those whose bits are set (erosion_turns.hpp).
+    std::uint32_t groups = 1, mask = ~0U;
 };
 
 class Erosion {

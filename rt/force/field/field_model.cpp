@@ -16,6 +16,8 @@ constexpr int kErrorPlaces = 512;
 constexpr double kErrorMargin = 1.25;
 constexpr double kReachM = 10.0;   // farther away is no place of a hand
 constexpr double kOnLevel = 1e-5;  // of the way to the next level
+// ns, 2026-11-25, AVX-512 at 3.7 GHz.
+constexpr double kFieldStepNs = 100.0, kFieldPointNs = 8.0;
 
 }  // namespace
 
@@ -85,11 +87,21 @@ std::uint32_t FieldModel::items(float fidelity) const noexcept {
     return static_cast<std::uint32_t>(levels_[plan(fidelity).upper].x.size());
 }
 
+PathLoad FieldModel::predict(float fidelity) const noexcept {
+    const Plan p = plan(fidelity);
+    PathLoad load;
+    load.items = static_cast<std::uint32_t>(levels_[p.upper].x.size());
+    load.cost_predicted = Duration(std::llround(kFieldStepNs + kFieldPointNs * load.items));
+    load.error = (1.0 - p.blend) * levels_[p.lower].error_n + p.blend * levels_[p.upper].error_n;
+    return load;
+}
+
 void FieldModel::reset(const ToolState& /*tool*/) noexcept { fade_.cut(); }
 
-Vec3 FieldModel::force_n(const Level& level, const Vec3& at_model_m) const noexcept {
-    const DensitySums sums =
-        map_.sum({level.x, level.y, level.z, level.weight}, {at_model_m, Quat::Identity()});
+Vec3 FieldModel::force_n(const Level& level, const Vec3& at_model_m, std::size_t first) const noexcept {
+    const auto rest = [first](const std::vector<float>& all) { return std::span(all).subspan(first); };
+    const DensitySums sums = map_.sum({rest(level.x), rest(level.y), rest(level.z), rest(level.weight)},
+                                      {at_model_m, Quat::Identity()});
     return (-field_.force_n_m_per_unit * field_.deviation) * sums.gradient;
 }
 
@@ -130,11 +142,19 @@ StepResult FieldModel::step(const ToolState& tool, const Budget& budget) noexcep
     Vec3 force = force_n(lower, at_m);
     result.load.error = lower.error_n;
     if (p.upper != p.lower) {
-        force = (1.0 - p.blend) * force + p.blend * force_n(upper, at_m);
+        // The lower level's points are the first of the upper one's.
+        const std::size_t first = lower.x.size();
+        const double part = static_cast<double>(first) / static_cast<double>(upper.x.size());
+        const Vec3 finer = part * force + force_n(upper, at_m, first);
+        force = (1.0 - p.blend) * force + p.blend * finer;
         result.load.error = (1.0 - p.blend) * lower.error_n + p.blend * upper.error_n;
     }
-    if (result.status == StepStatus::ok && budget.deadline.passed()) result.status = StepStatus::out_of_time;
+    const PathLoad planned = predict(budget.fidelity);
+    result.load.cost_predicted = planned.cost_predicted;
     result.load.items = static_cast<std::uint32_t>(upper.x.size());
+    if (result.status == StepStatus::out_of_time)
+        result.load.work_done = static_cast<float>(result.load.items) / static_cast<float>(planned.items);
+    if (result.status == StepStatus::ok && budget.deadline.passed()) result.status = StepStatus::out_of_time;
     result.wrench_world = fade_.show({gain * force, Vec3::Zero()});
     result.load.cost = Monotonic::now() - begin;
     return result;

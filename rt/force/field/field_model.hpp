@@ -12,6 +12,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "ipc/scene/density/density_map.hpp"
@@ -31,6 +32,7 @@ public:
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return field_.stiffness_n_m; }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -47,7 +49,9 @@ private:
     };
     static Level ball(std::uint32_t points, double radius_m);
     [[nodiscard]] Plan plan(float fidelity) const noexcept TACT_RT;
-    [[nodiscard]] Vec3 force_n(const Level& level, const Vec3& at_model_m) const noexcept TACT_RT;
+    // Of the points from `first` on, with their weights.
+    [[nodiscard]] Vec3 force_n(const Level& level, const Vec3& at_model_m,
+                               std::size_t first = 0) const noexcept TACT_RT;
     [[nodiscard]] double inside(const Vec3& at_model_m) const noexcept TACT_RT;
     void measure_errors();
 

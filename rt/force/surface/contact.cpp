@@ -197,11 +197,13 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     // A slide goes on as it did: where it does not, a second move makes up for it.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
+    moves_max = std::min(moves_max, kMovesMost);
     while (contact.moves < moves_max && contact.triangles < kTrianglesMost) {
         if (contact.moves > 0 && deadline.passed()) {
             contact.late = true;
             break;
         }
+        if (contact.moves > 0) after_m_[contact.moves - 1] = proxy_m_;
         ++contact.moves;
         const Vec3 request = goal_m - proxy_m_;
         double reach_now = std::min({reach, left, std::max(request.norm(), settings_.margin_m)});
@@ -261,11 +263,14 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
                          settings_.margin_m);
         cut_before = cut;
     }
-    // What was used up on a ring was not lacking: it is where it should be, but for a margin.
-    if (contact.state == ContactState::lagging && rounds > 0 && !contact.late)
+    // What was used up on a ring was not lacking: it is where it should be, but for a margin. With fewer moves than there are
+    // at most, nobody knows that it is a ring before the last round.
+    const bool ring = rounds == kRounds || (rounds > 0 && contact.moves == kMovesMost);
+    if (contact.state == ContactState::lagging && ring && !contact.late)
         contact.state = ContactState::settled;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
+    contact.after_m = {after_m_.data(), std::max(contact.moves, 1U) - 1};
     return contact;
 }
 

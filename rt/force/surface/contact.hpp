@@ -24,6 +24,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ipc/base/knob.hpp"
@@ -64,10 +65,13 @@ struct Contact {
     std::uint32_t triangles = 0;  // looked at
     ContactState state = ContactState::settled;
     bool late = false;  // the deadline ended it
+    // Where the proxy was after each move but the last.
+    std::span<const Vec3> after_m;
 };
 
 class SurfaceContact {
 public:
+    static constexpr std::uint32_t kMovesMost = 24;  // of a step
     static constexpr std::size_t kLeavesMax = 4096;
     // A step begins no further move once it has looked at so many: some 100 us.
     static constexpr std::uint32_t kTrianglesMost = 8192;
@@ -116,6 +120,7 @@ private:
     double way_m_ = 0.0;         // since then
     Vec3 proxy_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();
     double moved_m_ = 0.0;  // by the last step
+    std::array<Vec3, kMovesMost> after_m_;
 };
 
 }  // namespace tact

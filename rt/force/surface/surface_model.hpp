@@ -12,7 +12,9 @@
 //          limited; that is out_of_time, counted, with twice that force as its error bound. Where it is left
 //          behind by more than kLostLimits times the way at that limit, it is released: that force fades out,
 //          the proxy is seated as after a reset, and the force fades in.
-// Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags.
+// Knob     "surface.force": the most moves of the proxy in a step, 4 to 24. A proxy that needs more lags, and catches up in
+//          later steps; most steps need two (README.md), so most of the time no level differs from another. predict()
+//          says what the last half second needed, and how far fewer moves would have lagged (lag_record.hpp).
 // Modes    off_brute: every triangle, every step; off_tree: those that the tree over the full mesh finds; chr: those
 //          of a surface kept fine around the tool by slow_update() (adaptive_surface.hpp), and where that does not hold
 //          what a step may look at, the tree: the same force, said in regime(). Fidelity is then also the
@@ -34,6 +36,7 @@
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
+#include "rt/force/surface/lag_record.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
@@ -65,7 +68,7 @@ public:
     static constexpr double kDampedDepthM = 5e-4;
     static constexpr double kLagN = 0.05;  // what a step may change the force by, besides what the hand did
     static constexpr double kLostLimits = 2.0;
-    static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
+    static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = SurfaceContact::kMovesMost;
 
     // The bytes behind mesh and forest must outlive the model. The forest is there for mode chr alone.
     SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
@@ -74,6 +77,7 @@ public:
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     // Triangles expected around the tool in mode chr, else moves.
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] static std::uint32_t moves(float fidelity) noexcept TACT_RT;
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
@@ -108,6 +112,7 @@ public:
 
 private:
     // gone_m: by the tool since the last step, in the model.
+    void forget_lag(double gone_m, double depth_m) noexcept TACT_RT;
     [[nodiscard]] Vec3 force_n(const ToolState& tool, const Vec3& goal_model_m,
                                double gone_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
@@ -119,8 +124,10 @@ private:
     Contact contact_;
     ForceFade fade_;
     PacedTurn<Vec3> turn_;  // by shading
-    bool asked_ = false;    // reset() was called
-    bool seated_ = false;   // the proxy is where a tool was
+    LagRecord lag_;
+    double lagged_ = 0.0;  // what is left of the last lag, 1 to 0
+    bool asked_ = false;   // reset() was called
+    bool seated_ = false;  // the proxy is where a tool was
     std::uint64_t grips_ = 0;
     std::uint64_t lagging_ = 0, released_ = 0;
     SurfaceMesh full_;

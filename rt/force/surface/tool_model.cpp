@@ -195,6 +195,11 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                                     choose_surface(budget.fidelity));
             if (adaptive_ != nullptr) regime_ = touch_.adaptive ? TouchRegime::adaptive : TouchRegime::tree;
             const bool on_time = !hurried && !touch_.late;
+            // A proxy that was late made one move of those that it needed, or some; how many are missing is unknown.
+            if (!on_time) {
+                const auto moves = static_cast<float>(std::max(touch_.moves, 1U));
+                result.load.work_done = moves / (moves + 1.0F);
+            }
             if (on_time && touch_.state == ContactState::lagging) ++lagging_;
             if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
             const Vec6 way_m = solver_.way_m(to, solver_.proxy());

@@ -1,0 +1,75 @@
+#include "rt/force/drilling/drill_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tact {
+namespace {
+
+// ns, 2026-11-25, AVX-512 at 3.7 GHz: fit to the counts and times of README.md's table.
+constexpr double kDrillStepNs = 300.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 150.0, kCutNs = 600.0;
+constexpr double kErrorLeast = 0.01, kErrorPerBlock = 0.2, kErrorPerVoxel = 0.5, kErrorRough = 0.1;
+constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
+
+// Blocks that a ball's surface in bone makes a walk of the octree visit, up to a common factor.
+DrillWork surface_work(const BallLook& look, double block) noexcept {
+    const double x = std::clamp(look.depth, 0.01, 2.0), r = look.radius;
+    const double area = 2.0 * std::numbers::pi * r * r * x,
+                 rim = 2.0 * std::numbers::pi * r * std::sqrt(std::max(x * (2.0 - x), 0.0));
+    const double l = std::clamp(block * depth_part(x), 1.0, kBlockMost * r);
+    // Of the blocks of an edge, those that are larger than asked: asked is l in bone, l / 2 where bone and air meet.
+    const auto share = [&](double edge) { return std::clamp(2.0 * edge / l - 1.0, 0.0, 1.0); };
+    DrillWork work;
+    double edge = 8.0;
+    const auto met = [&] { return 1.0 + kSurfacePerEdge2 * (area / (edge * edge) + rim / edge); };
+    const double parts = share(8.0), voxels = share(4.0);
+    // Where voxels alone are summed their parts still count, so that no finer level is expected to be cheaper.
+    work.blocks = 8.0 + 8.0 * met() * parts;
+    work.summed = met() * voxels;
+    for (edge = 16.0; edge < 2.0 * r; edge *= 2.0) work.blocks += 8.0 * met() * share(edge);
+    return work;
+}
+
+}  // namespace
+
+Duration drill_cost(const DrillWork& w) noexcept {
+    return Duration(std::llround(kDrillStepNs + kBallNs * w.balls + kBlockNs * w.blocks + kSumNs * w.summed +
+                                 kCutNs * w.cut));
+}
+
+DrillWork expected_work(const DrillWork& found, const BallLook& as, double block) noexcept {
+    DrillWork work = found;
+    work.cut = 0.0;
+    if (!(as.block > 0.0) || !(as.depth > 0.0)) return work;
+    const DrillWork then = surface_work(as, as.block), now = surface_work(as, block);
+    work.blocks *= now.blocks / then.blocks;
+    // Where no brick was summed yet, those of the blocks' scale.
+    const double scale = found.blocks / then.blocks;
+    work.summed = then.summed > 1.0 && found.summed > 0.0 ? found.summed * now.summed / then.summed
+                                                          : scale * now.summed;
+    return work;
+}
+
+double block_error_share(double block, double voxel, bool rough) noexcept {
+    return kErrorLeast + kErrorPerBlock * block * block + kErrorPerVoxel * voxel * voxel +
+           (rough ? kErrorRough : 0.0);
+}
+
+double pending_error_n(const BurrLaw& law, double radius_m, double soft, const BurrForce& f, double m0_m3,
+                       double m1_m4, double speed_m_s) noexcept {
+    const double x = f.depth;
+    if (!(x > 0.0) || !(m0_m3 > 0.0)) return 0.0;
+    const double r2 = radius_m * radius_m;
+    const double elastic_n = law.elastic_pa * r2 * x * std::sqrt(x),
+                 impact_n = law.impact_n_s_m3 * r2 * x * speed_m_s;
+    const double lost = soft * std::min(x, 1.0);  // of m0, per exposure
+    // d log x / d log m0 of eq. 2.
+    const double slope = (1.0 - x / 3.0) / std::max(2.0 - x, 0.5);
+    // What goes on one side turns the normal, by its lever over the moment.
+    const double lever = x < 1.0 ? std::sqrt(x * (2.0 - x)) : 1.0;
+    const double turn = lever * std::min(m0_m3 * radius_m / std::max(m1_m4, 1e-30), 4.0);
+    return lost * (slope * (1.5 * (1.0 + law.friction_share) * elastic_n + impact_n) + turn * elastic_n);
+}
+
+}  // namespace tact

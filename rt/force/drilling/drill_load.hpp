@@ -1,0 +1,54 @@
+// Work, time and error of a drilling step at a level, from what the last step found.
+//
+// Work     blocks and bricks that the force visits, bricks that erosion computes; as counted in a step, or expected at
+//          another level. Blocks of the force go as (touched area) / block^2, octree level by octree level; the last step's count
+//          sets the scale.
+// Time     constants of one core (README.md); another core or instruction set has a factor common to all levels.
+// Error    of a level: the blocks' share of the elastic force, bounds of what README.md measured, and what the bone still to
+//          be cut may change: with e the exposure that is pending, a cap loses e s x m0 at most (its mean of 1 - (r/R)^2
+//          is 2x/3, half as much again for other shapes), which changes eqs 2, 3, 13 and 14 by their slopes.
+// Thread   any; constant time, no allocation
+#pragma once
+
+#include <cstdint>
+
+#include "ipc/base/clock.hpp"
+#include "rt/force/drilling/ball_moments.hpp"
+#include "rt/force/drilling/burr_forces.hpp"
+
+namespace tact {
+
+struct DrillWork {
+    double balls = 0.0, blocks = 0.0;  // whose moments were summed
+    double summed = 0.0;               // bricks, voxel by voxel
+    double cut = 0.0;                  // bricks, by erosion
+
+    void add(const BallMoments& m) noexcept {
+        balls += 1.0;
+        blocks += static_cast<double>(m.blocks) - 512.0 * m.bricks;
+        summed += m.bricks;
+    }
+    // Balls, blocks and voxels.
+    [[nodiscard]] std::uint32_t items() const noexcept {
+        return static_cast<std::uint32_t>(balls + blocks + 512.0 * (summed + cut) + 0.5);
+    }
+};
+
+[[nodiscard]] Duration drill_cost(const DrillWork& work) noexcept TACT_RT;
+
+// What the blocks of one ball depend on, in voxels.
+struct BallLook {
+    double radius = 1.0, depth = 0.0;  // h / R
+    double block = 0.0;                // smallest, as asked; 0: there was no look
+};
+// The force's part of `found`, which a look at `as` found, at another smallest block.
+[[nodiscard]] DrillWork expected_work(const DrillWork& found, const BallLook& as,
+                                      double block) noexcept TACT_RT;
+
+// Of the elastic force, for blocks and voxels in radii. rough: blocks do not shrink near the surface.
+[[nodiscard]] double block_error_share(double block, double voxel, bool rough) noexcept TACT_RT;
+// Newtons per exposure that is pending, of a ball of weight 1.
+[[nodiscard]] double pending_error_n(const BurrLaw& law, double radius_m, double soft, const BurrForce& force,
+                                     double m0_m3, double m1_m4, double speed_m_s) noexcept TACT_RT;
+
+}  // namespace tact

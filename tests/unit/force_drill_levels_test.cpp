@@ -1,0 +1,194 @@
+// The knob of drilling while the burr cuts: what a level takes, when, at which cost and at which error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/force/drilling/drill_model.hpp"
+#include "tests/support/bone_block.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kVoxelM = 3e-4, kFullRadS = 6283.0;
+
+// Bone below z = 0 of the world, under a tool without a shaft.
+struct Drilled {
+    BoneBlock bone;
+    SceneMeta meta{};
+    std::unique_ptr<DrillBone> shared;
+    std::unique_ptr<DrillModel> model;
+
+    explicit Drilled(double radius_m, std::uint32_t edge = 72)
+        : bone(
+              edge, kVoxelM, [=](const Vec3& p) { return p.z() < 0.5 * edge - 0.5 ? 1.0 : 0.0; }, 1) {
+        meta.kind = SceneKind::drilling;
+        meta.world_per_model = 1.0;
+        bone.bricks.origin_m = -kVoxelM * Vec3::Constant(0.5 * edge - 0.5);
+        shared = std::make_unique<DrillBone>(bone.bricks, bone.density, bone.revision);
+        DrillSettings s;
+        s.tool.radius_m = radius_m;
+        s.tool.shaft_radius_m = 0.0;
+        model = std::make_unique<DrillModel>(meta, *shared, s);
+        model->turn_burr({kFullRadS, 1e-3});
+    }
+    StepResult step(const Vec3& p_m, float fidelity, const Deadline& deadline = {}) {
+        ToolState tool;
+        tool.T_world_tool.p_m = p_m;
+        Budget budget;
+        budget.fidelity = fidelity;
+        budget.deadline = deadline;
+        return model->step(tool, budget);
+    }
+    void begin(const Vec3& p_m) {
+        ToolState tool;
+        tool.T_world_tool.p_m = p_m;
+        model->reset(tool);
+        for (int i = 0; i < 400; ++i) (void)step(p_m, 1.0F);
+    }
+};
+
+// To and fro by 4 mm, sinking to 1.5 mm in 0.3 s and then by 2 mm/s; above the bone at first.
+Vec3 stroke_m(double radius_m, double t_s) {
+    const double depth_m = t_s < 0.3 ? -1e-3 + t_s / 0.3 * 2.5e-3 : 1.5e-3 + 2e-3 * (t_s - 0.3);
+    return {4e-3 * std::sin(12.0 * t_s), 1e-3 * std::sin(7.0 * t_s), radius_m - depth_m};
+}
+
+TEST(DrillLevels, a_lower_level_cuts_fewer_bricks_a_step_and_the_same_mass_a_little_later) {
+    for (const double radius_m : {3e-3, 8e-3}) {
+        double whole = 0.0, most_bricks = 1e9;
+        for (const float level : {1.0F, 0.6F, 0.3F, 0.0F}) {
+            Drilled d(radius_m);
+            d.begin(stroke_m(radius_m, 0.0));
+            double most = 0.0;
+            for (int i = 0; i < 700; ++i) {
+                (void)d.step(stroke_m(radius_m, 1e-3 * i), level);
+                most = std::max(most, static_cast<double>(d.model->cut().visited));
+            }
+            const auto removed = static_cast<double>(d.model->removed_levels());
+            if (level == 1.0F) whole = removed;
+            EXPECT_GT(whole, 255.0 * 100.0);
+            EXPECT_NEAR(removed, whole, 0.02 * whole) << level;
+            EXPECT_LT(most, most_bricks) << level;
+            most_bricks = most;
+        }
+    }
+}
+
+TEST(DrillLevels, the_reported_error_bounds_what_bone_that_waits_changes_in_the_force) {
+    for (const double radius_m : {2e-3, 3e-3, 8e-3}) {
+        for (const float level : {0.0F, 0.3F, 0.6F}) {
+            Drilled full(radius_m), coarse(radius_m);
+            full.begin(stroke_m(radius_m, 0.0));
+            coarse.begin(stroke_m(radius_m, 0.0));
+            double off = 0.0, error = 0.0, predicted = 0.0;
+            int beyond = 0;
+            for (int i = 0; i < 700; ++i) {
+                const Vec3 p_m = stroke_m(radius_m, 1e-3 * i);
+                predicted += full.model->predict(level).error;
+                const StepResult a = full.step(p_m, 1.0F), b = coarse.step(p_m, level);
+                const double off_n = (a.wrench_world.force_n - b.wrench_world.force_n).norm();
+                beyond += off_n > a.load.error + b.load.error ? 1 : 0;
+                off += off_n;
+                error += b.load.error;
+            }
+            EXPECT_LE(beyond, 0) << radius_m << " m at " << level;
+            EXPECT_GT(off, 0.0);
+            EXPECT_LT(error, 60.0 * off);  // a bound, and not any bound
+            EXPECT_NEAR(predicted, error, 0.5 * error) << radius_m << " m at " << level;
+        }
+    }
+}
+
+TEST(DrillLevels, predicted_work_is_that_of_the_step) {
+    for (const double radius_m : {2e-3, 3e-3, 8e-3}) {
+        for (const float level : {0.0F, 0.3F, 0.6F, 1.0F}) {
+            Drilled d(radius_m);
+            d.begin(stroke_m(radius_m, 0.0));
+            double expected = 0.0, found = 0.0;
+            for (int i = 0; i < 700; ++i) {
+                if (i > 300) expected += d.model->predict(level).items;
+                const StepResult r = d.step(stroke_m(radius_m, 1e-3 * i), level);
+                if (i > 300) found += r.load.items;
+            }
+            EXPECT_NEAR(expected, found, 0.1 * found) << radius_m << " m at " << level;
+        }
+    }
+}
+
+// What another level would do, told from this one.
+TEST(DrillLevels, work_predicted_from_another_level_is_right_within_a_factor_of_two) {
+    for (const double radius_m : {2e-3, 3e-3, 8e-3}) {
+        for (const float level : {0.0F, 0.3F, 0.6F, 1.0F}) {
+            Drilled at_half(radius_m), d(radius_m);
+            at_half.begin(stroke_m(radius_m, 0.0));
+            d.begin(stroke_m(radius_m, 0.0));
+            double expected = 0.0, found = 0.0;
+            for (int i = 0; i < 700; ++i) {
+                const Vec3 p_m = stroke_m(radius_m, 1e-3 * i);
+                if (i > 300) expected += to_us(at_half.model->predict(level).cost_predicted);
+                if (i > 300) found += to_us(d.model->predict(level).cost_predicted);
+                (void)at_half.step(p_m, 0.5F);
+                (void)d.step(p_m, level);
+            }
+            EXPECT_LT(expected, 2.0 * found) << radius_m << " m at " << level;
+            EXPECT_GT(expected, 0.5 * found) << radius_m << " m at " << level;
+        }
+    }
+}
+
+TEST(DrillLevels, a_deadline_that_passes_while_bone_is_cut_leaves_the_rest_for_later) {
+    constexpr double kRadiusM = 16e-3;  // of 53 voxels: 16 groups in two passes at least
+    Drilled on_time(kRadiusM, 120), late(kRadiusM, 120);
+    on_time.begin(stroke_m(kRadiusM, 0.0));
+    late.begin(stroke_m(kRadiusM, 0.0));
+    int cut_short = 0;
+    for (int i = 0; i < 900; ++i) {
+        const Vec3 p_m = stroke_m(kRadiusM, 1e-3 * std::min(i, 600));
+        (void)on_time.step(p_m, 1.0F);
+        DeadlineChecks checks;
+        checks.replayed = true;
+        // Before the force, before the cut and before the second pass of it, of every second step.
+        checks.passed_at = i % 2 == 0 && i < 800 ? 3 : 0;
+        const StepResult r = late.step(p_m, 1.0F, Deadline(Instant::max(), &checks));
+        if (r.status != StepStatus::out_of_time) continue;
+        ++cut_short;
+        EXPECT_LT(r.load.work_done, 1.0F);
+        EXPECT_GT(late.model->cut().visited, 0U);  // some of it was done
+    }
+    EXPECT_GT(cut_short, 100);
+    const auto whole = static_cast<double>(on_time.model->removed_levels());
+    EXPECT_GT(whole, 255.0 * 100.0);
+    EXPECT_NEAR(static_cast<double>(late.model->removed_levels()), whole, 0.02 * whole);
+}
+
+TEST(DrillLevels, the_depth_of_the_step_before_makes_no_step_and_no_oscillation) {
+    Drilled d(6e-3);
+    d.model->turn_burr({0.0, 1e-3});
+    for (const float level : {0.0F, 0.5F, 1.0F}) {
+        d.begin(Vec3(0.0, 0.0, 6.5e-3));
+        Vec3 before = Vec3::Zero(), change = Vec3::Zero();
+        double most_n = 0.0, jerk_n = 0.0;
+        for (int i = 0; i < 1400; ++i) {  // 3.5 mm deep, by 2.5 um a step
+            const Vec3 now = d.step(Vec3(0.0, 0.0, 6.5e-3 - 2.5e-6 * i), level).wrench_world.force_n;
+            if (i > 0) most_n = std::max(most_n, (now - before).norm());
+            if (i > 1) jerk_n = std::max(jerk_n, (now - before - change).norm());
+            change = now - before;
+            before = now;
+        }
+        EXPECT_GT(before.norm(), 2.0);
+        EXPECT_LT(most_n, 0.03) << level;  // 2 N/mm of a burr of this size make 5 mN
+        EXPECT_LT(jerk_n, 0.03) << level;
+        Vec3 least = before, most = before;
+        for (int i = 0; i < 100; ++i) {
+            const Vec3 now = d.step(Vec3(0.0, 0.0, 3e-3), level).wrench_world.force_n;
+            if (i > 20) least = least.cwiseMin(now);
+            if (i > 20) most = most.cwiseMax(now);
+            if (i == 20) least = most = now;
+        }
+        EXPECT_LT((most - least).norm(), 1e-9) << level;
+    }
+}
+
+}  // namespace
+}  // namespace tact
