@@ -93,6 +93,10 @@ void health(Page& page, const HealthTopic& h) {
              count(h.overruns));
     page.one("tact_servo_skipped_periods_total", "counter", "periods left out because of overruns",
              count(h.skipped));
+    page.one("tact_force_deadline_misses_total", "counter",
+             "steps of the force model that ended after their deadline", count(h.deadline_misses));
+    page.one("tact_force_error_newtons", "gauge", "median bound of the force error since the start",
+             static_cast<double>(h.force_error_n_p50));
     page.one("tact_servo_allocations_total", "counter", "heap calls on the servo thread inside cycles",
              count(h.allocations));
     page.one("tact_servo_locks_total", "counter", "locks on the servo thread inside cycles", count(h.locks));

@@ -96,6 +96,21 @@ json head(const RtRegion& region) {
             {"distortion", h->distortion}};
 }
 
+// Of the cycles with force since the start.
+void add_armed_metrics(const HealthTopic& h, json& j) {
+    const bool armed = h.armed_cycles > 0;
+    const auto figure = [armed](double value) { return armed ? json(value) : json(nullptr); };
+    j["armed_cycles"] = h.armed_cycles;
+    j["deadline_misses"] = h.deadline_misses;
+    j["deadline_miss_share"] = figure(static_cast<double>(h.deadline_misses) /
+                                      static_cast<double>(std::max(h.armed_cycles, std::uint64_t{1})));
+    j["deadline_miss_share_last_second"] = figure(static_cast<double>(h.deadline_miss_share));
+    j["deadline_us"] = h.model_ns_max > 0 ? json(us(static_cast<double>(h.model_ns_max))) : json(nullptr);
+    j["force_error_n_p50"] = figure(static_cast<double>(h.force_error_n_p50));
+    j["force_step_n_max"] = figure(static_cast<double>(h.force_step_n_max));
+    j["level_settled_s"] = figure(static_cast<double>(h.level_settled_s));
+}
+
 json ending_json(const Ending& e) {
     return {{"exit_code", e.by_signal ? json(nullptr) : json(e.number)},
             {"signal", e.by_signal ? json(e.number) : json(nullptr)},
@@ -136,6 +151,7 @@ json controller_report(const RtRegion& region) {
                   {"bad_input", h.bad_input},
                   {"events", h.events}};
     if (const auto lateness = newest(region.lateness)) j["servo"]["lateness_us"] = lateness_us(*lateness);
+    add_armed_metrics(h, j);
     j["gui"] = {{"attached", h.gui_attached != 0},
                 {"fps", h.gui_fps},
                 {"vertices", h.gui_vertices},
@@ -195,6 +211,11 @@ std::string report_summary(const json& r) {
         add("force rate %.1f Hz; lateness us p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f; overruns %.0f\n",
             number(r["force_rate_hz"]), number(l["p50"]), number(l["p99"]), number(l["p999"]),
             number(l["max"]), number(r["servo"]["overruns"]));
+        add("deadline misses %.0f (%.3f %% of the armed cycles); force error p50 %.3f N, largest force "
+            "change per "
+            "cycle %.3f N; level settled after %.2f s\n",
+            number(r["deadline_misses"]), 100.0 * number(r["deadline_miss_share"]),
+            number(r["force_error_n_p50"]), number(r["force_step_n_max"]), number(r["level_settled_s"]));
         if (r["servo"]["free_running"].get<bool>())
             add("free running; recomputed fraction %.0f %% in the last 0.1 s, minimum %.0f %%; idle %.0f %% "
                 "of the time\n",

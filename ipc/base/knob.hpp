@@ -19,6 +19,8 @@ struct KnobSpec {
     float start = 1.0F;       // level before the first measurement
     float slew_per_s = 1e9F;  // fastest change that is not felt or seen
     bool haptic = false;      // haptic levels are given up last
+    // Equally spaced levels, from 0 to 1, between which a level costs as much as both of its neighbours; 0: none.
+    std::uint32_t steps = 0;
 };
 
 // Why a level is what it is.
@@ -31,7 +33,10 @@ enum class LevelReason : std::uint8_t {
     at_top,
     by_command,
     picture_low,  // the picture's own goal, not the force rate's
-    picture_high
+    picture_high,
+    cost_high,        // the cost of a step no longer fits the period
+    cost_low,         // a level with a smaller error fits
+    deadline_missed,  // a step ended after its deadline
 };
 
 // Cost and error of one step. The unit of the error belongs to the path (N for forces).

@@ -24,7 +24,7 @@ enum ScheduleFlag : std::uint32_t {
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 6, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 7, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -67,9 +67,18 @@ struct alignas(64) HealthTopic {
     BusCounts device_bus[2];        // of each hand
     std::uint8_t reserved[4];       // zero
     std::int64_t overrun_at_ns;     // the last one; 0: none
-    std::uint8_t more_reserved[8];  // zero
+    // Of the cycles with force since the loop started (rt/servo/armed_metrics.hpp).
+    std::uint64_t armed_cycles;
+    std::uint64_t deadline_misses;       // steps of the force model that ended after their deadline
+    std::int64_t deadline_missed_at_ns;  // the last one; 0: none
+    float deadline_miss_share;           // of the armed cycles of the last second
+    float force_error_n_p50;             // median of the published error bound
+    float force_step_n_max;              // largest change of the force from one cycle to the next
+    float level_settled_s;      // after arming the level stays within 5 % from then on; negative: not armed
+    std::int64_t model_ns_max;  // deadline of the model's step; 0: none
+    std::uint8_t more_reserved[24];  // zero
 };
-static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 320);
+static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 384);
 static_assert(offsetof(HealthTopic, overrun_at_ns) == 304 && offsetof(HealthTopic, device_bus) == 220 &&
               sizeof(BusCounts) == 40);
 

@@ -18,18 +18,19 @@ struct PathLevel {
     char path[kPathNameMax];  // "docking.force", "gui.mesh"; ends with 0
     float level;              // [floor, 1]
     float floor;
-    std::uint32_t items;       // what the level means: vertices, points
-    std::uint32_t items_max;   // at level 1
-    double cost_s;             // measured, last window
-    double error;              // unit of the path
-    std::uint8_t reason;       // LevelReason of the last change
-    std::uint8_t haptic;       // 0 or 1
-    std::uint8_t reserved[6];  // zero
+    std::uint32_t items;         // what the level means: vertices, points
+    std::uint32_t items_max;     // at level 1
+    double cost_s;               // measured, last window
+    double error;                // unit of the path
+    std::uint8_t reason;         // LevelReason of the last change
+    std::uint8_t haptic;         // 0 or 1
+    std::uint8_t reserved[6];    // zero
+    std::int64_t changed_at_ns;  // the level's last change; 0: never
 };
-static_assert(sizeof(PathLevel) == 64);
+static_assert(sizeof(PathLevel) == 72);
 
 struct alignas(64) LevelsTopic {
-    static constexpr TopicInfo kInfo{.name = "levels", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "levels", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t sequence;  // rises with every change
     double goal_hz;
@@ -40,7 +41,7 @@ struct alignas(64) LevelsTopic {
     std::uint32_t reserved[2];  // zero
     PathLevel path[kPathsMax];
 };
-static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);
+static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 640);
 
 // Places in LevelsTopic::path that are always theirs.
 inline constexpr std::size_t kDisplayPathIndex = 0, kForcePathIndex = 1;

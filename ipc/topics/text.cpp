@@ -189,6 +189,12 @@ const char* level_reason_text(LevelReason reason) noexcept {
             return "frame rate below goal";
         case LevelReason::picture_high:
             return "frame rate above goal";
+        case LevelReason::cost_high:
+            return "limited by step cost";
+        case LevelReason::cost_low:
+            return "step cost fits";
+        case LevelReason::deadline_missed:
+            return "deadline missed";
     }
     return kUnknown;
 }

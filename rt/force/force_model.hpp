@@ -79,6 +79,8 @@ struct ModelOrder {
 
 // Period of a model's slow update.
 inline constexpr Duration kSlowUpdatePeriod = std::chrono::milliseconds(4);
+// Of that period, the longest that an update may take before the level falls.
+inline constexpr double kSlowUpdateFraction = 0.9;
 
 // A cycle of the servo loop, for what a model publishes of it.
 struct ModelCycle {

@@ -29,7 +29,7 @@ enum Pin : unsigned { kStopA, kStopB, kPedal, kAmplifier, kEnable, kWatchdog, kL
 // Patient: a busy host's processor stands still now and then.
 constexpr const char* kPatient = R"([servo]
 period_us = 1000.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 supervisor_us_max = 5e6
@@ -37,7 +37,7 @@ supervisor_us_max = 5e6
 constexpr const char* kCounted = R"([servo]
 period_us = 2000.0
 spin_us = 0.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 )";

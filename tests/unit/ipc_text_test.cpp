@@ -32,7 +32,7 @@ TEST(Text, every_code_has_words_of_its_own) {
     expect_own_words(event_code_text, EventCode::device_notice, true);
     expect_own_words(lines_text, LinesShown::permitted, true);
     expect_own_words(device_notice_text, static_cast<DeviceNotice>(kDeviceNotices - 1), true);
-    expect_own_words(level_reason_text, LevelReason::picture_high, false);
+    expect_own_words(level_reason_text, LevelReason::deadline_missed, false);
     expect_own_words(command_kind_text, kLastCommand, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
     expect_own_words(frame_part_text, FramePart::particles, false);
