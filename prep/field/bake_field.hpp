@@ -1,7 +1,7 @@
 // Bakes a potential field: the grid, and the gain at which its gradient is a force that a hand can hold.
 //
-// Force     F = -gain * grad(phi). The gain gives force_n_max at the largest gradient inside the box (central differences),
-//           or less if the stiffness would otherwise exceed stiffness_n_m_max anywhere in the box.
+// Force     F = -gain * grad(phi). The gain gives force_n_max at the largest gradient inside the box (central
+//           differences), or less if the stiffness would otherwise exceed stiffness_n_m_max anywhere in the box.
 // Drawing   the equipotential surfaces that enclose the lowest and the highest tenth of the values
 // Place     the box's longest edge is size_m wide in hand space, and its centre is the centre of the workspace
 // Fails by  StartupError; Cancelled when `progress` returns false. Writes no file.

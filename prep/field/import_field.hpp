@@ -1,7 +1,7 @@
 // Reads a scalar potential on a regular grid: CSV (.csv .txt .dat) or NRRD (.nrrd .nhdr), each also as .gz.
 //
-// CSV      one point per line: x y z value, or x y value for a potential that is the same at every z; separated by commas,
-//          semicolons, tabs or spaces; lines in any order. A header line and lines that begin with # are skipped.
+// CSV      one point per line: x y z value, or x y value for a potential that is the same at every z; separators are
+//          commas, semicolons, tabs or spaces; lines in any order. A header line and lines that begin with # are skipped.
 //          The points must form a complete regular grid: every point once, equal steps along each axis.
 // NRRD     three axes, any number type, raw or gzip; axes parallel to x, y and z.
 // Frame    model: x, y, z as in the file, metres (lengths in the file are in `unit_m`).
