@@ -15,7 +15,7 @@ constexpr const char* kPlaced[] = {"offset_a", "angle_deg", "bone_taken_mm3"};
 
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-// Empty where the system has no such value.
+// Empty if the system has no such value.
 std::string own_text(const Sample& s, std::string_view column) {
     for (const OwnValue& v : s.own) {
         if (column != v.column) continue;
@@ -77,7 +77,7 @@ std::string table_row(const Sample& s) {
 }
 
 std::string samples_csv(const std::vector<Sample>& samples) {
-    // The first three columns of systems have their place in the file since its beginning; others follow at the end.
+    // The columns of these systems keep their place in the file; columns of other systems follow at the end.
     std::vector<std::string> more;
     for (const Sample& s : samples)
         for (const OwnValue& v : s.own)

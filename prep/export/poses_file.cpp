@@ -48,7 +48,7 @@ std::vector<PlacedBody> read_poses(std::string_view text, const std::string& nam
     const auto list = all.is_object() ? all.find("bodies") : all.end();
     if (!all.is_object() || list == all.end() || !list->is_array()) refuse("the file has no list \"bodies\"");
     if (list->empty() || list->size() > kBodiesInFileMax)
-        refuse("the list has " + std::to_string(list->size()) + " bodies, outside 1 to  " +
+        refuse("the list has " + std::to_string(list->size()) + " bodies, outside 1 to " +
                std::to_string(kBodiesInFileMax));
     std::vector<PlacedBody> bodies;
     for (const json& b : *list) {

@@ -184,7 +184,7 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
                    std::to_string(h.i(3)) + ", mode " + std::to_string(h.i(4)) + ", axes " +
                    std::to_string(h.i(17)) + ", " + std::to_string(h.i(18)) + ", " + std::to_string(h.i(19));
         };
-        reader.fail("the header is invalid in both byte orders: as little endian  " + say(little) +
+        reader.fail("the header is invalid in both byte orders: as little endian " + say(little) +
                         "; as big endian " + say(big),
                     "check that the file is an MRC or CCP4 map, and fetch it again");
     }

@@ -1,4 +1,4 @@
-// tact eval: the force model of the servo at poses from a file, for comparison with other programs.
+// tact eval: computes the servo's docking force at poses from a file, for comparison with other programs.
 #include <memory>
 
 #include "deploy/tact/docking/docking.hpp"
