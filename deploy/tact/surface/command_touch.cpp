@@ -21,8 +21,7 @@ constexpr PassedOption kTouchController[] = {
     {"--tool-radius-mm", "MM", "Radius of the ball that touches the surface (mm); 0: a point"},
     {"--stiffness", "N/M", "Stiffness of the surface (N/m)"},
     {"--friction", "MU", "Friction coefficient of the surface"},
-    {"--mode", "off-brute|off-tree|chr",
-     "Contact search: all triangles, a tree, or a surface that is fine around the tool"},
+    {"--mode", "off-brute|off-tree|chr", "Contact search on the surface; chr: detailed around the tool"},
 };
 
 struct TouchOptions {
