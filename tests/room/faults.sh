@@ -45,7 +45,7 @@ room_as root 'mv /usr/bin/sudo.away /usr/bin/sudo; echo "anna ALL=(ALL) NOPASSWD
 ROOM_MOUNT="mount --bind \"\$1$room_checkout\" \"\$1$room_checkout\"; mount -o remount,bind,ro \"\$1$room_checkout\"" \
     step "a read-only checkout" refused 10 "the file system is read-only" anna ./deploy/run
 room_as root "chown -R root: '$room_checkout'"
-step "another user's checkout" refused 10 "not this user's to write" anna ./deploy/run
+step "another user's checkout" refused 10 "not writable for this user" anna ./deploy/run
 room_as root "chown -R anna: '$room_checkout'"
 
 moved() {
