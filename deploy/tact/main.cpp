@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
     add_reproduce(app);
     if (const auto answered = tact::manual::answer(
             app, "tact", argc, argv,
-            {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact where the variable is not set"},
-             {"$XDG_STATE_HOME/tact", "recent scenes; ~/.local/state/tact where the variable is not set"}}))
+            {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact if the variable is not set"},
+             {"$XDG_STATE_HOME/tact", "recent scenes; ~/.local/state/tact if the variable is not set"}}))
         return *answered;
     try {
         app.parse(argc, argv);

@@ -57,8 +57,7 @@ Finding usb(const Buses& b) {
     if (!b.usb.visible)
         return {"usb", FindingLevel::warn,
                 "this kernel or container has no USB (no /sys/bus/usb): no device can be detected",
-                "run tact probe on the machine with the devices; in a container mount /sys and "
-                "/dev/bus/usb"};
+                "run tact probe on the machine with the devices; in a container mount /sys and /dev/bus/usb"};
     const auto arms = std::count_if(b.usb.there.begin(), b.usb.there.end(), [](const UsbDevice& d) {
         return d.known != nullptr && d.known->use == probe::Use::arm;
     });

@@ -55,7 +55,7 @@ std::string table_header(const Sample& s) {
         "                      force ----- lateness us -----\n"
         "  t s  state             Hz     p50     p99     max  overruns";
     return first +
-           (s.particles ? "      rays   fps  level picture, force, particles"
+           (s.particles ? "      rays   fps  level display, force, particles"
                         : "  vertices   fps  level mesh, force") +
            s.heading + "\n";
 }
@@ -87,8 +87,7 @@ std::string samples_csv(const std::vector<Sample>& samples) {
                 more.emplace_back(v.column);
     std::string text =
         "t_s,state,force_rate_hz,goal_hz,lateness_p50_us,lateness_p99_us,lateness_max_us,cycle_cost_p50_us,"
-        "overruns,"
-        "gui_fps,gui_vertices,vertices_asked,level_picture,level_force,points,offset_a,angle_deg,"
+        "overruns,gui_fps,gui_vertices,vertices_asked,level_picture,level_force,points,offset_a,angle_deg,"
         "level_particles,bone_taken_mm3";
     for (const std::string& column : more) text += "," + column;
     text += '\n';

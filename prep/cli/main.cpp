@@ -38,8 +38,7 @@ void add_info(CLI::App& app) {
 int run(int argc, char** argv) {
     CLI::App app(
         "Bake maps, structures, meshes and scans into scenes that tact-rt and tact-gui map into memory; "
-        "simplify "
-        "meshes.",
+        "simplify meshes.",
         "tact-prep");
     app.set_version_flag("--version", program_version("tact-prep"), "Print the version and exit");
     app.footer("Exit codes: 0 done; 1 error; 2 wrong usage; 130 cancelled by Ctrl-C, nothing written.");

@@ -87,8 +87,7 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     command
         ->add_option("--boundary-weight", o->settings.boundary_weight,
                      "Weight of boundary edges relative to the surface (published method: 1000; default: "
-                     "100, on open meshes of "
-                     "up to 20000 triangles the best of four values)")
+                     "100, on open meshes of up to 20000 triangles the best of four values)")
         ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option(
@@ -99,8 +98,7 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     command
         ->add_option("--relax", o->settings.relax_rounds,
                      "Number of rounds that move the remaining vertices towards the original surface; 0: "
-                     "none (default: 1; up to 40 "
-                     "for open meshes with few vertices)")
+                     "none (default: 1; up to 40 for open meshes with few vertices)")
         ->check(CLI::Range(0U, 100U));
     command->add_flag("--json", o->json, "Print the result as JSON");
     return [o] { simplify_file(*o); };

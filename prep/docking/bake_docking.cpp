@@ -230,8 +230,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
                     levels.empty() ? " none" : levels.c_str()));
         say(
             printed("body %zu at its position in the file: mean density %.3g sigma above background, %.0f %% "
-                    "of its atoms "
-                    "above the contour",
+                    "of its atoms above the contour",
                     i, body.density_home_sigma, 100.0 * body.inside_home));
     }
     DensityGrid force_map_grid;
@@ -240,9 +239,8 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         force_map_grid =
             low_pass(grid, statistics.background, *input.force_map_resolution_m, part(progress, 0.9, 0.92));
         say(
-            printed("force map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background of "
-                    "the map as "
-                    "it is",
+            printed("force map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background "
+                    "are those of the original map",
                     *input.force_map_resolution_m / kAngstromM));
         felt.emplace(force_map_grid, statistics.background, statistics.sigma);
     } else {

@@ -19,7 +19,7 @@ struct ContourChoice {
     std::string rule;    // explanation for the note
 };
 // The level that best separates structure from solvent (Otsu 1979: largest variance between the two classes).
-// In a masked map, at least a fifth of whose voxels have exactly the background value, those voxels are excluded.
+// Voxels with exactly the background value are excluded if they are at least a fifth of all (a masked map).
 ContourChoice choose_contour(const DensityGrid& grid, const MapStatistics& statistics);
 
 }  // namespace tact

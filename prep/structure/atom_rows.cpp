@@ -69,7 +69,7 @@ void set_kind(AtomRow& row, gemmi::Element element) {
 void check_count(std::size_t rows, const std::string& name) {
     if (rows > kRowsMax)
         throw StartupError("read structure " + name, "the file has more than 20 million atoms",
-                           "split it into several files");
+                           "split the file into several files");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ Structure structure_of(const std::vector<AtomRow>& rows, const std::string& name
         if (fresh) {
             if (s.chain_names.size() == 65535) {
                 throw StartupError("read structure " + name, "the file has more than 65535 chains",
-                                   "split it into several files");
+                                   "split the file into several files");
             }
             s.chain_names.push_back(r.chain);
         }

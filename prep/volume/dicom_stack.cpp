@@ -183,8 +183,7 @@ Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::str
     if (cone_beam(g[0].maker))
         shape.warning.emplace_back(
             "the scan is from a cone-beam scanner, whose values are not true Hounsfield units; inspect the "
-            "bone and set "
-            "--threshold-hu and --solid-hu by eye");
+            "bone and set --threshold-hu and --solid-hu by eye");
     auto kept = std::make_shared<const DicomGroup>(std::move(g));
     shape.read = [kept](std::uint32_t slice, std::span<float> pixels) {
         read_dicom_pixels(kept->at(slice), pixels);

@@ -75,11 +75,12 @@ Scan scan_of(const ScanAxes& axes, const std::string& attempt, std::vector<std::
              "crop the scan");
     const Vec3 u = axes.step_mm[0].normalized(), v = axes.step_mm[1].normalized(), n = u.cross(v);
     if (std::abs(u.dot(v)) > 1e-3)
-        fail("rows and columns are not at right angles", "resample the scan in the program that wrote it");
+        fail("rows and columns are not at right angles",
+             "resample the scan in the program that wrote the file");
     const double rise = axes.step_mm[2].dot(n);
     if (std::abs(rise) < 0.5 * axes.step_mm[2].norm())
         fail("the slices are shifted against each other by more than their spacing",
-             "resample the scan in the program that wrote it");
+             "resample the scan in the program that wrote the file");
     Scan scan;
     scan.columns = static_cast<std::uint32_t>(axes.size[0]);
     scan.rows = static_cast<std::uint32_t>(axes.size[1]);

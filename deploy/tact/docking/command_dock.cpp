@@ -15,8 +15,7 @@ constexpr PassedOption kDockPrep[] = {
     {"--resolution-a", "A", "Resolution of the map (angstrom); default: four voxels"},
     {"--force-map-resolution-a", "A",
      "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from farther "
-     "away; default: "
-     "not smoothed"},
+     "away; default: not smoothed"},
     {"--vertices-max", "N", "Maximum number of vertices of the drawn surface; 0: no limit; default 1000000"},
 };
 

@@ -155,8 +155,7 @@ std::string docking_summary(const json& r) {
         const json& f = r["fit"];
         if (f.contains("at_start"))
             add("structure: offset from the position in its file: %.2f A, %.1f deg at the start, %.2f A, "
-                "%.1f "
-                "deg at the end\n",
+                "%.1f deg at the end\n",
                 number(f["at_start"]["offset_a"]), number(f["at_start"]["angle_deg"]), number(f["offset_a"]),
                 number(f["angle_deg"]));
         if (f["cc_zero"].is_number())
