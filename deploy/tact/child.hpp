@@ -53,9 +53,8 @@ public:
     [[nodiscard]] pid_t pid() const { return pid_; }
     // The ending, once the child has ended. Also sends the SIGCONT and SIGKILL that are due after stop().
     const std::optional<Ending>& poll();
-    void stop();  // sends SIGTERM; later calls do nothing
-    const std::optional<Ending>& wait(
-        Duration limit);  // polls until the child has ended or `limit` has passed
+    void stop();                                        // sends SIGTERM; later calls do nothing
+    const std::optional<Ending>& wait(Duration limit);  // polls until the end of the child or of `limit`
 
 private:
     void wake() const;

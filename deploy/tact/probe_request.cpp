@@ -77,8 +77,7 @@ std::string find_hd_library(const std::filesystem::path& root, const std::string
     std::error_code error;
     if (!configured.empty()) return std::filesystem::exists(configured, error) ? configured : "";
     for (std::string place : probe::kHdPlaces) {
-        if (!place.starts_with("/"))
-            continue;  // names without a path are searched by the loader; not repeated here
+        if (!place.starts_with("/")) continue;  // the loader searches names without a path
         if (std::filesystem::exists(root / place.substr(1), error)) return place;
     }
     return "";

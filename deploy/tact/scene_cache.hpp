@@ -9,8 +9,7 @@ namespace tact::launch {
 
 struct BakeRequest {
     std::vector<std::filesystem::path> inputs;  // maps, models, scans; empty for a demo
-    std::vector<std::string>
-        words;  // arguments of tact-prep before -o: {"demo","dock"} or {"dock", MAP, MODEL...}
+    std::vector<std::string> words;    // of tact-prep before -o: {"demo","dock"} or {"dock", MAP, MODEL...}
     std::vector<std::string> options;  // arguments after -o
 };
 

@@ -19,8 +19,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string_view columns(std::string_view line, std::size_t first,
-                         std::size_t last) {  // columns count from 1, as in PDB
+std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {  // from 1, as in PDB
     return line.size() < first ? std::string_view() : line.substr(first - 1, last - first + 1);
 }
 

@@ -67,8 +67,7 @@ std::string moved_mmcif(std::string_view text, const std::string& name, const At
             const Vec3 p = move * Vec3(number(0), number(1), number(2));
             for (std::size_t k = 0; k < 3; ++k) {
                 places.set(row, k, fixed(p[static_cast<int>(k)], 3));
-                if (places.has(3 + k))
-                    places.set(row, 3 + k, "?");  // fractional coordinates refer to a cell that was removed
+                if (places.has(3 + k)) places.set(row, 3 + k, "?");  // fractional: the cell is removed
             }
         }
         for (const std::string letter : {"U", "B"}) {

@@ -24,8 +24,7 @@ InputBytes::InputBytes(const std::filesystem::path& path, std::uint64_t bytes_ma
             if (fd >= 0) ::close(fd);
         }
     } const file{
-        ::open(path.c_str(),
-               O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // O_NONBLOCK: opening a pipe would wait for its writer
+        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // does not wait for the writer of a pipe
     if (file.fd < 0) fail(std::strerror(errno), "check the path and its permissions");
     struct stat info {};
     if (::fstat(file.fd, &info) != 0) fail(std::strerror(errno), "check the path and its permissions");

@@ -69,8 +69,7 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
-    static constexpr std::uint32_t kDropBits =
-        22;  // of 31: keeps 8 bits of the exponent and 1 of the mantissa
+    static constexpr std::uint32_t kDropBits = 22;  // of 31: keeps 8 exponent bits and 1 mantissa bit
     static constexpr std::uint32_t kBuckets = 1U << (31 - kDropBits);
     static constexpr std::uint32_t kWords = kBuckets / 64;
     static constexpr std::uint32_t kChunk = 21;

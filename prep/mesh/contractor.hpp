@@ -142,8 +142,7 @@ private:
     };
     std::vector<Blade> fan_;
     HugeVector<std::uint32_t> mark_, hits_;
-    std::vector<std::uint32_t>
-        ring_;  // neighbours found by gather(); hits_[w]: number of triangles shared with w
+    std::vector<std::uint32_t> ring_;  // neighbours found by gather(); hits_[w]: triangles shared with w
     std::vector<std::uint32_t> part_;  // vertices found by small_part()
     std::uint32_t epoch_ = 0;
     std::uint32_t alive_ = 0;

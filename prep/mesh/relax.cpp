@@ -197,8 +197,7 @@ void Relaxer::pull(Sample& sample) {
         static_cast<std::size_t>(std::max_element(best.part.begin(), best.part.end()) - best.part.begin());
     sample.near = c[largest];
     const Vec n = double_area(c);
-    if (!(n.dot(sample.normal) > 0.2 * n.norm()))
-        return;  // another side of the body, or a part that was removed
+    if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a removed part
     const Vec foot = best.part[0] * at_[c[0]] + best.part[1] * at_[c[1]] + best.part[2] * at_[c[2]];
     row_.push_back({c, best.part, sample.normal, sample.weight, sample.normal.dot(sample.at - foot)});
 }

@@ -28,8 +28,7 @@ inline constexpr double kSeedBoundaryWeight = 1000.0;  // f of the published met
 
 struct SimplifySettings {
     std::uint32_t vertices_min = 4;  // stops there, or earlier if no further contraction is possible
-    double boundary_weight =
-        100.0;  // f: planes perpendicular to border edges, relative to triangle planes; 0: none
+    double boundary_weight = 100.0;  // f: weight of planes at border edges, relative to triangle planes
     // t, in mean edge lengths: unconnected vertices that are nearer to each other are pairs too; 0: only edges.
     double pair_distance = 0.0;
     std::uint32_t pairs_per_vertex_max = 4;  // the nearest of these pairs

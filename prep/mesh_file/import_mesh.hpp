@@ -25,8 +25,7 @@ namespace tact {
 
 inline constexpr std::uint64_t kMeshFileBytesMax = std::uint64_t{1} << 36;
 inline constexpr std::uint64_t kMeshUnpackedBytesMax = std::uint64_t{1} << 32;  // of a compressed file
-inline constexpr std::uint32_t kMeshElementsMax = std::uint32_t{1}
-                                                  << 28;  // limit of vertices and of triangles
+inline constexpr std::uint32_t kMeshElementsMax = std::uint32_t{1} << 28;       // vertices, and triangles
 
 // Reported once, before allocation. For text without counts (STL) both are estimated from its length.
 struct MeshNeeds {

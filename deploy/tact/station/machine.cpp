@@ -95,8 +95,7 @@ ServoCores choose_cores(const StationMachine& machine, int core) {
     c.kept = machine.siblings.at(c.servo);
     if (c.kept.size() >= machine.cores.size()) {
         c.shared = true;
-        c.kept.assign(1,
-                      c.servo);  // assign(): g++ 14 wrongly reports an overrun for the assignment of a list
+        c.kept.assign(1, c.servo);  // g++ 14 wrongly reports an overrun for the assignment of a list
     }
     for (const int other : machine.cores)
         if (std::find(c.kept.begin(), c.kept.end(), other) == c.kept.end()) c.others.push_back(other);
