@@ -27,7 +27,7 @@ struct ServoCores {
     int servo = -1;
     std::vector<int> kept;    // isolated: the servo's core and its hardware threads
     std::vector<int> others;  // cores for all other work
-    bool shared = false;      // a hardware thread of the servo's core is in `others`, the only other core
+    bool shared = false;      // siblings of the servo's core stay in `others`, as no other core is left
 };
 
 // core -1: the last. Throws StartupError if the core does not exist or is the only one.
