@@ -101,8 +101,9 @@ void add_field(CLI::App& app, CLI::App& demo) {
             ->check(CLI::Range(0.01, 20.0))
             ->capture_default_str();
         sub->add_option("--stiffness-max", o->stiffness_n_m_max,
-                        "Maximum stiffness of the field (N/m) the gain is reduced to keep it");
-        ->check(CLI::Range(1.0, 10000.0))->capture_default_str();
+                        "Maximum stiffness of the field (N/m); the gain is reduced to keep it")
+            ->check(CLI::Range(1.0, 10000.0))
+            ->capture_default_str();
         sub->add_option(
                "--probe-radius-mm", o->probe_radius_mm,
                "Radius in the workspace of the ball over which the field is averaged (mm); 0: a point")
