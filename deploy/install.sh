@@ -24,7 +24,7 @@ usage: sudo deploy/install.sh --rights [--user NAME] [--into DIR]
 
 Optional: only real devices need this. Creates the groups tact (devices) and realtime
 (priority, locked memory), adds the user to both, and installs
-  /etc/udev/rules.d/60-tact.rules        who may open arms and GPIO adapters
+  /etc/udev/rules.d/60-tact.rules        access to arms and GPIO adapters
   /etc/security/limits.d/tact.conf       real-time limits
   /usr/local/lib/tact/can-up and /etc/systemd/system/tact-can@.service
                                          CAN adapters come up when they are plugged in
@@ -64,7 +64,7 @@ TEXT
     else
         echo "install rights: udev does not run here (a container?); the files are in place for a machine with udev"
     fi
-    echo "rights installed${user:+ for $user, who has to log in again}; tact probe lists the detected devices"
+    echo "rights installed${user:+ for $user, who must log in again}; tact probe lists the detected devices"
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then

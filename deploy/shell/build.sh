@@ -30,9 +30,9 @@ tact_fresh_if_moved() {
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$folder/CMakeCache.txt")
     made=$(cat "$folder/toolchain.txt" 2>/dev/null)
     if ! [ "$home" -ef . ]; then
-        echo "This checkout was moved or copied from $home: $folder is configured anew."
+        echo "This checkout was moved or copied from $home: $folder is configured again."
     elif [ -n "$made" ] && [ "$made" != "$(tact_toolchain)" ]; then
-        echo "The compiler or the system has changed: $folder is configured anew."
+        echo "The compiler or the system has changed: $folder is configured again."
     else
         return 0
     fi

@@ -52,6 +52,6 @@ moved() {
     anna ". deploy/shell/progress.sh; . deploy/shell/packages.sh; . deploy/shell/build.sh; tact_install_packages deploy/packages-run.txt >/dev/null && tact_build release tact_base >/dev/null" || return
     room_as anna "mv '$room_checkout' ~/moved && cd ~/moved && . deploy/shell/progress.sh && . deploy/shell/packages.sh && . deploy/shell/build.sh && tact_build release tact_base" |
         tee "$room/moved.txt"
-    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured anew." "$room/moved.txt"
+    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured again." "$room/moved.txt"
 }
 step "a moved checkout" moved

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deploy/shell: every cause of a failed installation has its own message and fix; a moved checkout is configured anew;
+# deploy/shell: every cause of a failed installation has its own message and fix; a moved checkout is configured again;
 # shares of long work grow and end. apt-get, dpkg-query, sudo and id are stand-ins; the build is a project of one file.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd) || exit 1
@@ -135,11 +135,11 @@ out=$(build)
 mv "$work/project at home" "$work/Prüfstand"
 cd "$work/Prüfstand" || exit 1
 out=$(build)
-expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured anew."
+expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured again."
 expect_text "$out" "exit 0"
 ./build/release/p || fail "the moved checkout's program does not run"
 echo "another compiler" >build/release/toolchain.txt
-expect_text "$(build)" "The compiler or the system has changed: build/release is configured anew."
+expect_text "$(build)" "The compiler or the system has changed: build/release is configured again."
 echo 'int main() { return wrong; }' >p.cpp
 out=$(build)
 expect_text "$out" "error: "
