@@ -1,4 +1,4 @@
-// tact status: how the running controller is doing.
+// tact status: prints the state of the running controller.
 #include <poll.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ struct StatusOptions {
     bool json = false, watch = false;
 };
 
-// Null where the scene file was moved since the start: the system's columns are then missing.
+// Null if the scene file was moved since the start; the columns of the system are then missing.
 std::unique_ptr<SystemRun> system_run_of(const RtRegion& region) {
     try {
         const SceneFile scene = SceneFile::open(field_text(region.scene_path, sizeof region.scene_path));
@@ -56,7 +56,7 @@ void show(const Observer& observer, bool as_json) {
             if (name != "packets" && n != 0)
                 wrong += (wrong.empty() ? "; " : ", ") + name + " " + std::to_string(n.get<std::uint32_t>());
         }
-        std::printf("device's bus: %u packets%s\n", device["bus"]["packets"].get<std::uint32_t>(),
+        std::printf("device bus: %u packets%s\n", device["bus"]["packets"].get<std::uint32_t>(),
                     wrong.c_str());
     }
     std::printf("law %s, goal %.0f Hz\n",
@@ -117,7 +117,8 @@ int status(const StatusOptions& o) {
         }
         ::poll(nullptr, 0, 20);
     }
-    std::fprintf(stderr, "%s\n  fix: start one with tact demo dock, or name its session with --session\n",
+    std::fprintf(stderr,
+                 "%s\n  fix: start a controller with tact demo dock, or give its session with --session\n",
                  observer.status_text().c_str());
     return 1;
 }

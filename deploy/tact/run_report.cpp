@@ -59,13 +59,13 @@ json governor(const RtRegion& region) {
             {"paths", paths}};
 }
 
-// Of each hand: what its device says, and what came over its bus where the driver counts.
+// For each hand: the notice of its device and the bus counters of a driver that counts.
 json devices(const HealthTopic& h) {
     json all = json::array();
     for (std::size_t i = 0; i < std::size(h.device_bus); ++i) {
         const BusCounts& b = h.device_bus[i];
         const bool counts = b.packets > 0 || !b.clean();
-        if (i > 0 && !counts && h.device_notice[i] == 0) continue;  // there is no such hand
+        if (i > 0 && !counts && h.device_notice[i] == 0) continue;  // this hand does not exist
         json device = {{"notice", device_notice_text(static_cast<DeviceNotice>(h.device_notice[i]))}};
         device["bus"] = !counts ? json(nullptr)
                                 : json{{"packets", b.packets},
@@ -85,7 +85,7 @@ json devices(const HealthTopic& h) {
 
 json head(const RtRegion& region) {
     const auto h = newest(region.head);
-    if (!h) return nullptr;  // no tracker, or nothing from it yet
+    if (!h) return nullptr;  // no tracker, or no pose yet
     return {{"state", head_state_text(h->state)},
             {"link", head_link_text(h->link)},
             {"sequence", h->sequence},
@@ -158,7 +158,7 @@ json controller_report(const RtRegion& region) {
                 {"heartbeat_age_ms", h.gui_heartbeat_age_ns >= 0
                                          ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
                                          : json(nullptr)}};
-    // A hostile picture's figures are none.
+    // Implausible frame metrics are omitted.
     const auto picture = newest(region.picture);
     j["gui"]["frames"] = picture && picture->taken_at_ns > 0 && plausible(picture->metrics)
                              ? frames_json(picture->metrics)
@@ -179,7 +179,7 @@ json run_report(const RtRegion* region, const SystemRun& system, const RunDescri
         system.report(*region, j);
     }
     if (j.contains("gui")) {
-        // The controller's last word is from when the window was closing.
+        // The controller's last value is from the time when the window was closing.
         j["gui"]["fps_last"] = j["gui"]["fps"];
         if (description.fps_median) j["gui"]["fps"] = *description.fps_median;
         j["gui"]["ran"] = description.fps_median.has_value();

@@ -41,7 +41,7 @@ TEST_F(OtherScene, the_launcher_ends_one_and_starts_the_other_unarmed_with_the_o
               scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15");
     EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
     EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
-    EXPECT_NE(said_.find("another scene was asked for"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("another scene was requested"), std::string::npos) << said_;
 }
 
 TEST_F(OtherScene, the_next_window_is_as_a_person_left_the_one_before) {
