@@ -39,6 +39,7 @@ tact_test(unit/servo_armed_metrics_test.cpp USES base servo)
 tact_test(unit/servo_output_stages_test.cpp USES base topics hal_api force servo)
 
 tact_test(unit/bench_servo_test.cpp USES base bench_servo)
+tact_test(unit/bench_governor_test.cpp USES base bench SYSTEM nlohmann_json::nlohmann_json)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config start)
