@@ -62,6 +62,11 @@ void show(const Observer& observer, bool as_json) {
     std::printf("law %s, goal %.0f Hz\n",
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);
+    if (report["governor"].is_object()) {
+        for (const auto& [name, path] : report["governor"]["paths"].items())
+            std::printf("level %s %.2f: %s\n", name.c_str(), path["level"].get<double>(),
+                        path["status"].get<std::string>().c_str());
+    }
     std::fputs(report_summary(report).c_str(), stdout);
     std::fputs((table_header(*sample) + table_row(*sample)).c_str(), stdout);
 }

@@ -10,6 +10,7 @@
 #include "deploy/tact/systems.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/topics/frames_json.hpp"
+#include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 #include "ipc/version/version.hpp"
 
@@ -37,7 +38,7 @@ json lateness_us(const LatenessTopic& l) {
             {"count", l.total}};
 }
 
-json governor(const RtRegion& region) {
+json governor(const RtRegion& region, std::int64_t now_ns) {
     const auto levels = newest(region.levels);
     if (!levels) return nullptr;
     json paths = json::object();
@@ -51,6 +52,8 @@ json governor(const RtRegion& region) {
             {"cost_us", p.cost_s * 1e6},
             {"error", p.error},
             {"reason", level_reason_text(static_cast<LevelReason>(p.reason))},
+            {"status", level_status_text(p, now_ns)},
+            {"changed_at_ns", p.changed_at_ns},
             {"haptic", p.haptic != 0}};
     }
     return {{"law", field_text(levels->law, kLawNameMax)},
@@ -164,7 +167,7 @@ json controller_report(const RtRegion& region) {
                              ? frames_json(picture->metrics)
                              : json(nullptr);
     j["devices"] = devices(h);
-    j["governor"] = governor(region);
+    j["governor"] = governor(region, h.taken_at_ns);
     j["head"] = head(region);
     j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},
                   {"checksum", hex(region.scene_checksum)}};

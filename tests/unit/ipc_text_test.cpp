@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ipc/base/device_notice.hpp"
+#include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact {
@@ -24,6 +25,29 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
     }
     EXPECT_STREQ(text(static_cast<E>(static_cast<unsigned>(last) + 1)), "unknown");
     EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
+}
+
+TEST(LevelText, says_what_limits_a_level_since_when_and_at_which_error) {
+    PathLevel p{};
+    p.haptic = 1;
+    p.level = 0.5F;
+    p.error = 0.0131;
+    p.changed_at_ns = 1'000'000'000;
+    p.reason = static_cast<std::uint8_t>(LevelReason::cost_low);
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "limited by step cost for 12 s, error 0.013 N");
+    p.reason = static_cast<std::uint8_t>(LevelReason::deadline_missed);
+    EXPECT_EQ(level_status_text(p, 3'500'000'000), "lowered after a deadline miss for 2.5 s, error 0.013 N");
+    p.level = 1.0F;
+    p.error = 0.0;
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "full detail");
+    p.haptic = 0;
+    p.level = 0.3F;
+    p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
+    EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "limited by the frame rate for 30 min");
+    // Of another clock, or of no number: left out.
+    p.haptic = 1;
+    p.error = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(level_status_text(p, 0), "limited by the frame rate");
 }
 
 TEST(Text, every_code_has_words_of_its_own) {
