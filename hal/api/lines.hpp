@@ -70,7 +70,7 @@ struct LinesSample {
 };
 
 struct LinesCommand {
-    std::uint64_t heartbeat = 0;  // rises with every servo cycle; each change toggles the watchdog line
+    std::uint64_t heartbeat = 0;  // rises with every servo cycle; a change toggles the watchdog line
     std::uint64_t rearm = 0;      // rises when a person re-arms: waiting becomes permitted
     bool enable = false;
     Lamp lamp = Lamp::dark;
