@@ -123,7 +123,7 @@ std::string options(const Command& c) {
     return out;
 }
 
-// Formats "Exit codes: 0 as asked; 1 error" as a list.
+// Formats "Exit codes: 0 success; 1 error" as a list.
 std::string exit_status(const std::string& footer) {
     const auto at = footer.find(kExitCodes);
     if (at == std::string::npos) return {};
