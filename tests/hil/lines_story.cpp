@@ -199,10 +199,10 @@ public:
             claim(said && said->ending.number != 0 && said->text.find(wanted) != std::string::npos,
                   "tact-rt --check names " + wanted + "; it said: " + (said ? said->text : ""));
         };
-        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "there are only gpiochip");
-        says("lamp = \"6\"", "lamp = \"11\"", "taking line \"11\"");
-        says("lamp = \"6\"", "lamp = \"5\"", "two meanings");
-        says("lamp = \"6\"", "lamp = \"STATE\"", "there is no such line");
+        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "the chips present are gpiochip");
+        says("lamp = \"6\"", "lamp = \"11\"", "requesting line \"11\"");
+        says("lamp = \"6\"", "lamp = \"5\"", "assigned to two keys");
+        says("lamp = \"6\"", "lamp = \"STATE\"", "the chip has no such line");
     }
 
 private:

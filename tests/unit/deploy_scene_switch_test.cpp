@@ -80,7 +80,7 @@ TEST_F(OtherScene, a_file_that_is_no_scene_is_refused_in_the_window_and_the_old_
     EXPECT_EQ(lines("controllers").size(), 1U);
     const auto told = lines("told");
     ASSERT_GE(told.size(), 3U);
-    EXPECT_NE(told[1].find("so it is not a scene of tact"), std::string::npos) << told[1];
+    EXPECT_NE(told[1].find("so it is not a Tact scene"), std::string::npos) << told[1];
     EXPECT_NE(told[2].find("fix:"), std::string::npos) << told[2];
 }
 

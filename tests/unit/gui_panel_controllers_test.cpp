@@ -92,7 +92,7 @@ TEST_F(TestDashboard, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
     EXPECT_EQ(rows[0].kind, "docking");
     EXPECT_EQ(rows[0].when, "5 min ago");
     EXPECT_TRUE(rows[0].trouble.empty()) << rows[0].trouble;
-    EXPECT_EQ(rows[1].trouble, "it is not whole");
+    EXPECT_EQ(rows[1].trouble, "the file is incomplete");
     EXPECT_TRUE(rows[2].trouble.starts_with("missing: ")) << rows[2].trouble;
 }
 

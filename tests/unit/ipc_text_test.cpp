@@ -88,11 +88,11 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
               "stopping: the servo did not sleep for 1 s; choose a lower rate");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
-    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
+    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N requested, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
-    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: picture to 0.5, start");
+    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: display to 0.5, start");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
                    static_cast<std::uint16_t>(LevelReason::rate_low)),
               "level changed: force to 0.25, force rate below goal");
