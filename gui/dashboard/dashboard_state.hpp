@@ -101,8 +101,7 @@ struct DashboardState {
     double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
     std::string renderer;
-    std::string
-        stage;  // of a stereo display: mode and head tracking; empty: none
+    std::string stage;  // of a stereo display: mode and head tracking; empty: none
     bool head_lost = false;
     // The user's choices.
     SceneToggles toggles;

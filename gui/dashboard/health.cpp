@@ -173,7 +173,8 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
 }  // namespace
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    begin_card(theme, "Controller", card, true);  // scrolls: two hands with long messages are higher than the card
+    begin_card(theme, "Controller", card,
+               true);  // scrolls: two hands with long messages are higher than the card
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
     if (state.attached && state.recorders + state.flights > 0) {

@@ -57,8 +57,7 @@ class TraceStore {
 public:
     static constexpr std::size_t kSlots = std::size_t{1} << 16;
     static constexpr std::size_t kBlock = 64;
-    static constexpr std::size_t kKept =
-        kSlots - kBlock;  // the block being overwritten has no extremes
+    static constexpr std::size_t kKept = kSlots - kBlock;  // the block being overwritten has no extremes
 
     TraceStore();
     bool add(const TraceTopic& cycle);

@@ -149,7 +149,8 @@ void FitController::perform(const FitRequest& request, const BodyList& list, std
             history_.accept();
             return report(Grade::good, "accepted; Revert returns to these poses");
         case FitAction::snapshot:
-            if (!history_.snapshot(request.text)) report(Grade::watch, "snapshot not kept: too many, or name in use");
+            if (!history_.snapshot(request.text))
+                report(Grade::watch, "snapshot not kept: too many, or name in use");
             return;
         case FitAction::restore:
             return go(history_.restore(request.text));
@@ -182,14 +183,16 @@ void FitController::save(const BodyList& list) {
     saving_to_ = folder_name();
     try {
         if (!std::filesystem::create_directory(saving_to_))
-            throw StartupError("saving in " + saving_to_, "the folder exists already", "save again in a second");
+            throw StartupError("saving in " + saving_to_, "the folder exists already",
+                               "save again in a second");
         const std::string poses = saving_to_ + "/poses.json";
         std::ofstream out(poses);
         out << poses_json(list, *content_)
                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
             << '\n'
             << std::flush;
-        if (!out) throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
+        if (!out)
+            throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
         saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
     } catch (const std::exception& e) {
         report(Grade::bad, e.what());

@@ -9,8 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr double kReachVoxels =
-    10.0;  // range of lighting and openness, within which a change is visible
+constexpr double kReachVoxels = 10.0;  // range of lighting and openness, within which a change is visible
 constexpr float kSharpStep = 1.0F, kCoarseStep = 1.4F;  // voxels
 constexpr int kCoarsest = 12;                           // pixels per ray
 

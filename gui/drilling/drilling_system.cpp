@@ -98,8 +98,8 @@ void DrillingSystem::move(double frame_s, const Vec3& eye_model_m, const SystemC
 
 float DrillingSystem::particles_share(const SystemContext& context) const {
     const Controller& controller = context.controller;
-    const bool by_hand = controller.have_levels &&
-                         std::string_view(controller.levels.law) == "fixed";  // null-terminated, as checked on reading
+    const bool by_hand = controller.have_levels && std::string_view(controller.levels.law) ==
+                                                       "fixed";  // null-terminated, as checked on reading
     if (!context.software || by_hand) return particles_level_;
     return std::min(particles_level_,
                     static_cast<float>(particle_pace_.most()) / static_cast<float>(SiteEffects::kMost));
@@ -170,7 +170,8 @@ void DrillingSystem::finish(const SystemContext& context) {
         visibility = {site_->metrics().drilling_s, site_->metrics().seen_s};
         const Ledger& l = site_->particles().ledger();
         spdlog::info(
-            "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} carried, "
+            "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} "
+            "carried, "
             "{} left, {} "
             "discarded, {} too few for a grain",
             controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,

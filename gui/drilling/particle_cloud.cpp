@@ -209,7 +209,8 @@ std::optional<ParticleCloud::Box> ParticleCloud::fluid_box(const View& view) con
             corner[static_cast<Eigen::Index>(i)] =
                 (k >> i & 1U) != 0 ? sent_.fluids_high[i] + kDiscRadius : sent_.fluids_low[i] - kDiscRadius;
         const Eigen::Vector4f clip = view.projection * (view.eye_from_cells * corner);
-        if (!(clip.w() > 0.0F)) return Box{0, 0, view.width_px, view.height_px};  // a corner is behind the eye
+        if (!(clip.w() > 0.0F))
+            return Box{0, 0, view.width_px, view.height_px};  // a corner is behind the eye
         const Eigen::Array2f at = clip.head<2>().array() / clip.w();
         low = low.min(at);
         high = high.max(at);

@@ -46,8 +46,7 @@ Particles::Particles(const BoneBricks& bricks, std::span<const std::uint8_t> den
     if (settings.most == 0 || settings.grain_levels == 0 || !(settings.fastest_m_s > 0.0) ||
         !(settings.drag_per_s >= 0.0) || !settings.gravity_m_s2.allFinite())
         throw StartupError("checking the particle settings",
-                           "number, mass and maximum speed must be above zero",
-                           "correct them");
+                           "number, mass and maximum speed must be above zero", "correct them");
     particle_.reserve(settings.most);
     gravity_ = floats(settings.gravity_m_s2 / cells_.cell_m());
     fastest_ = static_cast<float>(settings.fastest_m_s / cells_.cell_m());

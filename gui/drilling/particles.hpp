@@ -46,8 +46,7 @@ struct ParticleSettings {
 
 struct Suction {
     Vec3 tip_m = Vec3::Zero();
-    double radius_m =
-        0.0;  // removes particles within it, attracts them from three times as far. 0: off
+    double radius_m = 0.0;  // removes particles within it, attracts them from three times as far. 0: off
 };
 
 // A rotating head among the particles: those inside are carried out along its rotation.

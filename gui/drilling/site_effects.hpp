@@ -24,7 +24,7 @@ namespace tact {
 struct SiteEffectsMetrics {
     std::uint32_t alive = 0, shown = 0, moves = 0, most = 0;  // of the last frame; most: at level 1
     double cost_s = 0.0;                                      // to move them, this frame
-    double drilling_s = 0.0, seen_s = 0.0;  // the burr turned in bone; and was visible
+    double drilling_s = 0.0, seen_s = 0.0;                    // the burr turned in bone; and was visible
     bool suction_blocked = false;
 };
 

@@ -25,9 +25,8 @@ struct ViewOptions {
     SurfaceStyle style = SurfaceStyle::glass;
     bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
-    bool gradient = true;  // background; off: plain_ground, cheaper
-    Eigen::Vector3f plain_ground =
-        Eigen::Vector3f::Zero();  // clear colour without a gradient
+    bool gradient = true;                                    // background; off: plain_ground, cheaper
+    Eigen::Vector3f plain_ground = Eigen::Vector3f::Zero();  // clear colour without a gradient
 };
 
 struct ViewFrame {

@@ -114,7 +114,7 @@ public:
     [[nodiscard]] StatusText status() const;       // of this step
     [[nodiscard]] StatusText status(CalibrationStep step) const;
     [[nodiscard]] const std::string& message() const { return message_; }  // result of the last action
-    [[nodiscard]] std::vector<std::string> remarks() const;  // measured values, for the file
+    [[nodiscard]] std::vector<std::string> remarks() const;                // measured values, for the file
 
 private:
     [[nodiscard]] Marks& own_marks() { return step_ == CalibrationStep::workspace ? workspace_ : screen_; }

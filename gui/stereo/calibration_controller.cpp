@@ -113,7 +113,8 @@ void CalibrationController::save() {
         const StageSettings again = read_stage_file(file_);
         if (stage_text(again) != stage_text(calibration_->draft()))
             throw StartupError("reading the stage file '" + file_.string() + "' again",
-                               "the content differs from what was written", "save to another file (--stage FILE)");
+                               "the content differs from what was written",
+                               "save to another file (--stage FILE)");
         kept_ = again;
         saved_ = "Written to " + file_.string() + " and read back." +
                  (old.empty() ? std::string() : " The old file is kept as " + old.filename().string() + ".");

@@ -141,7 +141,8 @@ void Calibration::set_wand_tip(const Vec3& tip_sensor_m) {
 }
 
 void Calibration::set_eyes(const EyesOfHead& eyes) {
-    if (!(eyes.apart_m >= 0.0 && eyes.apart_m <= kEyesApartMostM)) return say("The eye distance must be 0 to 200 mm.");
+    if (!(eyes.apart_m >= 0.0 && eyes.apart_m <= kEyesApartMostM))
+        return say("The eye distance must be 0 to 200 mm.");
     if (!within(eyes.middle_head_m, kMiddleMostM))
         return say("The eyes must be within half a metre of the sensor on the glasses.");
     draft_.eyes = eyes;

@@ -25,7 +25,8 @@ Calibration::StatusText status_of(const Calibration::Marks& marks, bool taken_be
         return {FitGrade::none,
                 taken_before ? std::string("from the file") : std::string("not measured yet")};
     if (marks.taken() < kMarksMin)
-        return {FitGrade::none, text_of("%zu of %zu points (at least %zu)", marks.taken(), kMarks, kMarksMin)};
+        return {FitGrade::none,
+                text_of("%zu of %zu points (at least %zu)", marks.taken(), kMarks, kMarksMin)};
     const Registration& fit = marks.fit;
     if (fit.residual_m.empty()) return {FitGrade::red, fit.refusal};
     std::string words = fit_text(fit);
@@ -165,9 +166,8 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
                              h = by.y() / draft_.screen.height_m() - 1.0;
                 v.text += text_of(". Size by the marks: %.1f x %.1f mm", 1e3 * by.x(), 1e3 * by.y());
                 if (std::max(std::abs(w), std::abs(h)) > kStretchTold) {
-                    v.text +=
-                        text_of(", %+.1f %% and %+.1f %% off the typed size: measure again, or use it",
-                                100.0 * w, 100.0 * h);
+                    v.text += text_of(", %+.1f %% and %+.1f %% off the typed size: measure again, or use it",
+                                      100.0 * w, 100.0 * h);
                     if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
                 }
             }
@@ -176,9 +176,8 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
         case CalibrationStep::workspace: {
             StatusText v = status_of(workspace_, true, "The workspace");
             if (workspace_.fit.good && std::abs(workspace_.fit.stretch - 1.0) > 2.0 * kStretchTold) {
-                v.text +=
-                    text_of(". The arm's lengths are %+.1f %% off the tracker's: check its calibration",
-                            100.0 / workspace_.fit.stretch - 100.0);
+                v.text += text_of(". The arm's lengths are %+.1f %% off the tracker's: check its calibration",
+                                  100.0 / workspace_.fit.stretch - 100.0);
                 if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
             }
             return v;

@@ -6,7 +6,8 @@
 namespace tact {
 namespace {
 
-constexpr std::uint8_t kHeadFresh = 2;  // TrackerState of the hardware layer, which this process does not include
+constexpr std::uint8_t kHeadFresh =
+    2;  // TrackerState of the hardware layer, which this process does not include
 
 Pose moved_on(const HeadTopic& h, std::int64_t display_ns) {
     const double ahead_s = 1e-9 * static_cast<double>(std::clamp(display_ns - h.taken_at_ns, std::int64_t{0},

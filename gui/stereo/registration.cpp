@@ -137,11 +137,11 @@ Registration register_points(std::span<const PointPair> pairs, const Registratio
     result.outlier = outlier_of(from, to, limits);
     if (!(fit.worst_m <= limits.residual_m_max && fit.rms_m <= limits.residual_m_rms)) {
         const std::size_t again = result.outlier.value_or(result.worst_pair);
-        result.refusal =
-            "pair " + std::to_string(again + 1) + " is " + millimetres(result.residual_m[again]) + " off (" +
-            millimetres(fit.rms_m) + " rms): " + millimetres(limits.residual_m_max) + " and " +
-            millimetres(limits.residual_m_rms) +
-            " are allowed: measure it again; check the order of the points and metal nearby";
+        result.refusal = "pair " + std::to_string(again + 1) + " is " +
+                         millimetres(result.residual_m[again]) + " off (" + millimetres(fit.rms_m) +
+                         " rms): " + millimetres(limits.residual_m_max) + " and " +
+                         millimetres(limits.residual_m_rms) +
+                         " are allowed: measure it again; check the order of the points and metal nearby";
         return result;
     }
     result.good = true;

@@ -32,9 +32,8 @@ enum class FitGrade : std::uint8_t { none, green, amber, red };
 [[nodiscard]] const char* fit_grade_text(FitGrade grade);  // "green", ...
 
 struct RegistrationLimits {
-    double spread_m_min =
-        0.02;                   // root mean square of the points about their mean, along their longest axis
-    double flatness_min = 0.1;  // second axis over the longest: below it, a line
+    double spread_m_min = 0.02;  // root mean square of the points about their mean, along their longest axis
+    double flatness_min = 0.1;   // second axis over the longest: below it, a line
     double residual_m_max = kAmberWorstM;  // of the worst pair
     double residual_m_rms = kAmberRmsM;
 };

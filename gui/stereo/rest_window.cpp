@@ -68,17 +68,18 @@ std::string RestWindow::text(const std::string& what) const {
         case State::failed:
             if (silent_)
                 std::snprintf(text, sizeof text,
-                              "Not measured: no data from %s. Check that it is in range and visible.", what.c_str());
+                              "Not measured: no data from %s. Check that it is in range and visible.",
+                              what.c_str());
             else
-                std::snprintf(
-                    text, sizeof text,
-                    "Not measured: %s did not rest for a second within %.0f s (spread %.1f mm, %.1f allowed).",
-                    what.c_str(), kPatienceS, 1e3 * spread_m_, 1e3 * spread_m_max_);
+                std::snprintf(text, sizeof text,
+                              "Not measured: %s did not rest for a second within %.0f s (spread %.1f mm, "
+                              "%.1f allowed).",
+                              what.c_str(), kPatienceS, 1e3 * spread_m_, 1e3 * spread_m_max_);
             return text;
         case State::moving:
             if (silent_) return what + " is lost: waiting for it";
-            std::snprintf(text, sizeof text, "hold %s still: moves by %.1f mm, %.1f allowed",
-                          what.c_str(), 1e3 * std::max(spread_m_, drift_m_), 1e3 * spread_m_max_);
+            std::snprintf(text, sizeof text, "hold %s still: moves by %.1f mm, %.1f allowed", what.c_str(),
+                          1e3 * std::max(spread_m_, drift_m_), 1e3 * spread_m_max_);
             return text;
         case State::resting:
         case State::done:

@@ -20,8 +20,7 @@ class RestWindow {
 public:
     static constexpr double kDriftShare =
         0.4;  // of the spread, from the earlier half of the window to the later one
-    static constexpr double kFarthest =
-        2.5;  // of the spread, for any sample: the hand was still arriving
+    static constexpr double kFarthest = 2.5;  // of the spread, for any sample: the hand was still arriving
     static constexpr double kWindowS = 1.0, kSilentS = 0.25, kPatienceS = 20.0;
     static constexpr std::size_t kSamplesMin = 12, kSamplesMax = 4096;
 

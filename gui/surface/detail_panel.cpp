@@ -28,8 +28,7 @@ void curve(const Theme& theme, const DetailState& d) {
     const ImVec2 size{ImGui::GetContentRegionAvail().x, theme.px(58.0F)};
     ImGui::InvisibleButton("##filter", {std::max(size.x, 1.0F), size.y});
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(
-            "allowed error by distance from the tool (largest of |dx|, |dy|, |dz|)");
+        ImGui::SetTooltip("allowed error by distance from the tool (largest of |dx|, |dy|, |dz|)");
     ImDrawList* const draw = ImGui::GetWindowDrawList();
     const double most = 1.0 + 3.0 * static_cast<double>(d.width);
     const auto point = [&](double distance) {
