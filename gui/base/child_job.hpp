@@ -1,4 +1,4 @@
-// Runs a program beside the frame loop: start it, poll it once a frame, never wait for it.
+// Runs a program in the background: start it, poll it once a frame, never wait for it.
 //
 // Fails by  outcome: a nonzero exit code and the last lines of the program's output
 // Ends      the destructor kills a program that still runs. If this process is killed, the program continues:

@@ -58,7 +58,7 @@ ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
     // Another cleanup may remove the folder between its creation and its lock, but not ten times in a row.
     for (int i = 0; i < 10; ++i)
         if (make(parent)) return;
-    throw StartupError("making a folder for a child program", "no folder can be made in " + parent.string(),
+    throw StartupError("creating a folder for a child program", "no folder can be made in " + parent.string(),
                        "free space there, or set TMPDIR");
 }
 

@@ -1,4 +1,4 @@
-// Writes the visible traces as a table, beside the frame loop.
+// Writes the visible traces as a table, in the background.
 //
 // Thread   follow() and finish() on the frame thread; a low-priority thread formats and writes
 // File     CSV of trace_csv(); written completely or not at all.  Fails by a message in TracesState

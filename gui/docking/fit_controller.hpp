@@ -1,7 +1,7 @@
 // Actions on bodies other than holding them: measure, undo, refine, copy, take snapshots, save.
 //
 // Reads    the bodies that the controller publishes; changes them only by the commands it returns
-// Does     the slow work beside the frame loop: metrics and refinement on threads, saving in tact-prep
+// Does     the slow work in the background: metrics and refinement on threads, saving in tact-prep
 // Thread   frame thread
 #pragma once
 

@@ -1,4 +1,4 @@
-// Computes the fit of the bodies to the map beside the frame loop, because it takes longer than a frame.
+// Computes the fit of the bodies to the map in the background, because it takes longer than a frame.
 //
 // Thread   its own, at low priority. It processes the newest request, at most once a second, for at most a tenth of
 //          the time, and only after something moved.

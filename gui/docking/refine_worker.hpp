@@ -1,4 +1,4 @@
-// Refines one body beside the frame loop (ipc/scene/fit/refine.hpp).
+// Refines one body in the background (ipc/scene/fit/refine.hpp).
 //
 // Thread   start(), poll() and cancel() on the frame thread; the work on its own thread, at low priority.
 #pragma once

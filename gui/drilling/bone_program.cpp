@@ -229,7 +229,7 @@ void BoneTextures::make_next(const BoneField& field) {
         throw StartupError("showing bone of " + std::to_string(bricks.size[0]) + " x " +
                                std::to_string(bricks.size[1]) + " x " + std::to_string(bricks.size[2]) +
                                " voxels",
-                           "the graphics driver has not enough memory, error " + std::to_string(error),
+                           "not enough graphics memory, error " + std::to_string(error),
                            "bake a part of it with --crop, or larger voxels with --voxel-mm");
     --unmade_;
 }

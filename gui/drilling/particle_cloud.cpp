@@ -24,7 +24,7 @@ layout(location = 0) in vec3 at;
 layout(location = 1) in vec4 look;  // matter, shade, 0, 0
 uniform vec2 u_size;  // radius; pixels per length at distance 1
 flat out vec3 v_colour;
-flat out vec4 v_ground;  // and its fraction
+flat out vec4 v_ground;  // background colour, fraction of haze
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
     v_colour = mix(vec3(0.84, 0.79, 0.68), vec3(1.0, 0.97, 0.90), look.y / 255.0);

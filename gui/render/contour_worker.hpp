@@ -1,4 +1,4 @@
-// Extracts contours beside the frame loop and has the final ones refined.
+// Extracts contours in the background and has the final ones refined.
 //
 // A contour in motion is extracted repeatedly, always at the newest request, on a grid as coarse as necessary
 // (contour_extract.hpp). After kRest without a request, a plain surface goes to `refine`, which may take seconds; a

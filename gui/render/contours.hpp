@@ -38,7 +38,7 @@ struct ContourState {
     bool final = false;        // the requested surface at full detail
     std::uint32_t stride = 1;  // of a plain surface, in voxels
     std::string error;         // why there is no better surface
-    double extract_s = 0.0;    // of the newest extraction, beside the frame loop
+    double extract_s = 0.0;    // of the newest extraction, in the background
 };
 
 class Contours {

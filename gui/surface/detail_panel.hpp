@@ -15,9 +15,9 @@ namespace tact {
 struct DetailState {
     bool possible = false;  // the scene has a forest
     bool felt = false;      // the controller refines (mode chr); else the window only
-    bool full = false;      // felt: the zone within the radius matches the full mesh
+    bool full = false;      // if `felt`: the zone within the radius matches the full mesh
     std::string error;
-    // Current values. If felt, a user's choice goes to the controller and returns from it.
+    // Current values. If `felt`, a user's choice goes to the controller and returns from it.
     int shape = 0;                          // bell, multiple frustum
     float width = 1.0F, error_far = 0.5F;   // in radii
     bool editing = false, changed = false;  // by the user; the application takes them

@@ -1,4 +1,4 @@
-// Updates a DetailCut beside the frame loop.
+// Updates a DetailCut in the background.
 //
 // Thread   request() and take() on the frame thread, which never waits; the work on its own thread, at low priority,
 //          which sleeps while nothing is requested. The destructor waits for the current step.

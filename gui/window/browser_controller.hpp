@@ -1,4 +1,4 @@
-// The scene list, and the switch to another scene: remembers used scenes, reads a folder beside the frame loop, and
+// The scene list, and the switch to another scene: remembers used scenes, reads a folder in the background, and
 // sends requests to the launcher. Without a launcher nothing can restart the controller on another scene.
 //
 // Thread  frame thread; disks are accessed on another one.

@@ -1,4 +1,4 @@
-// Loads a scene beside the frame loop.
+// Loads a scene in the background.
 //
 // Thread   frame thread; loading on its own thread.
 #pragma once
