@@ -392,7 +392,7 @@ TEST(StatusText, every_grade_comes_with_words) {
     };
     EXPECT_EQ(overran(0, 1000).grade, Grade::good);
     EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
-    EXPECT_EQ(overran(1, 1'000'000).text, "the last 12 s ago");
+    EXPECT_EQ(overran(1, 1'000'000).text, "last: 12 s ago");
     EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
     EXPECT_EQ(lateness_status(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_status(900'000, 1'000'000).grade, Grade::bad);

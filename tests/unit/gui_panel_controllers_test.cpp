@@ -55,7 +55,7 @@ TEST_F(TestDashboard, a_list_that_is_wrong_is_told_with_its_mend) {
             << bad;
     std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
     EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("larger"), std::string::npos);
-    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("no regular file"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("not a regular file"), std::string::npos);
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
 
