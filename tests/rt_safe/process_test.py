@@ -84,7 +84,7 @@ class Process(unittest.TestCase):
             time.sleep(0.05)
         with os.fdopen(read, errors="replace") as log:
             for line in log:
-                if "lines of this log were dropped" in line:
+                if "log lines were dropped" in line:
                     break
             else:
                 self.fail("it ended without a word of what was lost")

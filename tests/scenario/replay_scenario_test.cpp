@@ -133,7 +133,7 @@ TEST(ReplayScenario, a_changed_sample_is_found_at_its_step) {
     const ReplayResult r = again(replay);
     ASSERT_TRUE(r.first);
     EXPECT_EQ(r.first->step, changed);
-    EXPECT_EQ(r.first->what, "force that the model wants");
+    EXPECT_EQ(r.first->what, "force of the model");
     EXPECT_GT(r.different, 0U);
 }
 
