@@ -20,7 +20,7 @@ namespace tact {
 struct ChainSettings {
     double force_n_max = 3.3;  // already limited to the device's maximum
     double torque_n_m_max = 0.2;
-    double force_slew_n_s = 500.0;  // 3.3 N in 7 ms: faster than a hand feels, slower than a kick
+    double force_slew_n_s = 500.0;  // 3.3 N in 7 ms: fast enough not to be noticed, too slow for a jolt
     double torque_slew_n_m_s = 30.0;
     double ramp_in_s = 0.5;
     double ramp_out_s = 0.05;  // half of the time allowed after a signal
