@@ -1,4 +1,4 @@
-// An emulated Haptikfabriken board: the emulated arm of hal/emu with reports of 14 bytes and the board's own
+// An emulated Haptikfabriken board: the emulated arm of tests/emu with reports of 14 bytes and the board's own
 // watchdog of half a second, which restores the force by itself.
 #pragma once
 
