@@ -24,7 +24,7 @@ void bake(std::vector<std::string> words, const std::filesystem::path& scene) {
     run_prep(words, scene.string() + ".log", "baking " + scene.string());
 }
 
-// A map file of mode 2 (float), as MRC 2014 has it.
+// A map file of mode 2 (float), according to MRC 2014.
 std::string mrc_of(const DensityGrid& grid) {
     std::array<std::int32_t, 256> header{};
     const auto put_float = [&header](std::size_t word, double value) {
@@ -33,7 +33,7 @@ std::string mrc_of(const DensityGrid& grid) {
     };
     for (std::size_t i = 0; i < 3; ++i) {
         header[i] = static_cast<std::int32_t>(grid.size[i]);
-        header[7 + i] = header[i];  // one voxel of the cell for each
+        header[7 + i] = header[i];  // one voxel of the cell per grid point
         put_float(10 + i, grid.spacing_m[static_cast<Eigen::Index>(i)] / kAngstromM * grid.size[i]);
         put_float(13 + i, 90.0);
         header[16 + i] = static_cast<std::int32_t>(i + 1);
@@ -125,9 +125,9 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     write_grid(out, grid);
     const Structure heavy = repeated(structure, scale.atom_repeats);
     write_structure(out, 0, heavy);
-    // A structure of this size needs one coarse level to fall back on. With it alone, every level of the knob
-    // above zero sums all points (the two are blended), so the work stays what it is; with less than 200
-    // vectors, the knob starts at all points.
+    // A structure of this size needs one coarse level as a fallback. With this single level, every knob level above zero sums
+    // all points (the two are blended), so the work is constant; with less than 200 vectors, the knob starts at all
+    // points.
     Codebook coarse = read_codebook(demo, 0);
     std::erase_if(coarse.levels, [](const Codebook::Level& l) { return l.size() >= 200; });
     if (coarse.levels.size() > 1) coarse.levels.erase(coarse.levels.begin(), coarse.levels.end() - 1);
