@@ -133,7 +133,7 @@ TEST(Summary, is_a_table_of_published_and_measured_numbers) {
     const std::vector<SummaryRow> rows{{"5", "updates/s", "550", "1173", "a faster core"},
                                        {"7", "x", "1", "2", ""}};
     const std::string text = table_of(rows);
-    EXPECT_NE(text.find("5    updates/s  550   1173"), std::string::npos) << text;
+    EXPECT_NE(text.find("5    updates/s  550        1173"), std::string::npos) << text;
     EXPECT_NE(text.find("a faster core"), std::string::npos);
     EXPECT_EQ(json_of(rows)[0]["measured"], "1173");
 }
