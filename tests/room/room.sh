@@ -1,12 +1,12 @@
 # Sourced. A clean room: a minimal Debian in a folder, with its own processes and mounts, apt configured as on the host,
-# German locale, and a plain user (anna) who may use sudo. Needs root, mmdebstrap and unshare.
+# German locale, and a plain user (anna) with sudo rights. Needs root, mmdebstrap and unshare.
 #
-#   room_make SUITE         unpacks one; sets $room. The base archive is kept for a week in build/rooms
-#   room_as USER COMMAND    a login shell of USER (anna, root) in the room; ends all that it started
-#   room_clone              this checkout's HEAD at $room_checkout of the room, anna's
-#   room_remove
+#   room_make SUITE         unpacks a room; sets $room. The base archive is kept for a week in build/rooms
+#   room_as USER COMMAND    a login shell of USER (anna, root) in the room; ends all processes that it started
+#   room_clone              clones HEAD of this checkout to $room_checkout in the room, owned by anna
+#   room_remove             removes the room
 #
-# ROOM_UNSHARE adds namespaces (--net: no network), ROOM_MOUNT a command that is run in the room's namespace first.
+# ROOM_UNSHARE adds namespaces (--net: no network); ROOM_MOUNT is a command that runs in the room's namespace first.
 
 room_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 1
 room=''
