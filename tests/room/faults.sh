@@ -29,11 +29,11 @@ waits() {
     printf '%s\n' "$output"
     grep -q "Another package manager is at work" <<<"$output" && grep -q "install ok installed" <<<"$output"
 }
-step "a lock that is let go is waited for" waits
+step "a lock that is released soon only delays the installation" waits
 
 room_as root 'apt-get update -qq; apt-mark hold libc6 >/dev/null; echo "Package: libc6" >/etc/apt/preferences.d/x'
 held() { anna ". deploy/shell/progress.sh; . deploy/shell/packages.sh; echo libc6-dev-held >/tmp/list; tact_install_packages /tmp/list"; }
-step "a package that no archive has" refused 60 "not in the package archives that apt knows: libc6-dev-held" held
+step "a package in no archive" refused 60 "not in the package archives that apt knows: libc6-dev-held" held
 room_as root 'apt-mark unhold libc6 >/dev/null; rm /etc/apt/preferences.d/x'
 
 room_as root 'echo "anna ALL=(ALL) ALL" >/etc/sudoers.d/anna'
