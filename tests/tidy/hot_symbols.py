@@ -22,7 +22,7 @@ ENTRIES = re.compile(
     r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up|stiffness_n_m)\(\)( const)?$|::items\(float\) const$"
     r"|::read\((unsigned int, tact::TrackerSample|tact::DeviceSample|tact::LinesSample)&, .*\)( const)?$|::write\(tact::(Device|Lines)Command const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("
-    r"|^tact::density_sum_\w+\(|^tact::look_(generic|avx2|avx512)\(|^tact::brick_(sum|erode|cut)_\w+\(")
+    r"|^tact::density_sum_\w+\(|^tact::query_(generic|avx2|avx512)\(|^tact::brick_(sum|erode|cut)_\w+\(")
 ALLOWED = re.compile(
     r"^(mem(cpy|set|move|cmp)(@.*)?|__mem(cpy|set|move)_chk|str(len|nlen|cmp|ncmp)"
     r"|(sin|cos|sincos|tan|asin|acos|atan|atan2|sqrt|exp|exp2|expm1|log|log2|log1p|pow|hypot|cbrt|floor|ceil|round|rint|nearbyint"
