@@ -169,7 +169,7 @@ std::string complaint(const ConfigKey& key) {
             if (w == **s) return {};
             known += (known.empty() ? "\"" : ", \"") + w + "\"";
         }
-        return "\"" + **s + "\" is none of " + known;
+        return "\"" + **s + "\" is not one of " + known;
     }
     return {};
 }
@@ -205,7 +205,7 @@ void set_key(const ConfigKey& key, const toml::node& node, const std::string& wh
         if (!node.is_boolean()) wrong("true or false");
         **b = node.value<bool>().value_or(false);
     } else if (const auto* s = std::get_if<std::string*>(&key.target)) {
-        if (!node.is_string()) wrong("a text in quotes");
+        if (!node.is_string()) wrong("text in quotes");
         **s = node.value<std::string>().value_or("");
         if (key.name.ends_with(".hand")) **s = current_hand_name(**s);
     } else if (const auto* many = std::get_if<std::span<double>>(&key.target)) {
@@ -286,7 +286,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.arm = c.arm;
     d.serial = c.device.serial;
     d.pump_priority = static_cast<int>(c.device.pump_priority);
-    // A device says so itself before the loop's own watchdog does, since it knows why.
+    // The device reports old samples before the loop's watchdog trips, because it can name the cause.
     d.state_hold = duration_us(c.safety.sample_age_us_max * (3000.0 / 3500.0));
     d.sim.watchdog = duration_us(c.device.watchdog_us);
     return d;

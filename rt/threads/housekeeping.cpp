@@ -16,8 +16,8 @@ namespace tact {
 
 namespace {
 
-constexpr int kPollMs = 10;           // a command waits for no longer than this
-constexpr int kCommandsPerTurn = 16;  // the ring holds 64: a flood costs bounded work and is seen as missed
+constexpr int kPollMs = 10;           // longest wait of a command
+constexpr int kCommandsPerTurn = 16;  // the ring holds 64; commands lost in a flood count as missed
 
 std::atomic<ServoMailbox*> signalled{nullptr};
 static_assert(std::atomic<ServoMailbox*>::is_always_lock_free);
@@ -27,7 +27,7 @@ extern "C" void on_signal(int number) {
     if (mailbox != nullptr) mailbox->stop_signal.store(number, std::memory_order_relaxed);
 }
 
-// A place that some scene may have: no model is kilometres wide. What a scene really has the model says.
+// Plausibility of a pose: finite, within a kilometre, with a unit quaternion. The model checks the range of its scene.
 bool read_pose(const CommandTopic& command, ServoOrder& order) {
     double square = 0.0;
     for (const double p : command.pos_model_m)
@@ -40,7 +40,7 @@ bool read_pose(const CommandTopic& command, ServoOrder& order) {
     return true;
 }
 
-// Which bodies there are only the servo knows.
+// Checks the form only; the servo checks that the body exists.
 bool read_body_order(const CommandTopic& command, ServoOrder& order) {
     order.body = command.body;
     const bool id = command.body != 0 && command.body != kNoBody;
@@ -56,7 +56,7 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
             return command.body <= 0xFFFFU && read_pose(command, order);
         case CommandKind::remove_body:
             return id;
-        case CommandKind::set_detail_filter:  // how wide a filter may be the model knows
+        case CommandKind::set_detail_filter:  // the model checks the filter's width
             order.pos_model_m[0] = command.pos_model_m[0];
             return command.body <= 0xFFU && std::isfinite(command.pos_model_m[0]);
         default:  // options
@@ -120,7 +120,7 @@ Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>&
 void Housekeeping::catch_signals(ServoMailbox& mailbox) {
     signalled.store(&mailbox);
     struct sigaction action {};
-    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the housekeeping thread ends at once
+    action.sa_handler = &on_signal;  // no SA_RESTART: interrupts the poll of the housekeeping thread
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) sigaction(number, &action, nullptr);
     signal(SIGPIPE, SIG_IGN);
 }
@@ -146,7 +146,7 @@ void Housekeeping::run() {
                 faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
             reported_at = now;
             notify_service(now);
-            spdlog::default_logger_raw()->flush();  // what nobody read, said now that somebody does
+            spdlog::default_logger_raw()->flush();  // reports dropped log lines once there is room
         }
         report();
         const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;
@@ -163,7 +163,7 @@ void Housekeeping::serve_link() {
     if (news.gui_left) {
         gui_ = {};
         report_.gui_attached = 0;
-        spdlog::info("the visual process left");
+        spdlog::info("visual process detached");
     }
     if (news.gui_arrived) {
         std::string refusal;
@@ -173,7 +173,7 @@ void Housekeeping::serve_link() {
             spdlog::warn("refused the region of the visual process {}: {}", news.gui_pid, refusal);
             return;
         }
-        commands_ = gui_->commands.tail();  // what an earlier controller was told is not for this one
+        commands_ = gui_->commands.tail();  // ignores commands for an earlier controller
         loads_seen_ = frames_seen_ = 0;
         report_.gui_attached = 1;
         report_.gui_generation = gui_.generation();
@@ -203,7 +203,7 @@ void Housekeeping::pass_on_frames() {
         return;
     }
     DisplayTopic picture{};
-    picture.taken_at_ns = to_ns(Monotonic::now());  // what the other process wrote there is not believed
+    picture.taken_at_ns = to_ns(Monotonic::now());  // the other process's time stamp is not trusted
     picture.metrics = frames.metrics;
     region_->picture.publish(picture);
 }
@@ -244,7 +244,7 @@ void Housekeeping::serve_gui() {
             mailbox_.orders.push(checked.order);
             continue;
         }
-        // The servo answers all commands, so that the answers come in order: a refused one goes as kind none.
+        // The servo answers all commands, so that the answers are in order; a refused command is passed on as kind none.
         ++bad_input_;
         mailbox_.orders.push({.sequence = command.sequence,
                               .value = 0.0,

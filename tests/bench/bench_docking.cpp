@@ -16,10 +16,10 @@ namespace {
 constexpr double kVoxelM = 2e-10;
 constexpr std::uint32_t kSide = 128;
 constexpr std::size_t kAtoms = 100'000, kVectors = 200;
-// Heavy atoms of protein: one in about 18 cubic angstrom.
+// Heavy atoms of protein: one per about 18 cubic angstrom.
 constexpr double kAtomVolumeM3 = 18e-30;
 
-// Smooth noise, so that gradients are everywhere and nothing is denormal or constant.
+// Smooth noise, so that gradients are nonzero everywhere and no value is denormal or constant.
 DensityGrid make_map() {
     DensityGrid grid;
     grid.size = {kSide, kSide, kSide};
@@ -37,7 +37,7 @@ DensityGrid make_map() {
     return grid;
 }
 
-// Points spread evenly in a ball, in random order as a file might have them.
+// Points of uniform density in a ball, in random order as in a file.
 std::array<std::vector<float>, 4> ball(std::size_t count, double radius_m, SeededRandom& random) {
     std::array<std::vector<float>, 4> out;
     for (std::size_t i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ struct Times {
     double p50_us = 0.0, p99_us = 0.0, quietest_us = 0.0;
 };
 
-// Of the medians of so many stretches in a row the least.
+// The minimum of the medians of consecutive series.
 double least_median(std::vector<double> times) {
     constexpr std::size_t kStretches = 20;
     const std::size_t length = std::max<std::size_t>(times.size() / kStretches, 1);
@@ -99,7 +99,7 @@ Times measure(const DockingModel& model, float fidelity, int steps) {
     Pose pose = model.home();
     double sink = 0.0;
     for (int i = 0; i < steps + steps / 10; ++i) {
-        // A slow figure through some voxels and a few degrees.
+        // A slow curve through some voxels and a few degrees.
         pose.p_m = model.home().p_m +
                    3.0 * kVoxelM * Vec3(std::sin(1e-3 * i), std::cos(2e-3 * i), std::sin(3e-3 * i));
         pose.q = quat_from_rotation_vector(0.1 * Vec3(std::cos(1e-3 * i), std::sin(1e-3 * i), 0.5));

@@ -1,11 +1,11 @@
-// What the docking force costs on this machine: for `tact bench docking`.
+// Cost of the docking force on this machine: for `tact bench docking`.
 //
 // Method   the servo's force model over a map of 128^3 voxels of 2 A made in memory and 100 000 atoms at the
-//          density of protein; each step the body moves a little, as in a hand. Numbers are of whole steps,
+//          density of protein; the body moves a little in each step, as in a hand. Times are of whole steps,
 //          on one core, with the caches as the steps leave them.
-// Quietest the least median of twenty stretches of steps: what the code costs where other users of the
-//          machine slow the core for most of the time
-// Takes    about three seconds, one of them to make the codebook stand-in and the map.
+// Quietest the minimum of the medians of twenty series of steps: the cost of the code where other users of the
+//          machine slow the core most of the time
+// Takes    about three seconds, one of them to make a substitute for a codebook and the map.
 #pragma once
 
 #include <cstdint>

@@ -51,13 +51,13 @@ double elastic_n(const BoneBricks& bricks, double radius_m, const BallMoments& m
         .wrench.force_n.norm();
 }
 
-// In bone as a stroke has left it, at places along that stroke.
+// In bone as a stroke has left it, at positions along that stroke.
 void add_force_errors(BoneSample& bone, const std::vector<Vec3>& path_m, double radius_m, ForceError& error) {
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());
     const DrillBone drilled(bone.bricks, bone.density, revision);
     const double radius = radius_m / bone.bricks.voxel_m;
     for (std::size_t i = path_m.size() / 2; i < path_m.size(); i += 23) {
-        // A little deeper than the hole is, or there would be nothing to feel.
+        // A little deeper than the hole, so that there is contact.
         const Vec3 at =
             bone.bricks.to_voxels(path_m[i] - Vec3(0.0, 0.0, 0.03 * radius_m * static_cast<double>(i % 7)));
         const double exact = elastic_n(bone.bricks, radius_m, ball_moments_exact(drilled.octree, at, radius));
@@ -72,7 +72,7 @@ void add_force_errors(BoneSample& bone, const std::vector<Vec3>& path_m, double 
     }
 }
 
-// Equation 12, voxel by voxel in small steps of time, for a straight stroke through solid bone.
+// Equation 12, voxel by voxel in small time steps, for a straight stroke through solid bone.
 double eroded_levels(const BoneSample& bone, const Vec3& from_m, const Vec3& to_m, double seconds,
                      double radius_m, const DrillSettings& law) {
     constexpr int kParts = 600;
@@ -166,7 +166,7 @@ json bench_drilling() {
 
 std::string drilling_work_csv(const DrillingWork& work) {
     if (work.size.size() != 3)
-        throw StartupError("drill into " + work.volume.string(), "--size wants three numbers", "give X Y Z");
+        throw StartupError("drill into " + work.volume.string(), "--size needs three numbers", "give X Y Z");
     BoneSample bone =
         bone_of_raw_file(work.volume, {work.size[0], work.size[1], work.size[2]}, 1e-3 * work.voxel_mm);
     const std::vector<Vec3> path = read_positions(work.trajectory, 1e-3);

@@ -36,7 +36,7 @@ Times measure(Work&& work) {
     return {batch_ns[kBatches / 2], batch_ns.back()};
 }
 
-// Values whose first and last numbers agree, so that a reader can tell a torn one.
+// Values whose first and last numbers agree, so that a reader detects a torn one.
 struct ServoSide {
     RtRegion& region;
     ToolTopic tool{};
@@ -93,7 +93,7 @@ IpcBench bench_ipc() {
     VisualSide reader{*mapped};
     IpcBench bench;
 
-    measure([&] { writer.publish_state(); });  // warms caches and clocks
+    measure([&] { writer.publish_state(); });  // warms up caches and clocks
     const Times publish = measure([&] { writer.publish_state(); });
     bench.publish_ns_p50 = publish.p50_ns;
     bench.publish_ns_max = publish.max_ns;

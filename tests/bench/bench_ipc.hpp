@@ -1,9 +1,9 @@
-// What shared memory costs on this machine: for `tact bench ipc`.
+// Cost of shared memory on this machine: for `tact bench ipc`.
 //
-// Method   a real region is mapped by a reader thread that reads the newest state again and again, as the
-//          visual process would at its worst, while the writer publishes. Each number is the median over
-//          batches; a batch is long enough that reading the clock does not count.
-// Takes    about half a second. Throws StartupError if there is no memory for the regions.
+// Method   a real region is mapped by a reader thread that reads the newest state in a loop, the worst case of a
+//          visual process, while the writer publishes. Each value is the median over batches; a batch is so long
+//          that clock readings have no effect.
+// Takes    about half a second. Throws StartupError without memory for the regions.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 namespace tact {
 
 struct IpcBench {
-    // Publish of the state of one servo cycle: a ToolTopic and a BodiesTopic, as the loop does.
+    // Publishing the state of one servo cycle: a ToolTopic and a BodiesTopic, as in the loop.
     double publish_ns_p50 = 0.0;
-    double publish_ns_max = 0.0;            // slowest batch: what else ran on the core
-    double publish_contended_ns_p50 = 0.0;  // while the reader reads all the time on another core
+    double publish_ns_max = 0.0;            // slowest batch, disturbed by other processes on the core
+    double publish_contended_ns_p50 = 0.0;  // with a reader reading continuously on another core
     double publish_tool_ns_p50 = 0.0;       // ToolTopic alone
     double read_ns_p50 = 0.0;               // ToolTopic and BodiesTopic, writer silent
-    double read_contended_ns_p50 = 0.0;     // writer publishing at full speed; failed tries included
+    double read_contended_ns_p50 = 0.0;     // with a writer at full speed; includes failed attempts
     double trace_push_ns_p50 = 0.0;         // one TraceTopic
-    std::uint64_t torn = 0;                 // values that did not fit together; has to be 0
+    std::uint64_t torn = 0;                 // inconsistent values; must be 0
 };
 
 [[nodiscard]] IpcBench bench_ipc();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kTorusSide = 1024, kBaseSide = 8;
 
-// Grid numbers in the order in which they go, and where each goes.
+// Grid indices in contraction order, and the target of each.
 struct Contractions {
     std::vector<std::uint32_t> gone;
     std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kTorusSide} * kTorusSide);
@@ -82,11 +82,11 @@ ProgressiveMeshData torus() {
         const std::uint32_t k = steps - 1 - s;
         data.parent[k] = number[c.into[c.gone[s]]];
         data.merged[k] = data.vertex[data.parent[k]];
-        // Somewhere else, so that there is something to copy.
+        // Another position, so that there is something to copy.
         data.merged[k].position_m[2] += 1e-7F * static_cast<float>(s);
         data.error_m[k] = 1e-7F * static_cast<float>(s + 1);
     }
-    // Triangles by counting sort on the level where two of their corners meet.
+    // Triangles by counting sort on the level at which two of their corners merge.
     std::vector<std::array<std::uint32_t, 3>> triangle;
     std::vector<std::uint32_t> level;
     data.triangle_count.assign(steps + 1, 0);
@@ -98,7 +98,7 @@ ProgressiveMeshData torus() {
             for (const auto& t :
                  {std::array{at(0, 0), at(1, 0), at(1, 1)}, std::array{at(0, 0), at(1, 1), at(0, 1)}}) {
                 auto v = t;
-                std::uint32_t k = 0;  // of the lowest level that has it, counted from the base
+                std::uint32_t k = 0;  // index of the lowest level that contains it, counted from the base
                 while (k == 0) {
                     std::uint32_t& last = *std::max_element(v.begin(), v.end());
                     if (last < data.base_vertices) break;
@@ -168,7 +168,7 @@ MeshBench bench_mesh() {
             std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
                         std::size_t{12} * cut.triangles());
         });
-    // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.
+    // Milliseconds of a walk of a thousand, times a thousand, are nanoseconds per change.
     bench.ns_per_contraction = 1e3 * median_ms(
                                          101, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
     bench.ns_per_vertex_split = 1e3 * median_ms(

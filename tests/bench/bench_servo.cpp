@@ -76,7 +76,7 @@ LatenessMetrics metrics(const DurationHistogram& h) {
     return {us(0.5), us(0.99), us(0.999), static_cast<double>(h.max_ns()) * 1e-3, h.total()};
 }
 
-// Locked memory and awake processors while the bench runs, and only so long.
+// Locks memory and keeps processors awake during the benchmark only.
 class Fitted {
 public:
     Fitted()

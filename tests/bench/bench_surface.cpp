@@ -35,13 +35,12 @@ json bench_surface() {
     std::uint64_t jammed = 0, unsettled = 0;
     const TouchTool block = bake_tool_to_measure("block"), scaler = bake_tool_to_measure("scaler");
     for (const auto& sphere : {std::pair<std::string, int>{"92k", 68}, {"2m", 316}, {"10m", 707}}) {
-        const std::string& key = sphere.first;  // clang 14 captures no structured bindings
+        const std::string& key = sphere.first;  // clang 14 cannot capture structured bindings
         const ScratchFolder scratch;
         const auto scene = scratch.path() / "surface.tact";
         std::vector<std::string> words{"demo",   "touch",   "--shape",
                                        "sphere", "--parts", std::to_string(sphere.second)};
-        // The forest of the largest takes longer than all that is measured; what it takes of memory the others
-        // tell.
+        // The forest of the largest mesh takes longer than all measurements; the other meshes give its memory per triangle.
         const bool largest = key == "10m";
         if (largest) words.emplace_back("--no-forest");
         const json baked = bake_to_measure(words, scene);
@@ -82,7 +81,7 @@ std::string surface_work_csv(const SurfaceWork& work) {
     const auto unit =
         std::find_if(units.begin(), units.end(), [&](const auto& u) { return work.unit == u.first; });
     if (unit == units.end())
-        throw StartupError("measure touching " + work.mesh.string(), work.unit + " is no unit",
+        throw StartupError("measure touching " + work.mesh.string(), work.unit + " is not a unit",
                            "give m, cm, mm, um, nm or a");
     const std::vector<Vec3> path = read_positions(work.trajectory, unit->second);
     const SceneFile file = SceneFile::open(scene);

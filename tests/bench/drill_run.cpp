@@ -10,7 +10,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr double kSurfaceShare = 0.78;  // of the block's height
+constexpr double kSurfaceShare = 0.78;  // fraction of the block's height
 constexpr double kShellM = 3e-3;
 
 SceneMeta plain_meta() {
@@ -25,12 +25,12 @@ double waves(double x, double y, double z) {
            0.5 * std::sin(2.9 * x - 1.9 * y + 2.3 * z);
 }
 
-// How many voxels are bone, brick by brick: those whose revision moved are counted again.
+// Counts voxels of bone, brick by brick; counts again only bricks whose revision changed.
 class SolidVoxels {
 public:
     SolidVoxels(const BoneSample& bone, const std::vector<std::uint32_t>& revision)
         : bone_(bone), revision_(revision), seen_(revision.size(), ~0U), solid_(revision.size()) {}
-    // Since it was asked last.
+    // Voxels lost since the last call.
     std::uint64_t lost() {
         std::uint64_t lost = 0;
         for (std::size_t b = 0; b < seen_.size(); ++b) {
@@ -90,17 +90,18 @@ BoneSample bone_of_raw_file(const std::filesystem::path& file, std::array<std::u
     std::error_code none;
     const auto there = std::filesystem::file_size(file, none);
     if (none || there != bytes)
-        throw StartupError(attempt,
-                           none ? none.message()
-                                : "it has " + std::to_string(there) + " bytes, not " + std::to_string(bytes),
-                           "give the size of a raw file of one byte a voxel with --size X Y Z");
+        throw StartupError(
+            attempt,
+            none ? none.message()
+                 : "it has " + std::to_string(there) + " bytes instead of " + std::to_string(bytes),
+            "use a raw file of one byte per voxel, and give its size with --size X Y Z");
     std::ifstream in(file, std::ios::binary);
     bone.density.assign(bone.bricks.bytes(), 0);
     std::vector<char> row(voxels[0]);
     for (std::uint32_t z = 0; z < voxels[2]; ++z)
         for (std::uint32_t y = 0; y < voxels[1]; ++y) {
             if (!in.read(row.data(), static_cast<std::streamsize>(row.size())))
-                throw StartupError(attempt, "it ended early", "copy it again");
+                throw StartupError(attempt, "the file ended early", "copy it again");
             for (std::uint32_t x = 0; x < voxels[0]; ++x)
                 bone.density[bone.bricks.voxel(x, y, z)] = static_cast<std::uint8_t>(row[x]);
         }

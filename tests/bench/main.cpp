@@ -1,4 +1,4 @@
-// tact-bench: the figures by which an operator judges a PC, measured on it. `tact bench` starts it.
+// tact-bench: measures the performance of a PC. `tact bench` starts it.
 //
 // Exit  0  measured; 1  error; 2  wrong usage
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ struct Measure {
     const char* name;
     const char* help;
     json (*run)();
-    bool only_named = false;  // too long and too large for who just asks what this machine is good for
+    bool only_named = false;  // too long and too large for a default run
 };
 
 json ipc() {
@@ -134,7 +134,7 @@ int bench(const std::vector<std::string>& wanted, bool as_json) {
                                                     : value.dump().c_str());
             std::fflush(stdout);
         }
-        all.update(numbers);  // the keys differ and say what they are
+        all.update(numbers);  // keys are unique
     }
     if (as_json) std::printf("%s\n", all.dump(2).c_str());
     return 0;

@@ -25,7 +25,7 @@ json bake_to_measure(const std::vector<std::string>& words, const std::filesyste
     Child child("tact-prep", find_program("tact-prep"), settings);
     if (fd >= 0) ::close(fd);
     const auto& ending = child.wait(std::chrono::minutes(10));
-    const std::string said = read_small(log);  // its progress, then the numbers
+    const std::string said = read_small(log);  // progress, then JSON
     json numbers = json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
         throw StartupError(

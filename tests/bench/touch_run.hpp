@@ -1,10 +1,9 @@
-// A model of touch, step by step along a path, for measurements: forces, times, and whether the proxy follows.
+// Steps a surface model along a path, for measurements: forces, times, and progress of the proxy.
 //
-// Method   whole steps of the servo's model, on one core and without a servo. A path is gone along `passes`
-//          times, and of each position the least time counts: what other users of the machine take is not the
-//          model's.
-// Stands   a proxy that is not where it should be and came no nearer
-// Fails by StartupError: tact-prep does not bake.
+// Method   whole steps of the servo's model, on one core and without a servo. The path is repeated `passes`
+//          times, and the minimum time of each position counts, which excludes other users of the machine.
+// Stands   the proxy is not settled and came no nearer to its goal
+// Fails by StartupError: tact-prep fails.
 #pragma once
 
 #include <filesystem>
@@ -21,18 +20,18 @@ struct TouchStep {
     Vec3 force_n = Vec3::Zero();
     double us = 1e300;
     bool settled = true, stands = false;
-    bool adaptive = false;  // felt on the adaptive surface
+    bool adaptive = false;  // the step used the adaptive surface
 };
 
-inline constexpr std::uint64_t kJammedRow = 5;  // cycles in a row that stand are a jam
+inline constexpr std::uint64_t kJammedRow = 5;  // so many consecutive cycles without progress are a jam
 inline constexpr std::size_t kSlowUpdateEvery =
-    4;  // steps: 250 times a second, as the thread of the slow update does
+    4;  // steps: 250 updates per second, as the slow-update thread makes
 
-// Baked by tact-prep with the given words before -o, without a picture; what it said as JSON.
+// Bakes a scene with tact-prep and these arguments before -o, without a preview; returns its JSON output.
 nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);
 
-// world_per_model: 1 is as large as in its file. forest: for mode chr, whose slow update runs between every
-// fourth step and the next, and not counted. The force has faded in when the path begins.
+// world_per_model: 1 is true size. forest: for mode chr; its slow update runs after every fourth step and is not
+// timed. The force has faded in when the path begins.
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
                                    const SurfaceSettings& settings, int passes, double world_per_model = 1.0,
                                    const VertexForest* forest = nullptr);

@@ -16,7 +16,7 @@ constexpr double kTurnRadStep = 0.5e-3;
 TouchTool bake_tool_to_measure(const std::string& name) {
     const ScratchFolder scratch;
     const auto scene = scratch.path() / "tool.tact";
-    // The surface of its scene is not used.
+    // The surface of this scene is not used.
     static_cast<void>(bake_to_measure(
         {"demo", "touch", "--shape", "sphere", "--parts", "4", "--tool", name, "--tool-points", "1000"},
         scene));

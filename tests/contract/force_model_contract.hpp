@@ -1,9 +1,9 @@
-// What every force model keeps, whatever it renders. One suite, run over each model by its unit test:
+// The contract of every force model. One suite, run for each model by its unit test:
 //
 //     INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract, testing::Values(ForceModelCase{"ring", make,
 //     touch}));
 //
-// make builds the model; touch is a tool pose that feels a force, a hand's width around it is explored.
+// make builds the model; touch is a tool pose with a nonzero force, and the tests explore the space around it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,17 +22,17 @@ namespace tact {
 struct ForceModelCase {
     std::string name;
     std::function<std::unique_ptr<ForceModel>()> make;
-    // Where the tool is gripped, and where it is then led to feel something.
+    // The pose at the grip, and the pose to which the tool then moves to get a force.
     Pose grip, touch;
-    double force_n_min = 0.01;  // felt at touch, at full fidelity
-    double step_n_max = 0.1;    // largest change of force that is not felt
+    double force_n_min = 0.01;  // at touch, at full fidelity
+    double step_n_max = 0.1;    // largest imperceptible change of force
 };
 
 inline void PrintTo(const ForceModelCase& c, std::ostream* out) { *out << c.name; }
 
 class ForceModelContract : public testing::TestWithParam<ForceModelCase> {
 protected:
-    static constexpr int kSettle = 2000;  // steps after which every ramp is over
+    static constexpr int kSettle = 2000;  // steps after which every ramp has ended
 
     void SetUp() override {
         model_ = GetParam().make();
@@ -81,7 +81,7 @@ TEST_P(ForceModelContract, knob_is_named_and_in_range) {
     EXPECT_TRUE(knob.haptic);
 }
 
-// The loop warms up before a hand is there.
+// The loop warms up before a hand is present.
 TEST_P(ForceModelContract, a_step_before_the_first_reset_moves_no_body) {
     model_ = GetParam().make();
     const ModelBodies before = model_->bodies();
@@ -93,7 +93,7 @@ TEST_P(ForceModelContract, a_step_before_the_first_reset_moves_no_body) {
     }
 }
 
-TEST_P(ForceModelContract, touch_is_felt) {
+TEST_P(ForceModelContract, touch_gives_a_force) {
     EXPECT_GE(settle(GetParam().touch).wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
@@ -114,7 +114,7 @@ TEST_P(ForceModelContract, items_rise_and_errors_fall_with_the_knob) {
     }
 }
 
-TEST_P(ForceModelContract, turning_the_knob_in_contact_is_not_felt) {
+TEST_P(ForceModelContract, turning_the_knob_in_contact_causes_no_perceptible_force_step) {
     StepResult before = settle(GetParam().touch, 0.0F);
     // A governor's fastest sweep: slew_per_s at 1 kHz.
     const float step = std::max(1e-4F, std::min(0.004F, model_->knob().slew_per_s * 1e-3F));
@@ -125,7 +125,7 @@ TEST_P(ForceModelContract, turning_the_knob_in_contact_is_not_felt) {
     }
 }
 
-TEST_P(ForceModelContract, a_fidelity_outside_its_range_is_taken_as_the_nearest) {
+TEST_P(ForceModelContract, a_fidelity_outside_its_range_is_clamped) {
     (void)settle(GetParam().touch);
     const auto step = [&](float fidelity) { return model_->step(at(GetParam().touch), budget(fidelity)); };
     EXPECT_EQ(difference_n(step(7.0F), step(1.0F)), 0.0);
@@ -169,7 +169,7 @@ TEST_P(ForceModelContract, force_comes_back_after_reset_without_a_step) {
     EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
-TEST_P(ForceModelContract, poses_that_are_not_poses_give_no_force_and_are_forgotten) {
+TEST_P(ForceModelContract, invalid_poses_give_no_force_and_leave_no_trace) {
     (void)settle(GetParam().touch);
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
@@ -200,9 +200,9 @@ TEST_P(ForceModelContract, poses_that_are_not_poses_give_no_force_and_are_forgot
     EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
 }
 
-TEST_P(ForceModelContract, no_order_makes_the_force_step_and_what_comes_into_the_hand_enters_at_zero) {
+TEST_P(ForceModelContract, orders_cause_no_force_step_and_a_new_body_fades_in_from_zero) {
     const ModelBodies bodies = (settle(GetParam().touch), model_->bodies());
-    if (bodies.count == 0) GTEST_SKIP() << "it has no bodies";
+    if (bodies.count == 0) GTEST_SKIP() << "the model has no bodies";
     using Kind = ModelOrder::Kind;
     ModelOrder place, let_go, take, fix, free, add;
     place.kind = Kind::place;
@@ -260,11 +260,11 @@ TEST_P(ForceModelContract, a_refused_order_changes_nothing) {
     EXPECT_FALSE(model_->stale());
 }
 
-TEST_P(ForceModelContract, a_rebuilt_model_goes_on_where_the_old_one_was) {
+TEST_P(ForceModelContract, a_rebuilt_model_continues_from_the_old_one) {
     StepResult before = settle(GetParam().touch);
     const auto rebuilt = model_->rebuild(model_->bodies());
-    if (rebuilt == nullptr) GTEST_SKIP() << "there is nothing to rebuild";
-    before = model_->step(at(GetParam().touch), budget(1.0F));  // it goes on meanwhile
+    if (rebuilt == nullptr) GTEST_SKIP() << "the model has nothing to rebuild";
+    before = model_->step(at(GetParam().touch), budget(1.0F));  // the old model continues meanwhile
     ASSERT_TRUE(rebuilt->adopt(*model_));
     const ModelBodies old = model_->bodies();
     double least_n = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the figures of tact-reproduce from the CSV and JSON files in a folder.
 
-    draw.py FOLDER          draws every figure whose data is there, as PNG beside the data
+    draw.py FOLDER          draws every figure with available data, as PNG beside the data
     draw.py --self-test     draws each kind of figure from synthetic data in a temporary folder
 
 Exit codes: 0 done; 1 error; 77 matplotlib is missing. tact-reproduce starts it; by hand it redraws figures after a change here.
@@ -33,7 +33,7 @@ plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.color": "#e4e4e4"
 
 
 def read_rows(path):
-    """Rows of a CSV file; numbers where a field is one."""
+    """Reads the rows of a CSV file; converts numeric fields to numbers."""
     def value(text):
         try:
             return float(text)
@@ -45,14 +45,14 @@ def read_rows(path):
 
 def start(title, remark, panels, height=3.6, width=11.0):
     figure, axes = plt.subplots(panels, 1, sharex=True, squeeze=False, figsize=(width, 1.1 + height * panels), layout="constrained")
-    # A title of two lines: the second, smaller one says the conditions.
+    # A title of two lines; the second, smaller one gives the conditions.
     figure.suptitle(title, x=0.012, ha="left", fontsize=14)
     axes[0][0].set_title(remark, loc="left", color="#666666", pad=10)
     return figure, [a[0] for a in axes]
 
 
 def legend(axes, handles=None):
-    """Outside of the data, to the right."""
+    """Places the legend outside the axes, to the right."""
     options = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.0), "borderaxespad": 0.0}
     if handles is not None:
         options["handles"] = handles
@@ -91,13 +91,13 @@ class Runs:
         return self.case[case][-1]["t_s"]
 
     def load(self, case):
-        """Begin and end of the external load; infinity and the last time without one."""
+        """Begin and end of the external load; without one, infinity and the last time."""
         times = [r["t_s"] for r in self.case[case] if r["external_load"]]
         return (min(times), max(times)) if times else (math.inf, self.end(case))
 
 
 def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=None):
-    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time that is drawn."""
+    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time to draw."""
     figure, (rates, triangles) = start(title, runs.remark, 2)
     disturbed = False
     for number, (case, label, colour) in enumerate(curves):
@@ -152,7 +152,7 @@ def draw_rates(folder):
 
 # Forces of a burr (drilling: figures 2 to 4).
 def ways(row, quantity):
-    """(column, label, dashed) for each size of block."""
+    """Yields (column, label, dashed) for each block size."""
     for column in row:
         if column.startswith(quantity + "_"):
             size = column[len(quantity) + 1:]
@@ -164,7 +164,7 @@ def burr_panel(axes, rows, radius, quantity, value, last_too=True):
     for number, (column, label, dashed) in enumerate(ways(rows[0], quantity)):
         if dashed and not last_too:
             continue
-        # Each curve is thinner than the one before it, so that equal ones are all visible.
+        # Each curve is thinner than the one before, so that coinciding curves are all visible.
         axes.plot([r["penetration_mm"] / radius for r in some], [value(r, column) for r in some], color=COLOURS[number],
                   linestyle="--" if dashed else "-", linewidth=3.4 - 0.8 * number, label=label)
     axes.margins(x=0.01)
@@ -196,7 +196,7 @@ def draw_drilling(folder):
     axes[-1].set_xlabel("penetration / R")
     save(figure, folder, "fig2b_error.png")
 
-    figure, axes = start("Figure 3: time for one force", "one core; the least of several repetitions", len(radii), height=2.9)
+    figure, axes = start("Figure 3: time for one force", "one core; minimum of several repetitions", len(radii), height=2.9)
     for panel, radius in zip(axes, radii):
         burr_panel(panel, rows, radius, "us", lambda r, c: r[c])
         panel.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
@@ -252,7 +252,7 @@ def draw_table(folder):
 def draw_filters(folder):
     rows = read_rows(os.path.join(folder, "filters.csv"))
     figure, (axes,) = start("Figure 3: allowed error of the surface by the distance from the probe",
-                            "full detail within 3 mm; distance: the largest of |dx|, |dy| and |dz|", 1, height=4.6)
+                            "full detail within 3 mm; distance: maximum of |dx|, |dy| and |dz|", 1, height=4.6)
     distance = [r["distance_mm"] for r in rows]
     for number, (column, label) in enumerate((("exact_um", "1 - exp(-x²)"), ("bell_um", "bell, as computed"), ("frustums_um", "multiple frustums"))):
         axes.plot(distance, [r[column] for r in rows], color=COLOURS[number], linestyle="--" if number == 0 else "-", label=label, zorder=3 - number)
@@ -305,7 +305,7 @@ def draw(folder):
 
 
 def self_test():
-    """Every kind of figure from a few rows; among them gaps, a single run, and values that are not numbers."""
+    """Draws every kind of figure from a few rows, including gaps, a single run, and values that are not numbers."""
     def write(folder, name, header, rows):
         with open(os.path.join(folder, name), "w", encoding="utf-8", newline="") as f:
             writer = csv.writer(f)

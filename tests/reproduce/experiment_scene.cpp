@@ -100,9 +100,9 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     write_grid(out, grid);
     const Structure heavy = repeated(structure, scale.atom_repeats);
     write_structure(out, 0, heavy);
-    // A structure of this size needs one coarse level to fall back on. With it alone, every level of the knob
-    // above zero sums all points (the two are blended), so the work stays what it is; with less than 200
-    // vectors, the knob starts at all points.
+    // A structure of this size needs one coarse level as a fallback. With this single level, every knob level above zero sums
+    // all points (the two are blended), so the work is constant; with less than 200 vectors, the knob starts at all
+    // points.
     Codebook coarse = read_codebook(demo, 0);
     std::erase_if(coarse.levels, [](const Codebook::Level& l) { return l.size() >= 200; });
     if (coarse.levels.size() > 1) coarse.levels.erase(coarse.levels.begin(), coarse.levels.end() - 1);

@@ -1,4 +1,4 @@
-// Stories of the governor in the whole loop: what the visual process says comes in by mailbox, levels go out.
+// The governor in the whole loop: reports of the visual process come by mailbox, levels go out.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/lockstep.hpp"
@@ -9,7 +9,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-// A visual process whose frames take so long at all of the picture, in proportion below it.
+// A visual process with a frame time proportional to the level; frame_s at level 1.
 struct Picture {
     Lockstep& loop;
     double frame_s;
@@ -44,7 +44,7 @@ ServoSettings with_display_goal(Law law, double hz) {
     return s;
 }
 
-TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_force_stays) {
+TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_with_the_same_force_level) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         Lockstep loop(with_display_goal(law, 30.0));
         loop.active();
@@ -62,7 +62,7 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_f
     }
 }
 
-TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
+TEST(GovernorScenario, a_frame_that_has_not_applied_the_level_causes_no_further_change) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -77,7 +77,7 @@ TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
     EXPECT_LT(picture.level(), once);
 }
 
-TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) {
+TEST(GovernorScenario, without_a_display_goal_a_slow_display_keeps_its_level) {
     Lockstep loop(with_display_goal(Law::elastic, 0.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -85,11 +85,11 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
     EXPECT_FLOAT_EQ(picture.level(), 1.0F);
 }
 
-// --- bone: the picture's particles ---
+// --- bone: the display's particles ---
 
 PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[kParticlesPathIndex]; }
 
-TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
+TEST(GovernorScenario, particles_are_reduced_with_the_display_of_bone_and_absent_elsewhere) {
     ServoSettings settings = with_display_goal(Law::elastic, 30.0);
     EXPECT_EQ(Lockstep(settings).levels().count, 2U);
     settings.visual_paths = kBonePaths;
@@ -117,7 +117,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
     EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
 }
 
-TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_before_the_force) {
+TEST(GovernorScenario, a_low_force_rate_reduces_particles_to_their_floor_before_the_force) {
     ServoSettings settings;
     settings.free_running = true;
     settings.visual_paths = kBonePaths;
@@ -147,9 +147,9 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
     EXPECT_TRUE(force_fell);
 }
 
-// --- a slow half that does not get through ---
+// --- a slow update that takes too long ---
 
-TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then_what_it_has_to_do) {
+TEST(GovernorScenario, a_late_slow_update_lowers_the_display_and_then_its_own_work) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(100);
@@ -158,7 +158,7 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
     for (int i = 0; i < 20; ++i) picture.frame();
     ASSERT_EQ(picture.level(), 1.0F);
     ASSERT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
-    loop.model_.turn_s = 0.008;  // of four milliseconds
+    loop.model_.turn_s = 0.008;  // of a period of four milliseconds
     const auto force = [&] { return static_cast<double>(loop.levels().path[kForcePathIndex].level); };
     bool force_fell = false;
     for (int i = 0; i < 2000; ++i) {
@@ -167,7 +167,7 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
         force_fell = true;
         EXPECT_EQ(picture.level(), loop.levels().path[kDisplayPathIndex].floor);
     }
-    // Nine tenths of a turn's time are used, and the servo itself missed nothing.
+    // Slow updates use nine tenths of their period, and the servo itself missed nothing.
     EXPECT_TRUE(force_fell);
     EXPECT_LT(loop.model_.slow_update_s(), 0.0041);
     EXPECT_GT(loop.model_.slow_update_s(), 0.003);
@@ -191,7 +191,7 @@ struct FreeLoop : Lockstep {
         s.watchdogs.timing_latches = false;
         return s;
     }
-    // Fewest and most updates in any tenth of the next seconds.
+    // Fewest and most updates in any tenth of a second during the given time.
     std::pair<std::size_t, std::size_t> windows(double seconds) {
         std::vector<Instant> begun;
         const Instant end =
@@ -211,7 +211,7 @@ struct FreeLoop : Lockstep {
     }
 };
 
-TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer) {
+TEST(GovernorScenario, free_running_steps_reduce_their_work_before_the_law_can_react) {
     FreeLoop loop(Law::elastic);
     loop.model_.cost = std::chrono::microseconds(500);
     static_cast<void>(loop.windows(1.0));
@@ -225,7 +225,7 @@ TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer
     EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
 
-TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_wholly_at_any_rate) {
+TEST(GovernorScenario, free_running_a_fixed_level_is_computed_completely_at_any_rate) {
     FreeLoop loop(Law::fixed);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_LE(loop.windows(1.0).second, 68U);
@@ -235,7 +235,7 @@ TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_whol
     EXPECT_FLOAT_EQ(loop.health().rested, 0.0F);
 }
 
-TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_picture_could_be_finer) {
+TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_if_the_display_could_be_finer) {
     FreeLoop loop(Law::elastic);
     Picture picture{loop, 0.02};
     loop.model_.cost = microseconds(400);
@@ -250,14 +250,14 @@ TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_pictu
     EXPECT_LT(picture.level(), 1.0F);
     const auto [least, most] = loop.windows(0.3);
     EXPECT_GE(least, 96U);
-    EXPECT_LE(most, 112U);  // what lacked before the core was fast again is made good
+    EXPECT_LE(most, 112U);  // deficits from before the core became fast are compensated
     EXPECT_GT(loop.health().rested, 0.3F);
     for (int i = 0; i < 400 && picture.level() < 1.0F; ++i) picture.frame();
-    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law saw that there is time to spare
+    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law detected the spare time
     EXPECT_GE(loop.windows(0.3).first, 200U);
 }
 
-TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_their_bounds) {
+TEST(GovernorScenario, hostile_reports_of_the_display_keep_the_levels_within_bounds) {
     for (const double bad : {-1.0, 1e300, 0.0}) {
         Lockstep loop(with_display_goal(Law::elastic, 30.0));
         loop.active();
@@ -293,7 +293,7 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
-    EXPECT_EQ(lateness.total, 0U);  // without a plan nothing is late
+    EXPECT_EQ(lateness.total, 0U);  // without a plan no cycle is late
 }
 
 TEST(GovernorScenario,
@@ -314,7 +314,7 @@ TEST(GovernorScenario,
     loop.cycles(10000);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     EXPECT_GT(loop.said(EventCode::level_changed), 2);
-    // Each change says why.
+    // Each change reports its reason.
     bool fell = false, rose = false;
     RingCursor cursor;
     for (EventTopic e{}; loop.region_->events.next(cursor, e);) {
@@ -327,7 +327,7 @@ TEST(GovernorScenario,
     EXPECT_TRUE(rose);
 }
 
-TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {
+TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its_level) {
     ServoSettings s;
     s.free_running = true;
     s.governor.goal_hz = 1000.0;

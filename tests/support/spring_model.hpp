@@ -1,4 +1,4 @@
-// A force model whose answer is known: a spring to a point, with faults and delays on demand.
+// A force model with a known force: a spring to a point, with faults and delays on demand.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ public:
     double stiffness_n_m = 40.0;
     double turn_stiffness_n_m = 0.02;
     bool not_a_number = false;
-    ManualClock* clock = nullptr;  // a step then takes `cost`, at the level
+    ManualClock* clock = nullptr;  // a step then takes `cost` times the level
     Duration cost{0};
-    bool keeps_sums = false;  // a step with a share of its work takes as much less
-    double turn_s = 0.0;      // of its slow half, at the level; 0: it has none
+    bool keeps_sums = false;  // a step with a work fraction takes proportionally less
+    double turn_s = 0.0;      // duration of its slow update times the level; 0: it has none
     int* destroyed = nullptr;
     int resets = 0;
 

@@ -18,7 +18,7 @@ TEST(DurationHistogram, every_duration_lies_in_its_bucket_and_buckets_are_narrow
     }
 }
 
-TEST(DurationHistogram, percentiles_of_a_known_set_are_never_understated) {
+TEST(DurationHistogram, percentiles_of_a_known_set_are_never_too_low) {
     DurationHistogram h;
     for (int i = 1; i <= 1000; ++i) h.add(Duration(i * 100));
     EXPECT_GE(h.percentile_ns(0.5), 50'000U);

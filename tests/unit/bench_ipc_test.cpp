@@ -5,7 +5,7 @@
 namespace tact {
 namespace {
 
-TEST(BenchIpc, every_figure_is_measured_and_no_value_is_torn) {
+TEST(BenchIpc, every_metric_is_measured_and_no_value_is_torn) {
     const IpcBench b = bench_ipc();
     for (const double ns : {b.publish_ns_p50, b.publish_contended_ns_p50, b.publish_tool_ns_p50,
                             b.read_ns_p50, b.read_contended_ns_p50, b.trace_push_ns_p50}) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # deploy/shell: every cause of a failed installation has its own message and fix; a moved checkout is configured again;
-# shares of long work grow and end. apt-get, dpkg-query, sudo and id are stand-ins; the build is a project of one file.
+# progress percentages grow and end. apt-get, dpkg-query, sudo and id are stubs; the build is a project with one file.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd) || exit 1
 work=$(mktemp -d) || exit 1
@@ -37,7 +37,7 @@ printf 'here # a remark\nlack\nheld\n' >"$work/list"
 export STUB=$work PATH=$work/bin:$PATH HELD='' TACT_LOCK_SECONDS=3
 unset TACT_NO_INSTALL
 
-# install: the output and, as its last line, the exit code.
+# install: prints the output and, as the last line, the exit code.
 install() {
     rm -f "$work/installed"
     bash -uc '. "$1/deploy/shell/progress.sh"; . "$1/deploy/shell/packages.sh"; tact_install_packages "$2" 2>&1; echo "exit $?"' \
@@ -86,7 +86,7 @@ cause install "E: You don't have enough free space in /var/cache/apt/archives/."
 cause update "E: Failed to fetch http://a/x  Connection timed out" "the download was interrupted" "check the network"
 cause install "E: something new" "apt-get failed" "as root, run: apt-get install --no-install-recommends held lack"
 
-# A lock that is let go in time; of the lists too, whose other output is not shown.
+# A lock that is released in time; also that of the package lists, whose other output is hidden.
 printf 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 42 (apt)\n' >"$work/update"
 touch "$work/update-once"
 expect_text "$(install)" "Another package manager is at work (held by process 42 (apt)); waiting up to 3 s."
@@ -111,13 +111,13 @@ out=$(STUB_UID=1000 setsid bash -uc '. "$1/deploy/shell/packages.sh"
 expect_text "$out" "sudo asks for a password, and there is no terminal to ask on"
 expect_text "$out" "run first: sudo apt-get install lack"
 
-# Shares: they grow, name the step, and end at the plan's last.
+# Percentages grow, name the step, and end with the last step of the plan.
 out=$(bash -uc '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
     tact_step b second; for i in 20 40 60 80 100; do tact_share $i second; done; tact_plan_end' _ "$root")
-[ "$(sed 's/ *\([0-9]*\) %.*/\1/' <<<"$out" | tr '\n' ' ')" = "0 12 25 40 55 70 85 100 " ] || fail "shares: $out"
+[ "$(sed 's/ *\([0-9]*\) %.*/\1/' <<<"$out" | tr '\n' ' ')" = "0 12 25 40 55 70 85 100 " ] || fail "percentages: $out"
 expect_text "$out" "first; about 4 min left"
 
-# A build, one more, one after the checkout was moved, one with another compiler, a broken one.
+# A build, a second one, one after the checkout was moved, one with another compiler, a broken one.
 mkdir -p "$work/project at home/deploy"
 cp -r "$root/deploy/shell" "$work/project at home/deploy/"
 cd "$work/project at home" || exit 1

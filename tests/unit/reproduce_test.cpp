@@ -1,4 +1,4 @@
-// What the reproduction says of a run's samples: means are cycles over time, the worst second is found.
+// The evaluation of a run's samples: means are cycles over time, and the worst second is found.
 #include "tests/reproduce/mesh_error.hpp"
 #include "tests/reproduce/mesh_picture.hpp"
 #include "tests/reproduce/rate_samples.hpp"
@@ -15,7 +15,7 @@
 namespace tact::launch {
 namespace {
 
-// Ten samples a second: `slow` cycles per sample within [slow_from_s, slow_to_s), else `fast`.
+// Ten samples per second: `slow` cycles per sample within [slow_from_s, slow_to_s), else `fast`.
 std::vector<RateSample> samples(double seconds, std::uint64_t fast, std::uint64_t slow, double slow_from_s,
                                 double slow_to_s) {
     std::vector<RateSample> all;
@@ -33,7 +33,7 @@ std::vector<RateSample> samples(double seconds, std::uint64_t fast, std::uint64_
 
 TEST(GovernorSummary, the_mean_rate_is_cycles_over_time_and_not_the_mean_of_rates) {
     auto some = samples(10.0, 100, 100, 0, 0);
-    some.erase(some.begin() + 20, some.begin() + 60);  // a launcher that was held up sees fewer samples
+    some.erase(some.begin() + 20, some.begin() + 60);  // a delayed launcher takes fewer samples
     const RateSummary r = summarize(some, 0.0, 10.0);
     EXPECT_DOUBLE_EQ(r.rate_mean_hz, 1000.0);
     EXPECT_DOUBLE_EQ(r.seconds, 10.0);
@@ -53,7 +53,7 @@ TEST(GovernorSummary, half_a_slow_second_counts_half) {
 
 TEST(GovernorSummary, a_window_of_a_tenth_of_a_second_begins_between_two_samples) {
     std::vector<RateSample> some;
-    for (int i = 0; i <= 100; ++i)  // every 30 ms, 1000 Hz; from 1.5 s on half of it
+    for (int i = 0; i <= 100; ++i)  // every 30 ms, 1000 Hz; half of it from 1.5 s on
         some.push_back(
             {.t_s = 0.03 * i, .cycle = static_cast<std::uint64_t>(i <= 50 ? 30 * i : 1500 + 15 * (i - 50))});
     for (const RateWindow100& w : windows(some, 0.0, 3.0)) {
@@ -69,7 +69,7 @@ TEST(GovernorSummary, a_window_of_a_tenth_of_a_second_begins_between_two_samples
     EXPECT_LT(settling_s(some, 1.6, 3.0, 1000.0), 0.0);
 }
 
-TEST(GovernorSummary, windows_in_which_strangers_or_a_slower_core_took_part_are_told_apart) {
+TEST(GovernorSummary, windows_with_other_programs_or_a_slower_core_count_as_disturbed) {
     std::vector<RateSample> some;
     RateSample s;
     for (int i = 0; i <= 1000; ++i) {
@@ -87,8 +87,8 @@ TEST(GovernorSummary, windows_in_which_strangers_or_a_slower_core_took_part_are_
     EXPECT_NEAR(r.foreign_share, 0.005, 1e-9);
 }
 
-// Slow for most of its time: only another run can say so.
-TEST(GovernorSummary, a_run_on_a_slow_core_is_measured_by_what_is_fast_in_all_runs) {
+// Slow most of the time: only another run gives the reference.
+TEST(GovernorSummary, a_run_on_a_slow_core_is_compared_with_the_fast_time_of_all_runs) {
     std::vector<RateSample> slow, fast;
     RateSample s;
     for (int i = 0; i <= 200; ++i) {
@@ -109,8 +109,8 @@ TEST(GovernorSummary, a_run_on_a_slow_core_is_measured_by_what_is_fast_in_all_ru
     EXPECT_EQ(summarize(fast, 0.0, 2.0, 1000.0, fast_s).disturbed_percent, 0.0);
 }
 
-// Half of each update stood for by older sums: twice the rate, nearly, of a core that is no faster.
-TEST(GovernorSummary, an_update_that_did_a_part_of_its_work_is_counted_as_that_part) {
+// Older sums replace half of each update: nearly twice the rate on a core of the same speed.
+TEST(GovernorSummary, an_update_with_a_part_of_its_work_counts_as_that_part) {
     std::vector<RateSample> some;
     RateSample s;
     const double half = kFixedPart + 0.5 * (1.0 - kFixedPart);
@@ -129,13 +129,13 @@ TEST(GovernorSummary, an_update_that_did_a_part_of_its_work_is_counted_as_that_p
     EXPECT_NEAR(summarize(some, 0.0, 10.0).recomputed_fraction_least, 0.5, 1e-9);
 }
 
-TEST(Summary, is_a_table_of_the_seeds_numbers_and_ours) {
+TEST(Summary, is_a_table_of_published_and_measured_numbers) {
     const std::vector<SummaryRow> rows{{"5", "updates/s", "550", "1173", "a faster core"},
                                        {"7", "x", "1", "2", ""}};
     const std::string text = table_of(rows);
-    EXPECT_NE(text.find("5    updates/s  550   1173"), std::string::npos) << text;
+    EXPECT_NE(text.find("5    updates/s  550        1173"), std::string::npos) << text;
     EXPECT_NE(text.find("a faster core"), std::string::npos);
-    EXPECT_EQ(json_of(rows)[0]["ours"], "1173");
+    EXPECT_EQ(json_of(rows)[0]["measured"], "1173");
 }
 
 TEST(GovernorSummary, only_the_samples_within_the_window_count) {
@@ -144,7 +144,7 @@ TEST(GovernorSummary, only_the_samples_within_the_window_count) {
     EXPECT_DOUBLE_EQ(r.rate_worst_1s_hz, 1000.0);
 }
 
-TEST(GovernorSummary, nothing_measured_gives_nothing) {
+TEST(GovernorSummary, no_samples_give_zeros) {
     EXPECT_EQ(summarize({}, 0.0, 10.0).seconds, 0.0);
     EXPECT_EQ(summarize(samples(1.0, 100, 100, 0, 0), 5.0, 6.0).rate_mean_hz, 0.0);
 }
@@ -168,13 +168,13 @@ TEST(Meshes, the_error_is_the_distance_of_the_surfaces_and_of_their_borders) {
     EXPECT_NEAR(apart.max_m, 0.25, 1e-6);
     EXPECT_NEAR(apart.border_max_m, 0.25, 1e-6);
     TriangleMesh half = square(0.0);
-    half.triangle.resize(3);  // the corner (0, 1) is gone
+    half.triangle.resize(3);  // without the corner (0, 1)
     const MeshError cut = mesh_error(square(0.0), half);
     EXPECT_NEAR(cut.max_m, std::sqrt(0.5), 1e-6);
     EXPECT_NEAR(cut.border_max_m, std::sqrt(0.5), 1e-6);
 }
 
-TEST(Meshes, the_samples_are_the_seeds_in_size_one_open_and_one_closed) {
+TEST(Meshes, the_sample_meshes_have_the_published_sizes_one_open_one_closed) {
     const TriangleMesh sheet = open_sheet();
     EXPECT_EQ(sheet.vertices(), 1250U);
     const TriangleMesh closed = chaperonin(2000);
@@ -189,7 +189,7 @@ TEST(Meshes, the_samples_are_the_seeds_in_size_one_open_and_one_closed) {
     for (const auto& [edge, n] : edges) ASSERT_EQ(n, 2);
 }
 
-TEST(Meshes, the_picture_shows_front_and_back_and_paper_where_there_is_nothing) {
+TEST(Meshes, the_image_shows_front_back_and_white_background) {
     const TriangleMesh mesh = square(0.0);
     const auto middle = [&](const Vec3& eye) {
         const MeshImage i = draw_mesh(mesh, mesh, eye, false, 40, 40);
@@ -219,7 +219,7 @@ TEST(TouchRow, a_rate_is_one_over_the_mean_time_and_quality_follows_its_rule) {
     EXPECT_EQ(quality(row), "bad");
 }
 
-TEST(TouchRow, a_proxy_that_stands_for_five_cycles_is_jammed_from_the_first_of_them) {
+TEST(TouchRow, a_proxy_stuck_for_five_cycles_is_jammed_from_the_first_one) {
     std::vector<TouchStep> steps = steps_of(100, 1.0, 0, 0.0);
     for (std::size_t i = 10; i < 14; ++i) steps[i].stands = true;
     EXPECT_EQ(jammed_cycles(steps), 0U);

@@ -52,7 +52,7 @@ tact_test(scenario/record_scenario_test.cpp USES base topics hal force servo thr
 tact_test(scenario/bodies_scenario_test.cpp USES base topics scene hal force servo threads config start)
 tact_test(scenario/governor_scenario_test.cpp USES base topics hal force servo threads config start govern)
 
-# Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
+# The servo path uses neither heap nor mutex: the test includes the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
     USES base topics scene arm phantom phantom_usb hal emu_board force servo threads config start SYSTEM GTest::gtest GTest::gtest_main)
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)

@@ -74,8 +74,8 @@ TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room
     EXPECT_EQ(first.rfind("info line 0 of", 0), 0U);
 
     log.flush();
-    const std::string said =
-        "warning " + std::to_string(kLines - there) + " lines of this log were dropped: nobody read them\n";
+    const std::string said = "warning " + std::to_string(kLines - there) +
+                             " log lines were dropped because standard error was not read\n";
     EXPECT_NE(ends.drain().find(said), std::string::npos);
     log.flush();
     EXPECT_EQ(ends.drain(), "");  // once
@@ -86,7 +86,7 @@ TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room
     static_cast<void>(ends.drain());
     log.info("with the next line");
     const std::string next = ends.drain();
-    EXPECT_NE(next.find("lines of this log were dropped"), std::string::npos);
+    EXPECT_NE(next.find("log lines were dropped"), std::string::npos);
     EXPECT_LT(next.find("dropped"), next.find("info with the next line\n"));
 }
 
@@ -105,7 +105,7 @@ TEST(LogSinks, take_a_line_longer_than_a_pipe) {
     log.info("lost as well");
     static_cast<void>(ends.drain());
     log.info("next");
-    EXPECT_EQ(ends.drain(), "\n2 lines of this log were dropped: nobody read them\nnext\n");
+    EXPECT_EQ(ends.drain(), "\n2 log lines were dropped because standard error was not read\nnext\n");
 }
 
 }  // namespace

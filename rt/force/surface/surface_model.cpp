@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr double kFarM = 1e3;  // no hand is there
+constexpr double kFarM = 1e3;  // positions farther away are invalid
 
 bool tool_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -19,7 +19,7 @@ bool tool_is_there(const Pose& pose) noexcept {
 ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s) {
     check_surface_settings(s);
     const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
-    // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
+    // Half the radius of a point, a thousandth of that of a ball: a few millinewtons at the end of a facet.
     const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
     const double lag = SurfaceModel::kLagN / s.stiffness_n_m;
     return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
@@ -34,7 +34,7 @@ void check_surface_settings(const SurfaceSettings& s) {
             throw StartupError(
                 std::string("setting the ") + what + " of the tool",
                 std::to_string(value) + " is outside " + std::to_string(low) + " to " + std::to_string(high),
-                "give one inside");
+                "choose a value inside the range");
     };
     within("radius in m", s.radius_m, 0.0, 0.1);
     within("stiffness in N/m", s.stiffness_n_m, 1.0, 20000.0);
@@ -62,7 +62,7 @@ void SurfaceModel::use_full_surface() noexcept {
     used_ = 0;
 }
 
-// Before a step: what holds all that it may look at.
+// Before a step: selects the surface that contains the step's search radius.
 void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
     if (adaptive_ == nullptr) return;
     if (adaptive_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
@@ -88,7 +88,7 @@ std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
 }
 
 std::uint32_t SurfaceModel::moves(float fidelity) noexcept {
-    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
+    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
     return kMovesLeast +
            static_cast<std::uint32_t>(std::lround(level * static_cast<float>(kMovesMost - kMovesLeast)));
 }
@@ -212,7 +212,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
 std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const SurfaceSettings& settings) {
     const SceneMeta meta = read_meta(scene);
     if (scene.count(SurfaceMesh::kTag) == 0)
-        throw StartupError("loading '" + scene.name() + "'", "it is not a surface",
+        throw StartupError("loading '" + scene.name() + "'", "the scene is not a surface",
                            "bake one with tact-prep touch MESH -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);
     if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0)
