@@ -5,7 +5,7 @@
 #include "gui/dashboard/panels.hpp"
 #include "gui/dashboard/plot.hpp"
 #include "gui/dashboard/widgets.hpp"
-#include "ipc/topics/text.hpp"
+#include "ipc/topics/level_text.hpp"
 
 namespace tact {
 namespace {
@@ -50,8 +50,8 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
         const PathLevel& p = state.levels.path[i];
         name[i] = path_name(p);
         level[i] = {&h.level[i], kPathColours[i], name[i].c_str()};
-        words[i] = name[i] + format(" %.2f ", static_cast<double>(p.level)) +
-                   level_reason_text(static_cast<LevelReason>(p.reason));
+        words[i] =
+            name[i] + format(" %.2f ", static_cast<double>(p.level)) + level_status_text(p, state.now_ns);
     }
     spec.title = "Detail levels";
     spec.unit = "0-1";

@@ -80,6 +80,19 @@ StatusText overrun_status(const HealthTopic& h, std::int64_t now_ns) {
     return {part < 1e-3 ? Grade::watch : Grade::bad, words};
 }
 
+StatusText deadline_status(const HealthTopic& h, std::int64_t now_ns) {
+    if (h.deadline_misses == 0) return {Grade::good, "none"};
+    if (h.deadline_miss_share > 0.0F) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%.2g %% in the last second",
+                      100.0 * static_cast<double>(h.deadline_miss_share));
+        return {h.deadline_miss_share < 1e-3F ? Grade::watch : Grade::bad, text};
+    }
+    const double ago_s = 1e-9 * static_cast<double>(now_ns - h.deadline_missed_at_ns);
+    return {Grade::watch,
+            h.deadline_missed_at_ns > 0 && ago_s >= 0.0 ? "last: " + ago_text(ago_s) : "not lately"};
+}
+
 StatusText state_status(RunState state, RunReason reason) {
     std::string words;
     Grade grade = Grade::watch;

@@ -31,6 +31,8 @@ struct StatusText {
 [[nodiscard]] StatusText recomputed_status(float mean);
 // now_ns gives the age of the last overrun. Bad from one in a thousand cycles.
 [[nodiscard]] StatusText overrun_status(const HealthTopic& health, std::int64_t now_ns);
+// Of the force model's steps.
+[[nodiscard]] StatusText deadline_status(const HealthTopic& health, std::int64_t now_ns);
 [[nodiscard]] StatusText state_status(RunState state, RunReason reason);
 // Notice over the 3D view while something stops the force: the cause and the fix. Empty texts: nothing stops it.
 struct StopNotice {
