@@ -110,8 +110,7 @@ DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
         throw StartupError("querying the haptic device",
                            "the reported workspace, force or stiffness is not plausible",
                            "test the device in the manufacturer's diagnostic program; set device.hd_library "
-                           "to the library that belongs to it"
-                           "(device.hd_library)");
+                           "to the library that belongs to it");
     settings.centre_mm = 0.5 * (low + high);
     info.workspace_half_m = 0.5e-3 * (high - low);
     info.force_n_continuous = std::min(info.force_n_continuous, info.force_n_max);

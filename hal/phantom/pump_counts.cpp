@@ -35,10 +35,10 @@ std::string summary(const PumpCounts& c) {
             refused += (refused.empty() ? "" : ", ") + std::to_string(c.refused[i]) + " " + kNames[i];
     }
     return "queries " + std::to_string(c.asked) + ", answers " + std::to_string(c.answered) +
-           "; states accepted " + std::to_string(c.taken) + ", before an answer " + std::to_string(c.early) +
-           "; packets refused: " + (refused.empty() ? "none" : refused) + "; transfers failed " +
-           std::to_string(c.transfers_failed) + ", stalls " + std::to_string(c.stalls) +
-           ", connected again " + std::to_string(c.reconnects);
+           "; states accepted " + std::to_string(c.taken) + ", before the first answer " +
+           std::to_string(c.early) + "; packets refused: " + (refused.empty() ? "none" : refused) +
+           "; transfers failed " + std::to_string(c.transfers_failed) + ", stalls " +
+           std::to_string(c.stalls) + ", connected again " + std::to_string(c.reconnects);
 }
 
 }  // namespace tact::phantom

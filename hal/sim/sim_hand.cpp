@@ -29,8 +29,8 @@ Glide glide(const Vec3& velocity, const Vec3& force, double inertia, double damp
 constexpr double kPullStiffness = 60.0;      // N/m
 constexpr double kPullTurnStiffness = 0.05;  // N m/rad
 constexpr double kSubstepS = 1e-3;           // the pull changes with the position; 1 ms keeps K h < b
-constexpr double kStrokedUp = 0.2;           // fraction of a wandering hand's vertical motion
-constexpr double kDrilledAside = 0.2;        // fraction of a wandering hand's path
+constexpr double kStrokedUp = 0.2;           // "stroke": fraction of the vertical wandering
+constexpr double kDrilledAside = 0.2;        // "drill": fraction of the lateral wandering
 constexpr double kLoweredS = 0.5;
 constexpr double kPauseMaxS = 0.05;  // after a longer pause, the hand counts as still for the rest
 
@@ -47,9 +47,9 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
             .suction_tube = settings.script == "suction-tube", .seed = settings.seed, .at_m = settings.at_m});
         pose_ = surgeon_->begin();
     } else if (settings.script != "passive" && !wanders_) {
-        throw StartupError("emulated hand", "no script has the name \" + settings.script + "\"",
-                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or \"suction "
-                           "tube\" (device.hand)");
+        throw StartupError("emulated hand", "no script has the name \"" + settings.script + "\"",
+                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or "
+                           "\"suction-tube\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {

@@ -1,7 +1,7 @@
 // An emulated head with a tracker, as the frames that the tracker's gateway sends on the CAN bus.
 //
 // Head     a random sum of sines about its place in front of the screen; the sensors are 0.1 m apart
-// Noise    that of an electromagnetic tracker: stated at kNoiseAt from its origin, growing with
+// Noise    that of an electromagnetic tracker: stated at kNoiseAtM from its origin, growing with
 //          distance^3.5
 // Time     from the given clock: the frames of a period are sent when due, `latency` after the measurement.
 //          A pause longer than kBacklog periods loses the older ones, as a kernel's queue does.

@@ -1,7 +1,7 @@
 // Log-linear histogram of durations: constant-time insert, 6 % bucket width, no allocation.
 //
 // Range   0 to about 4.3 s; longer durations count in the last bucket. 32 octaves of 16 buckets, in ns.
-// Thread  one writer. Copies of counts may be read elsewhere (ipc/topics/lateness.hpp).
+// Thread  one writer. Copies of counts may be read elsewhere (LatenessTopic in ipc/topics/health.hpp).
 #pragma once
 
 #include <algorithm>

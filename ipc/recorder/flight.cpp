@@ -50,7 +50,7 @@ public:
         std::error_code error;
         std::filesystem::create_directories(settings.folder, error);
         if (!std::filesystem::is_directory(settings.folder))
-            throw StartupError("keeping flights in '" + settings.folder.string() + "'",
+            throw StartupError("keeping flight recordings in '" + settings.folder.string() + "'",
                                error ? error.message() : "this is not a folder", "choose a writable folder");
     }
 

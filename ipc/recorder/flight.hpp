@@ -2,7 +2,7 @@
 // event.
 //
 // Memory   `length` of batches, or `bytes_max` when a fast loop needs more; never more
-// Written  at a fault, an overrun, a command "mark" (the window's key) or save(); kAfter later, so that the
+// Written  at a fault, an overrun, a command "mark" (the window's key) or save(); `after` later, so that the
 //          consequences are in the file too. A cause within `length` of the previous one is mostly in that
 //          file, and creates no new one.
 // Kept     the newest `files_max` files in the folder; older ones are removed

@@ -109,7 +109,8 @@ void check(const DensityGrid& grid, double background, double sigma) {
     const std::string attempt = "building the density map";
     for (const std::uint32_t n : grid.size) {
         if (n < 1 || n > 16384)
-            throw StartupError(attempt, "its size is out of range", "use a map of 1 to 16384 voxels a side");
+            throw StartupError(attempt, "its size is out of range",
+                               "use a map of 1 to 16384 voxels per side");
     }
     if (grid.values.size() != grid.count()) {
         throw StartupError(attempt, "its number of values differs from its number of voxels",
