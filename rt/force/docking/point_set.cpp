@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kFarthestM = 1e-3F;  // ten million angstrom: no molecule is wider
 
-// Twenty bits per axis, interleaved.
+// Interleaves twenty bits per axis.
 std::uint64_t morton(const std::array<std::uint32_t, 3>& cell) {
     std::uint64_t code = 0;
     for (int bit = 19; bit >= 0; --bit) {
