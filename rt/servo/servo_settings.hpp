@@ -44,9 +44,8 @@ struct ServoSettings {
     Duration model_max = std::chrono::microseconds(600);  // deadline of a step, beneath its level
     bool model_deadline = true;                           // false for a clock that is not the machine's
     double force_scale = 1.0;
-    double damping_n_s_m = 0.0;  // damping of the coupling against the tool's velocity
-    double hand_damping_n_s_m =
-        3.0;  // damping of hand and arm; bounds the stiffness that is stable at a delay
+    double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
+    double hand_damping_n_s_m = 3.0;  // of hand and arm; bounds the stiffness that is stable at a delay
     Pose T_world_dev;
     // At least one; outlives the servo. The first has index kDisplayPathIndex, the others follow kForcePathIndex.
     std::span<const VisualPath> visual_paths;

@@ -61,7 +61,7 @@ Grid empty_grid(const Structure& s) {
     }
     if (!finite || !((high - low).maxCoeff() < kWidestM)) {
         throw StartupError("preparing the clash force of '" + s.name + "'",
-                           "its atoms are not finite, or farther apart than a millimetre",
+                           "its atom positions are not finite, or more than a millimetre apart",
                            "bake the scene again");
     }
     Grid g;

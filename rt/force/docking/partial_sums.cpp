@@ -87,7 +87,7 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
         slice.made = true;
         if (turn < due) next_ = (k + 1) % kSlices;
     }
-    for (const Slice& slice : slices_) add(result.sums, slice.sums);  // same order always: runs repeat exactly
+    for (const Slice& slice : slices_) add(result.sums, slice.sums);  // fixed order: runs repeat exactly
     result.recomputed_fraction = static_cast<float>(static_cast<double>(summed) / static_cast<double>(n));
     return result;
 }
