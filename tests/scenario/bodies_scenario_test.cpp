@@ -123,7 +123,7 @@ private:
     std::uint64_t sequence_ = 0;
 };
 
-TEST(BodiesScenario, a_hundred_changes_of_the_body_in_the_hand_are_not_felt_as_a_step) {
+TEST(BodiesScenario, a_hundred_changes_of_the_body_in_the_hand_cause_no_force_step) {
     Loop loop(two_structures());
     for (const std::uint32_t structure : {0U, 1U, 0U})
         ASSERT_EQ(loop.order(CommandKind::add_body, 0.0, structure, loop.place(0)), CommandResult::done);
@@ -166,7 +166,7 @@ TEST(BodiesScenario, a_body_of_another_structure_enters_at_a_level_that_fits_and
     EXPECT_LE(loop.servo_->state().hand[0].step.load.items, 240U);
 }
 
-TEST(BodiesScenario, ids_stay_with_their_bodies_and_are_never_given_again) {
+TEST(BodiesScenario, ids_stay_with_their_bodies_and_are_never_reused) {
     Loop loop(two_structures());
     ASSERT_EQ(loop.order(CommandKind::add_body, 0.0, 1, loop.place(1)), CommandResult::done);
     ASSERT_EQ(loop.order(CommandKind::remove_body, 0.0, 2), CommandResult::done);
@@ -288,7 +288,7 @@ void settle(Loop& loop, ModelBuilder& builder) {
     FAIL() << "it is still building";
 }
 
-TEST(BodiesScenario, what_cannot_be_had_in_constant_time_is_built_aside_and_then_goes_on_from_there) {
+TEST(BodiesScenario, a_model_built_by_another_thread_continues_from_the_present_state) {
     Loop loop(std::make_unique<BuiltAside>());
     ModelBuilder builder(loop.mailbox_, gettid());
     ASSERT_EQ(loop.order(CommandKind::set_subtraction, 1.0), CommandResult::done);
@@ -308,7 +308,7 @@ TEST(BodiesScenario, what_cannot_be_had_in_constant_time_is_built_aside_and_then
     EXPECT_EQ(loop.said(EventCode::model_swapped), 3);
 }
 
-TEST(BodiesScenario, what_cannot_be_built_is_given_up_and_the_model_in_use_goes_on) {
+TEST(BodiesScenario, a_failed_build_leaves_the_present_model_in_use) {
     Loop loop(std::make_unique<BuiltAside>());
     ModelBuilder builder(loop.mailbox_, gettid());
     ASSERT_EQ(loop.order(CommandKind::set_laplacian, 1.0), CommandResult::done);

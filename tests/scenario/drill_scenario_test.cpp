@@ -66,7 +66,7 @@ TEST(DrillScenario, bone_is_cut_only_while_the_force_is_on) {
     EXPECT_EQ(drill.model.removed_levels(), then);
 }
 
-TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_hand) {
+TEST(DrillScenario, without_the_pedal_the_burr_stops_and_the_bone_resists_the_hand) {
     DrillScenario drill(false);
     drill.loop.active();
     drill.loop.cycles(3000);
@@ -76,7 +76,7 @@ TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_han
     EXPECT_LT(drill.loop.tool().pos_world_m[2], -3.25e-3);
 }
 
-TEST(DrillScenario, what_the_tool_is_and_took_is_published) {
+TEST(DrillScenario, tool_state_and_removed_bone_are_published) {
     DrillScenario drill(true);
     drill.loop.active();
     drill.loop.cycles(2000);

@@ -76,7 +76,7 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
 
 INSTANTIATE_TEST_SUITE_P(Signals, StopSignal, ::testing::Values(SIGTERM, SIGINT, SIGHUP));
 
-TEST(SecondController, is_refused_by_name_and_process_and_the_first_does_not_notice) {
+TEST(SecondController, is_refused_with_the_name_and_process_of_the_first_which_keeps_running) {
     const Rig rig;
     Controller first(rig, {});
     Watch watch(rig);
@@ -220,7 +220,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     EXPECT_EQ(watch.state(), RunState::ready);
 }
 
-TEST(HostileVisualProcess, a_ring_whose_count_runs_wild_costs_bounded_work_and_no_cycle) {
+TEST(HostileVisualProcess, a_ring_with_an_impossible_count_costs_bounded_work_and_no_cycle) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
@@ -240,7 +240,7 @@ TEST(HostileVisualProcess, a_ring_whose_count_runs_wild_costs_bounded_work_and_n
     EXPECT_FALSE(rt.child().poll());
 }
 
-TEST(SilentVisualProcess, by_default_the_force_goes_on_and_the_silence_is_said) {
+TEST(SilentVisualProcess, by_default_the_force_continues_and_the_silence_is_reported) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
@@ -280,7 +280,7 @@ TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_h
     EXPECT_TRUE(bring_to_force(visual, watch)) << rt.said();
 }
 
-TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_mend) {
+TEST(StartPlaces, are_those_of_the_file_and_an_invalid_file_is_refused_with_its_fix) {
     const Rig rig;
     const std::string body = R"({"structure": 0, "name": "rod", "pos_model_a": [20, 25, 30],
         "quat_model_body_xyzw": [0, 0, 1, 0], "fixed": )";
@@ -311,7 +311,7 @@ TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_men
     }
 }
 
-TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with_its_mend) {
+TEST(PermissionDenied, a_world_writable_runtime_folder_is_refused_with_its_fix) {
     const Rig rig;
     const auto open_to_all = rig.folder() / "open";
     std::filesystem::create_directory(open_to_all);

@@ -44,7 +44,7 @@ ServoSettings with_display_goal(Law law, double hz) {
     return s;
 }
 
-TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_force_stays) {
+TEST(GovernorScenario, a_map_too_large_for_the_renderer_becomes_usable_while_the_force_keeps_its_level) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         Lockstep loop(with_display_goal(law, 30.0));
         loop.active();
@@ -62,7 +62,7 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_f
     }
 }
 
-TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
+TEST(GovernorScenario, frames_from_before_a_change_applies_change_no_level) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -77,7 +77,7 @@ TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
     EXPECT_LT(picture.level(), once);
 }
 
-TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) {
+TEST(GovernorScenario, without_a_display_goal_a_slow_display_keeps_its_level) {
     Lockstep loop(with_display_goal(Law::elastic, 0.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -89,7 +89,7 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
 
 PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[kParticlesPathIndex]; }
 
-TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
+TEST(GovernorScenario, particles_fall_with_the_volume_and_exist_on_bone_scenes_alone) {
     ServoSettings settings = with_display_goal(Law::elastic, 30.0);
     EXPECT_EQ(Lockstep(settings).levels().count, 2U);
     settings.visual_paths = kBonePaths;
@@ -117,7 +117,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
     EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
 }
 
-TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_before_the_force) {
+TEST(GovernorScenario, a_low_force_rate_lowers_particles_to_their_floor_before_the_force) {
     ServoSettings settings;
     settings.free_running = true;
     settings.visual_paths = kBonePaths;
@@ -149,7 +149,7 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
 
 // --- a slow half that does not get through ---
 
-TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then_what_it_has_to_do) {
+TEST(GovernorScenario, a_slow_update_that_falls_behind_lowers_the_display_and_then_its_own_work) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(100);
@@ -211,7 +211,7 @@ struct FreeLoop : Lockstep {
     }
 };
 
-TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer) {
+TEST(GovernorScenario, free_running_steps_recompute_less_before_the_law_can_react) {
     FreeLoop loop(Law::elastic);
     loop.model_.cost = std::chrono::microseconds(500);
     static_cast<void>(loop.windows(1.0));
@@ -225,7 +225,7 @@ TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer
     EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
 
-TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_wholly_at_any_rate) {
+TEST(GovernorScenario, free_running_a_fixed_level_is_recomputed_wholly_at_any_rate) {
     FreeLoop loop(Law::fixed);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_LE(loop.windows(1.0).second, 68U);
@@ -235,7 +235,7 @@ TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_whol
     EXPECT_FLOAT_EQ(loop.health().rested, 0.0F);
 }
 
-TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_picture_could_be_finer) {
+TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_sleeps_while_the_display_is_below_full_detail) {
     FreeLoop loop(Law::elastic);
     Picture picture{loop, 0.02};
     loop.model_.cost = microseconds(400);
@@ -257,7 +257,7 @@ TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_pictu
     EXPECT_GE(loop.windows(0.3).first, 200U);
 }
 
-TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_their_bounds) {
+TEST(GovernorScenario, hostile_frame_reports_leave_the_levels_within_their_bounds) {
     for (const double bad : {-1.0, 1e300, 0.0}) {
         Lockstep loop(with_display_goal(Law::elastic, 30.0));
         loop.active();
@@ -327,7 +327,7 @@ TEST(GovernorScenario,
     EXPECT_TRUE(rose);
 }
 
-TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {
+TEST(GovernorScenario, with_a_gui_the_display_falls_and_the_force_keeps_its_level) {
     ServoSettings s;
     s.free_running = true;
     s.governor.goal_hz = 1000.0;

@@ -222,7 +222,8 @@ private:
     Count count_;
 };
 
-TEST(KillCampaign, whoever_dies_the_other_goes_on_and_a_new_controller_has_no_force_until_a_person_arms_it) {
+TEST(KillCampaign,
+     after_either_process_dies_the_other_continues_and_a_new_controller_has_no_force_until_armed) {
     const char* const longer = std::getenv("TACT_CAMPAIGN_S");
     const int seconds = longer != nullptr ? std::atoi(longer) : 4;
     Campaign().run(std::chrono::seconds(std::clamp(seconds, 1, 86400)), 8);

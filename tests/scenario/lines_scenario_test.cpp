@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Stop{"amplifier_off", LinesFault::amplifier_off, RunReason::amplifier_readback, 102}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST(LinesScenarios, an_emergency_stop_is_a_fault_also_while_nothing_is_powered_and_a_pedal_is_none) {
+TEST(LinesScenarios, an_emergency_stop_is_a_fault_even_unpowered_and_a_released_pedal_is_not) {
     Loop loop;
     loop.lines_.inject(LinesFault::pedal_released);
     loop.cycles(100);
@@ -122,7 +122,7 @@ TEST(LinesScenarios, an_emergency_stop_is_a_fault_also_while_nothing_is_powered_
     EXPECT_EQ(other.reason(), RunReason::emergency_stop);
 }
 
-TEST(LinesScenarios, the_pedal_pressed_again_needs_only_what_a_person_does_anyway) {
+TEST(LinesScenarios, after_the_pedal_is_pressed_again_arming_suffices) {
     Loop loop;
     loop.lines_.inject(LinesFault::pedal_released);
     loop.cycles(100);
@@ -138,7 +138,7 @@ TEST(LinesScenarios, the_pedal_pressed_again_needs_only_what_a_person_does_anywa
     EXPECT_TRUE(loop.enabled());
 }
 
-TEST(LinesScenarios, a_stop_that_came_and_went_while_the_servo_stood_still_is_one) {
+TEST(LinesScenarios, a_stop_that_ended_during_a_servo_stall_still_counts) {
     Loop loop;
     loop.active();
     // The pump goes on while the servo does not.
@@ -176,7 +176,7 @@ TEST(LinesScenarios, a_drop_by_the_supervisor_is_a_fault_of_its_own) {
     EXPECT_TRUE(loop.enabled());
 }
 
-TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lamp_says_so) {
+TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lamp_follows) {
     Loop loop;
     EXPECT_FALSE(loop.enabled());
     EXPECT_EQ(loop.driven() & kLineLamp, 0);

@@ -17,7 +17,7 @@ SimSettings wandering() {
     return s;
 }
 
-TEST(RecordScenario, every_cycle_is_there_with_its_hand_and_the_dry_ones_too) {
+TEST(RecordScenario, every_cycle_is_recorded_with_its_hand_including_dry_ones) {
     Lockstep loop({}, wandering());
     Drain drain(*loop.region_);
     loop.active();
@@ -41,7 +41,7 @@ TEST(RecordScenario, every_cycle_is_there_with_its_hand_and_the_dry_ones_too) {
     EXPECT_GT(start.device[0].force_n_max, 1.0);
 }
 
-TEST(RecordScenario, a_step_says_what_the_device_gave_and_what_it_was_sent) {
+TEST(RecordScenario, a_step_records_the_device_sample_and_the_force_sent) {
     Lockstep loop({}, wandering());
     loop.active();
     loop.cycles(1);
@@ -86,7 +86,7 @@ TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
     EXPECT_FALSE(batch.levels.empty());
 }
 
-TEST(RecordScenario, a_reader_that_was_lapped_says_how_many_it_missed) {
+TEST(RecordScenario, an_overrun_reader_reports_the_number_of_missed_records) {
     Lockstep loop;
     Drain drain(*loop.region_);
     Batch batch;
@@ -105,7 +105,7 @@ TEST(RecordScenario, a_reader_that_was_lapped_says_how_many_it_missed) {
     EXPECT_EQ(batch.cycles.size() + lost, static_cast<std::size_t>(capacity) + 120U);
 }
 
-TEST(RecordScenario, who_comes_late_begins_with_the_oldest_and_has_dropped_nothing) {
+TEST(RecordScenario, a_late_reader_begins_with_the_oldest_record_and_counts_no_drops) {
     Lockstep loop;
     loop.cycles(static_cast<int>(decltype(RtRegion::cycles)::kCapacity) + 100);
     Drain drain(*loop.region_);

@@ -55,7 +55,7 @@ std::string words(const ReplayResult& r) {
            std::to_string(d.replayed[0]);
 }
 
-TEST(ReplayScenario, orders_and_models_built_aside_come_again_in_their_steps) {
+TEST(ReplayScenario, orders_and_rebuilt_models_replay_in_their_steps) {
     const Rig rig;
     Recording recording(rig);
     Controller rt(rig, {"--copies", "2"});

@@ -30,7 +30,7 @@ TEST(ServoScenario, a_spring_draws_the_emulated_hand_to_its_rest) {
     EXPECT_EQ(loop.region_->trace.pushed(), loop.servo_->state().cycle);
 }
 
-TEST(ServoScenario, unarmed_it_shows_no_force_and_the_hand_stays) {
+TEST(ServoScenario, unarmed_the_force_is_zero_and_the_hand_stays) {
     Lockstep loop;
     loop.cycles(1000);
     EXPECT_EQ(loop.state(), RunState::ready);
@@ -117,7 +117,7 @@ TEST(ServoScenario, a_signal_ends_a_faulted_loop_as_well) {
 
 // --- commands ---
 
-TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat) {
+TEST(ServoScenario, device_samples_their_age_and_the_motor_heat_are_published) {
     Lockstep loop;
     loop.cycles(200);
     const DevicesTopic cool = loop.devices();
@@ -138,7 +138,7 @@ TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat
     EXPECT_GT(warm.hand[0].samples, cool.hand[0].samples + 1000);
 }
 
-TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
+TEST(ServoScenario, commands_are_applied_and_answered_in_order) {
     Lockstep loop;
     loop.order(CommandKind::disarm);
     loop.order(CommandKind::arm);
@@ -180,7 +180,7 @@ TEST(ServoScenario, a_refused_command_is_answered_without_effect) {
 
 // --- the visual process ---
 
-TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_configured) {
+TEST(ServoScenario, a_silent_gui_is_reported_and_the_force_continues_or_ramps_out_as_configured) {
     for (const bool ramps : {false, true}) {
         ServoSettings s;
         s.gui_silent_ramps = ramps;
@@ -203,7 +203,7 @@ TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_c
 
 // --- handing a model over ---
 
-TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_back) {
+TEST(ServoScenario, a_new_model_starts_with_zero_force_and_the_old_one_is_returned) {
     int destroyed = 0;
     Lockstep loop;
     loop.active();

@@ -87,7 +87,7 @@ struct WatchedDrill {
     }
 };
 
-TEST(SiteScenario, all_that_the_burr_took_is_dust_or_accounted_for) {
+TEST(SiteScenario, all_removed_bone_becomes_dust_or_is_counted) {
     WatchedDrill watched;
     watched.loop->active();
     for (int i = 0; i < 150; ++i) watched.frame(17);

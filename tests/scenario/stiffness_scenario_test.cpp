@@ -79,7 +79,7 @@ struct DampedStallScenario : StallScenario {
     DampedStallScenario() : StallScenario(30.0) {}
 };
 
-TEST_F(StallScenario, the_felt_force_glides_to_what_is_stable_and_back_more_slowly) {
+TEST_F(StallScenario, the_force_falls_smoothly_to_the_stable_bound_and_returns_more_slowly) {
     const Felt smooth = seconds(1, false);
     EXPECT_NEAR(smooth.scale.back(), 1.0, 1e-6);  // 3 N s/m over 1.5 ms are 2000 N/m
     const Felt down = seconds(5, true);
@@ -117,7 +117,7 @@ TEST_F(DampedStallScenario, walls_and_damping_keep_to_bounds_of_their_own) {
     EXPECT_GT(h.damper.gain(), 1.5 * h.field.gain());
 }
 
-TEST_F(StallScenario, while_nothing_is_felt_the_bound_holds_at_once) {
+TEST_F(StallScenario, without_force_the_bound_applies_at_once) {
     loop_.order(CommandKind::disarm);
     loop_.cycles(200);
     ASSERT_EQ(loop_.shown_n(), 0.0);

@@ -15,7 +15,7 @@ constexpr Duration kSilence = std::chrono::milliseconds(500);
 
 class SupervisorScenario : public testing::TestWithParam<Stand> {};
 
-TEST_P(SupervisorScenario, a_servo_that_stands_loses_the_enable_line_until_a_person_resets_and_arms) {
+TEST_P(SupervisorScenario, a_stalled_servo_loses_the_enable_line_until_a_person_resets_and_arms) {
     RealLoop loop(kSilence);
     const auto cycles_pass = [&](std::uint64_t n) {
         const std::uint64_t begin = loop.health().cycle;

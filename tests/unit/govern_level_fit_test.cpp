@@ -102,7 +102,7 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
     EXPECT_GT(compared, 300);
 }
 
-TEST(LevelFit, a_dearer_row_with_a_larger_error_is_never_chosen) {
+TEST(LevelFit, a_costlier_row_with_a_larger_error_is_never_chosen) {
     // A blend of two levels costs both and lies between their errors.
     LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {0.5F, 250 * kUs, 0.5}, {1.0F, 200 * kUs, 0.1}});
     EXPECT_EQ(fit.choose({.period_s = 1e-3}), 1.0F);
@@ -216,7 +216,7 @@ TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {
     EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // nothing fits: the floor
 }
 
-TEST(LevelFit, rows_that_are_no_rows_are_left_out) {
+TEST(LevelFit, invalid_rows_are_ignored) {
     LevelFit fit;
     EXPECT_FALSE(fit.set_rows({}));
     EXPECT_EQ(fit.add({.level = 0.4F}, {}).level, 0.4F);

@@ -84,7 +84,7 @@ TEST(RateHold, a_loop_at_its_goal_or_above_is_left_alone) {
 }
 
 // One of three programs on the core, in turns of a millisecond, and a picture that is not drawn all the time.
-TEST(RateHold, neither_are_turns_nor_pictures_that_a_window_evens_out) {
+TEST(RateHold, interruptions_that_average_out_within_a_window_cost_no_work) {
     Core core;
     core.ours = [](double t_s) {
         const bool drawing = std::fmod(t_s, 0.05) < 0.02;
@@ -106,14 +106,14 @@ TEST(RateHold, a_core_that_gets_slower_by_half_at_once_costs_less_than_four_perc
     }
 }
 
-TEST(RateHold, so_it_does_in_turns_of_a_millisecond) {
+TEST(RateHold, a_core_shared_in_slices_of_a_millisecond_that_slows_by_half_costs_as_little) {
     Core core;
     core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
     core.update_s = [](double t_s) { return t_s < 0.5 ? 0.32e-3 : 0.48e-3; };
     EXPECT_GE(worst_window(core.run(2.0), 0.0, 2.0), 0.95);
 }
 
-TEST(RateHold, when_the_core_is_fast_again_nothing_is_given_up_any_more) {
+TEST(RateHold, once_the_core_is_fast_again_all_work_is_recomputed) {
     Core core;
     core.update_s = [](double t_s) { return t_s > 0.5 && t_s < 1.0 ? 2.5e-3 : 0.95e-3; };
     const auto all = core.run(2.0);
@@ -121,7 +121,7 @@ TEST(RateHold, when_the_core_is_fast_again_nothing_is_given_up_any_more) {
     EXPECT_EQ(mean_share(all, 1.11, 2.0), 1.0);
 }
 
-TEST(RateHold, a_short_stall_is_made_good_within_the_window) {
+TEST(RateHold, a_short_stall_is_recovered_within_the_window) {
     Core core;
     core.update_s = [](double) { return 0.99e-3; };
     core.ours = [](double t_s) { return t_s < 0.5 || t_s > 0.51; };
@@ -130,7 +130,7 @@ TEST(RateHold, a_short_stall_is_made_good_within_the_window) {
     EXPECT_GE(worst_window(all, 0.43, 1.0), 0.97);
 }
 
-TEST(RateHold, a_long_stall_is_made_good_by_no_more_than_a_quarter_of_a_window) {
+TEST(RateHold, a_long_stall_is_recovered_by_at_most_a_quarter_of_a_window) {
     for (const double stall_s : {0.1, 1.0, 30.0}) {
         Core core;
         core.ours = [=](double t_s) { return t_s < 0.5 || t_s > 0.5 + stall_s; };
@@ -145,7 +145,7 @@ TEST(RateHold, a_long_stall_is_made_good_by_no_more_than_a_quarter_of_a_window) 
     }
 }
 
-TEST(RateHold, a_goal_out_of_reach_leaves_the_least_share_and_no_debt) {
+TEST(RateHold, an_unreachable_goal_leaves_the_least_work_fraction_and_no_deficit) {
     Core core;
     core.update_s = [](double t_s) { return t_s < 1.0 ? 20e-3 : 0.9e-3; };
     const auto all = core.run(2.0);
@@ -153,7 +153,7 @@ TEST(RateHold, a_goal_out_of_reach_leaves_the_least_share_and_no_debt) {
     EXPECT_EQ(mean_share(all, 1.2, 2.0), 1.0);
 }
 
-TEST(RateHold, slow_goals_and_fast_ones_are_held_alike) {
+TEST(RateHold, goals_from_50_hz_to_20_khz_are_held) {
     for (const double goal_hz : {50.0, 300.0, 4000.0, 20000.0}) {
         Core core;
         core.update_s = [=](double t_s) { return (t_s < 0.5 ? 0.98 : 1.47) / goal_hz; };
@@ -162,7 +162,7 @@ TEST(RateHold, slow_goals_and_fast_ones_are_held_alike) {
     }
 }
 
-TEST(RateHold, a_loop_ahead_of_its_goal_rests_and_gives_nothing_up) {
+TEST(RateHold, a_loop_ahead_of_its_goal_sleeps_and_recomputes_all_work) {
     for (const double update_s : {0.05e-3, 0.3e-3, 0.9e-3}) {
         Core core;
         core.rests = true;
@@ -174,7 +174,7 @@ TEST(RateHold, a_loop_ahead_of_its_goal_rests_and_gives_nothing_up) {
     }
 }
 
-TEST(RateHold, a_core_whose_speed_leaps_to_and_fro_makes_the_goal_on_average_and_in_every_window) {
+TEST(RateHold, a_core_of_alternating_speed_reaches_the_goal_on_average_and_in_every_window) {
     Core core;
     core.rests = true;
     core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
@@ -188,7 +188,7 @@ TEST(RateHold, a_core_whose_speed_leaps_to_and_fro_makes_the_goal_on_average_and
     EXPECT_LE(windows(all, 0.1, 3.0).most, 1.1);
 }
 
-TEST(RateHold, any_times_and_goals_give_a_share_and_a_rest) {
+TEST(RateHold, any_times_and_goals_give_a_valid_work_fraction_and_sleep) {
     RateHold hold;
     const Instant now = Instant{} + std::chrono::hours(1);
     for (const double goal_hz : {1.0, 1e7})

@@ -156,7 +156,7 @@ TEST(LawReplay, the_default_law_is_better_than_the_published_one_over_the_same_l
 }
 
 // What a neighbour on the same physical core does: everything takes 1.45 times as long for up to seconds.
-TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_the_core_leaps) {
+TEST(LawReplay, with_rate_hold_every_tenth_of_a_second_reaches_the_goal_on_a_core_of_alternating_speed) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> length_s(0.2, 3.0);
     std::vector<double> leap_s{0.0};
@@ -224,7 +224,7 @@ TEST(LawReplay, nothing_winds_up_at_the_floor) {
     }
 }
 
-TEST(LawReplay, inside_the_dead_band_nothing_moves) {
+TEST(LawReplay, within_the_dead_band_no_level_changes) {
     PlantSettings p;
     p.frame_jitter = 0.0;
     p.seconds = 40.0;
@@ -241,7 +241,7 @@ TEST(LawReplay, inside_the_dead_band_nothing_moves) {
 }
 
 // A map too big for the renderer: the force rate is at its goal all the time, the picture is not at its own.
-TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it_has_to) {
+TEST(LawReplay, a_display_below_its_goal_gets_coarser_and_no_coarser_than_necessary) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         PlantSettings p;
         p.free_running = false;
@@ -268,7 +268,7 @@ TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it
     }
 }
 
-TEST(LawReplay, a_picture_with_time_to_spare_comes_back_to_all_of_it) {
+TEST(LawReplay, a_display_with_time_to_spare_returns_to_full_detail) {
     PlantSettings p;
     p.free_running = false;
     p.fps_max = 60.0;

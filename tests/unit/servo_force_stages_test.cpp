@@ -162,7 +162,7 @@ TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
     EXPECT_NEAR(before_n, 1.0, 1e-9);
 }
 
-TEST(StageSafety, a_force_that_is_no_number_is_a_fault_with_a_snapshot_and_zero_force) {
+TEST(StageSafety, a_force_that_is_not_finite_is_a_fault_with_a_snapshot_and_zero_force) {
     CycleFixture f;
     f.c.run.state = RunState::active;
     f.c.hand[0].wanted_world.force_n = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_kept) {
+TEST(StageWake, a_cycle_begins_at_its_planned_time_with_one_clock_reading) {
     CycleFixture f;
     const Instant planned = f.c.pacer.planned() + milliseconds(1);
     f.c.pacer.restart(planned);
@@ -28,7 +28,7 @@ TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_ke
     EXPECT_EQ(f.c.timestamp[0], planned);
 }
 
-TEST(StageWake, a_late_cycle_knows_by_how_much_and_a_dry_one_is_never_late) {
+TEST(StageWake, a_late_cycle_measures_its_lateness_and_a_dry_one_is_never_late) {
     CycleFixture f;
     servo::wake(f.c, f.settings, f.clock);
     f.clock.advance(microseconds(1300));
@@ -152,7 +152,7 @@ TEST(StageLines, arming_re_arms_and_the_outputs_follow_the_state) {
     EXPECT_EQ(f.lines.command.heartbeat, 3U);
 }
 
-TEST(StageLines, a_drop_by_the_supervisor_is_seen_once_and_recorded) {
+TEST(StageLines, a_drop_by_the_supervisor_is_handled_once_and_recorded) {
     CycleFixture f;
     f.mailbox.pulse.drops.store(1);
     EXPECT_TRUE(servo::supervisor_dropped(f.c, f.io));
