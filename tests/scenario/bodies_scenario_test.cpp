@@ -1,5 +1,5 @@
-// Stories of several bodies in the hand, one after another: the force never steps, identities stay, and a
-// model that is built aside comes in without a jolt.
+// Several bodies in the hand, one after another: the force never steps, ids stay with their bodies, and a
+// rebuilt model takes over without a jump.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <unistd.h>
@@ -21,8 +21,8 @@
 namespace tact {
 namespace {
 
-// Structure 0: the helix of the small scene. Structure 1: ten times its atoms, which tremble about the same
-// places.
+// Structure 0: the helix of the small scene. Structure 1: ten times as many atoms, scattered about the same
+// positions.
 std::unique_ptr<DockingModel> two_structures() {
     const std::vector<std::byte> bytes = small_scene().to_bytes();
     const SceneFile scene = SceneFile::from_bytes(bytes, "small scene");
@@ -47,7 +47,7 @@ std::unique_ptr<DockingModel> two_structures() {
                                           std::vector<Codebook>{book, finer}, DockingSettings{});
 }
 
-// The loop in lockstep with a wandering hand; it owns whatever model it ends with.
+// The loop in lockstep with a wandering hand; it owns the last model.
 class Loop {
 public:
     explicit Loop(std::unique_ptr<ForceModel> model) : region_(new RtRegion{}), device_(wandering()) {
@@ -64,7 +64,7 @@ public:
     }
     ~Loop() { delete servo_->state().hand[0].model; }
 
-    // The largest change of the shown force from one cycle to the next is remembered, and the least force.
+    // Keeps the largest step of the output force between cycles, and the smallest force.
     void cycles(int n) {
         for (int i = 0; i < n; ++i) {
             servo_->cycle();
@@ -138,7 +138,7 @@ TEST(BodiesScenario, a_hundred_changes_of_the_body_in_the_hand_cause_no_force_st
         const std::uint64_t grips = loop.bodies().grips;
         ASSERT_EQ(loop.order(CommandKind::select_body, 0.0, now), CommandResult::done);
         EXPECT_EQ(loop.bodies().active, now - 1);
-        loop.cycles(change % 7 == 0 ? 20 : 500);  // now and then before the old force is gone
+        loop.cycles(change % 7 == 0 ? 20 : 500);  // sometimes before the old force has faded
         EXPECT_EQ(loop.bodies().grips, grips + 1);
         if (change % 7 != 0) {
             EXPECT_LT(loop.least_n, 1e-3) << "change " << change;
@@ -181,12 +181,12 @@ TEST(BodiesScenario, ids_stay_with_their_bodies_and_are_never_reused) {
     ASSERT_EQ(loop.order(CommandKind::remove_body, 0.0, 1), CommandResult::done);
     b = loop.bodies();
     ASSERT_EQ(b.count, 1U);
-    EXPECT_EQ(b.active, 0U);  // it moved up in the list and stays in the hand
+    EXPECT_EQ(b.active, 0U);  // its index changed; it stays in the hand
     EXPECT_EQ(b.body[0].id, 3U);
     EXPECT_EQ(loop.order(CommandKind::remove_body, 0.0, 3), CommandResult::refused_value);  // the last one
     ASSERT_EQ(loop.order(CommandKind::add_body, 0.0, 0, loop.place(0)), CommandResult::done);
     EXPECT_EQ(loop.bodies().body[1].id, 4U);
-    ASSERT_EQ(loop.order(CommandKind::remove_body, 0.0, 3), CommandResult::done);  // the one in the hand
+    ASSERT_EQ(loop.order(CommandKind::remove_body, 0.0, 3), CommandResult::done);  // the body in the hand
     EXPECT_EQ(loop.bodies().active, kNoBody);
     loop.cycles(300);
     EXPECT_EQ(loop.servo_->state().hand[0].step.wrench_world.force_n, Vec3::Zero());
@@ -227,13 +227,13 @@ TEST(BodiesScenario, a_placed_body_is_where_it_was_put_and_the_hand_takes_it_fro
     EXPECT_LT(loop.step_n_max, 0.1);
     ASSERT_EQ(loop.order(CommandKind::place_body, 0.0, 2, there), CommandResult::done);
     EXPECT_EQ(loop.place(1).p_m, there.p_m);
-    EXPECT_GT(loop.servo_->state().hand[0].step.wrench_world.force_n.norm(), 1e-3);  // it goes on
+    EXPECT_GT(loop.servo_->state().hand[0].step.wrench_world.force_n.norm(), 1e-3);  // the force continues
     EXPECT_EQ(loop.bodies().placements, 2U);
 }
 
-// --- models built aside ---
+// --- models built by another thread ---
 
-// A model with options that have to be built: one that can be, and one that fails.
+// A model with two options that require a build: one succeeds, one fails.
 class BuiltAside final : public ForceModel {
 public:
     static constexpr std::uint32_t kFails = kDockingLaplacian;
@@ -276,7 +276,7 @@ private:
     ModelBodies bodies_;
 };
 
-// Cycles and turns of the housekeeping thread, until nothing is being built any more.
+// Runs cycles and housekeeping updates until no build is in progress.
 void settle(Loop& loop, ModelBuilder& builder) {
     for (int i = 0; i < 60000; ++i) {
         builder.poll();
@@ -300,7 +300,7 @@ TEST(BodiesScenario, a_model_built_by_another_thread_continues_from_the_present_
     EXPECT_EQ(loop.bodies().options, static_cast<std::uint32_t>(kDockingSubtraction));
     EXPECT_EQ(loop.place(0).p_m, there.p_m);
     EXPECT_EQ(loop.said(EventCode::model_swapped), 1);
-    // What is ordered while one is being built comes with the next one.
+    // Orders given during a build take effect with the next one.
     ASSERT_EQ(loop.order(CommandKind::set_subtraction, 0.0), CommandResult::done);
     ASSERT_EQ(loop.order(CommandKind::set_clash, 1.0), CommandResult::done);
     settle(loop, builder);

@@ -1,4 +1,4 @@
-// Drilling in the whole loop, in lockstep: what is cut and when, two hands on one bone, pedals, what is published.
+// Drilling in the whole loop, in lockstep: cutting, two hands on one bone, pedals, published topics.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-// A wall of bone some 5 mm away from the hand at rest, and a hand that presses a burr into it.
+// A wall of bone about 5 mm away from the hand at rest, and a hand that presses a burr into it.
 struct DrillScenario {
     BoneBlock block{64, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
     DrillBone bone{block.bricks, block.density, block.revision};
@@ -51,7 +51,7 @@ struct DrillScenario {
 
 TEST(DrillScenario, bone_is_cut_only_while_the_force_is_on) {
     DrillScenario drill(true);
-    drill.loop.cycles(2000);  // the hand is in the bone by then
+    drill.loop.cycles(2000);  // the hand has reached the bone
     EXPECT_EQ(drill.loop.state(), RunState::ready);
     EXPECT_EQ(drill.model.removed_levels(), 0U);
     drill.loop.order(CommandKind::arm);
@@ -163,7 +163,7 @@ struct TwoHands {
     [[nodiscard]] std::uint64_t mass() const {
         return std::accumulate(block.density.begin(), block.density.end(), std::uint64_t{0});
     }
-    // The hands, held back by 30 looks of the lines.
+    // Runs 60 cycles first, until the lines have given their 30 samples; then arms.
     void active() {
         loop.cycles(60);
         loop.active();
@@ -228,7 +228,7 @@ TEST(TwoHandsScenario, a_foot_pedal_drives_the_burr_and_another_one_the_suction)
     t.lines.board().press(kLineBurr | kLineSuction);
     t.loop.cycles(3);
     EXPECT_EQ(t.loop.state(), RunState::active);
-    // A board that nobody can read: pedals up, whatever else it stops.
+    // An unreadable board: both pedals count as released.
     t.lines.inject(LinesFault::unplugged);
     t.loop.cycles(3);
     EXPECT_EQ(t.loop.drill().hand[0].burr_rad_s, 0.0F);

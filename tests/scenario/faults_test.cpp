@@ -1,5 +1,5 @@
-// What may happen to a running controller, and what must happen then. The rows are REALTIME.md's fault table
-// as far as they need no hardware.
+// Faults of a running controller and the required reactions: the rows of REALTIME.md's fault table that need no
+// hardware.
 #include <gtest/gtest.h>
 #include <pwd.h>
 #include <signal.h>
@@ -41,7 +41,7 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
     ASSERT_TRUE(ending) << "it did not end";
     EXPECT_TRUE(ending->clean()) << ending->text() << "\n" << rt.said();
 
-    // The region outlives the controller: its last words can be read at leisure.
+    // The region outlives the controller, so its last topics can be read afterwards.
     std::vector<TraceTopic> cycles;
     TraceTopic t{};
     RingCursor trace;
@@ -58,7 +58,7 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
         if (length(cycles[i].force_world_n) > 0.0) last_force = i;
     EXPECT_LT(last_force + 1, cycles.size()) << "the last cycle still had a force";
     EXPECT_LE(last_force - left_active, 100U);
-    // Where the machine stood still for so long that the device dropped the force, there is nothing to ramp.
+    // If the machine stalled until the device dropped the force, no force remains to ramp out.
     bool dropped = false;
     for (EventTopic e{}; watch.region().events.next(events, e);)
         dropped = dropped || e.code == static_cast<std::uint16_t>(EventCode::device_watchdog);
@@ -98,7 +98,7 @@ TEST(SecondController, is_refused_with_the_name_and_process_of_the_first_which_k
     EXPECT_FALSE(first.child().poll());
 }
 
-// Random bytes that can be no order to disarm: the kind's high byte is set.
+// Random bytes that cannot be a disarm order: the kind's high byte is set.
 CommandTopic random_command(std::mt19937& random) {
     CommandTopic c{};
     auto* const bytes = reinterpret_cast<unsigned char*>(&c);
@@ -107,12 +107,12 @@ CommandTopic random_command(std::mt19937& random) {
     return c;
 }
 
-// An order to bodies that is nearly right: any id, a value or a place that may be possible, or no number.
+// A nearly valid order to bodies: any id, and a value or pose that is valid or not finite.
 CommandTopic random_body_order(std::mt19937& random) {
     constexpr auto kFirst = static_cast<unsigned>(CommandKind::select_body),
                    kLast = static_cast<unsigned>(kLastCommand);
     CommandTopic c{};
-    c.sequence = 1000 + random() % 1000;  // not those of the test's own commands
+    c.sequence = 1000 + random() % 1000;  // distinct from the test's own commands
     c.kind = static_cast<std::uint16_t>(kFirst + random() % (kLast - kFirst + 1));
     c.body = static_cast<std::uint32_t>(random() % 4 == 0 ? random() : random() % 20);
     c.value = random() % 5 == 0 ? std::nan("") : static_cast<double>(random() % 2);
@@ -164,7 +164,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
         for (int i = 0; i < 20; ++i, ++commands) visual.region().commands.push(random_command(random));
         // Known orders with impossible content.
         CommandTopic c{};
-        c.sequence = 1;  // long past: the numbers run backwards
+        c.sequence = 1;  // a past number: the sequence runs backwards
         c.kind = static_cast<std::uint16_t>(CommandKind::set_goal_hz);
         for (const double bad : {std::nan(""), -1.0, HUGE_VAL, 0.0, 1e300}) {
             c.value = bad;
@@ -172,7 +172,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
             ++commands;
         }
         c.kind = static_cast<std::uint16_t>(CommandKind::set_law);
-        std::memset(c.text, 'A', sizeof c.text);  // does not end
+        std::memset(c.text, 'A', sizeof c.text);  // not terminated
         visual.region().commands.push(c);
         ++commands;
         LoadTopic load{};
@@ -190,8 +190,8 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
         EXPECT_EQ(watch.state(), RunState::active);
         EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
     }
-    // And bytes anywhere in the shared memory: counters, sequences, records. The first bytes of the ring are
-    // left as they are, so that no burst of old records is read again as new orders.
+    // Random bytes anywhere in the shared memory: counters, sequences, records. The first bytes of the ring stay
+    // intact, so that old records are not read again as new orders.
     auto* const memory = reinterpret_cast<unsigned char*>(&visual.region().load);
     for (int i = 0; i < 200; ++i) {
         for (std::size_t k = 0; k < sizeof visual.region().load; ++k)
@@ -207,7 +207,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
     std::printf("%d impossible commands and %d loads sent, %llu refusals counted\n", commands, loads,
                 static_cast<unsigned long long>(h.bad_input - refused));
-    // None of its impossible figures were passed on; possible ones are.
+    // Impossible values are not passed on; possible ones are.
     DisplayTopic picture{};
     EXPECT_TRUE(!watch.region().picture.read(picture) || plausible(picture.metrics));
     FramesTopic frames{};
@@ -215,7 +215,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     visual.region().frames.publish(frames);
     EXPECT_TRUE(
         until([&] { return watch.region().picture.read(picture) && picture.metrics.frames == 4321; }));
-    // Good words are still understood.
+    // Valid messages still work.
     EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
     EXPECT_EQ(watch.state(), RunState::ready);
 }
@@ -227,7 +227,7 @@ TEST(HostileVisualProcess, a_ring_with_an_impossible_count_costs_bounded_work_an
     ASSERT_TRUE(watch.attach()) << rt.said();
     Visual visual(rig);
     ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
-    // The count is the ring's first word.
+    // The count is the first 64-bit field of the ring.
     auto* const count = reinterpret_cast<std::atomic<std::uint64_t>*>(&visual.region().commands);
     const std::uint64_t refused = watch.health().bad_input;
     for (const std::uint64_t wild : {~0ULL, 1ULL, 1ULL << 63U, 0ULL, 12345678901ULL, 2ULL}) {
@@ -249,7 +249,7 @@ TEST(SilentVisualProcess, by_default_the_force_continues_and_the_silence_is_repo
     RingCursor events;
     ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
     bool said = false;
-    ASSERT_TRUE(until([&] {  // it hangs: no frame any more
+    ASSERT_TRUE(until([&] {  // it hangs: no more frames
         EventTopic e{};
         while (watch.region().events.next(events, e))
             said = said || e.code == static_cast<std::uint16_t>(EventCode::gui_silent);
@@ -271,7 +271,7 @@ TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_h
     ASSERT_TRUE(until([&] { return watch.state() == RunState::ready; })) << rt.said();
     EXPECT_EQ(watch.health().reason, static_cast<std::uint8_t>(RunReason::gui_silent));
     ASSERT_TRUE(until([&] { return watch.force_n() == 0.0; }));
-    for (int i = 0; i < 100; ++i) {  // it is back, and that alone changes nothing
+    for (int i = 0; i < 100; ++i) {  // its return alone changes nothing
         visual.frame();
         ASSERT_TRUE(watch.cycles_pass(5));
         EXPECT_EQ(watch.state(), RunState::ready);
@@ -324,11 +324,11 @@ TEST(PermissionDenied, a_world_writable_runtime_folder_is_refused_with_its_fix) 
     EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
-// The same programs as a user without any privilege, by setpriv of util-linux.
+// Runs the same programs as an unprivileged user, with setpriv of util-linux.
 class WithoutPrivilege : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (getuid() != 0) return;  // the test itself has none
+        if (getuid() != 0) return;  // the test itself is unprivileged
         const passwd* const nobody = getpwnam("nobody");
         setpriv_ = launch::find_in_path("setpriv");
         if (nobody == nullptr || setpriv_.empty()) GTEST_SKIP() << "root without setpriv or a user nobody";

@@ -1,4 +1,4 @@
-// Stories of the governor in the whole loop: what the visual process says comes in by mailbox, levels go out.
+// The governor in the whole loop: frame reports come in by mailbox, levels are published.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/lockstep.hpp"
@@ -9,7 +9,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-// A visual process whose frames take so long at all of the picture, in proportion below it.
+// A visual process whose frames take frame_s at full detail, and proportionally less at lower levels.
 struct Picture {
     Lockstep& loop;
     double frame_s;
@@ -85,7 +85,7 @@ TEST(GovernorScenario, without_a_display_goal_a_slow_display_keeps_its_level) {
     EXPECT_FLOAT_EQ(picture.level(), 1.0F);
 }
 
-// --- bone: the picture's particles ---
+// --- bone: particles ---
 
 PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[kParticlesPathIndex]; }
 
@@ -112,7 +112,7 @@ TEST(GovernorScenario, particles_fall_with_the_volume_and_exist_on_bone_scenes_a
     EXPECT_NEAR(p.items, 80000.0 * static_cast<double>(p.level), 1.0);
     EXPECT_EQ(p.cost_s, 0.003);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
-    picture.frame_s = 0.006;  // the machine is free again
+    picture.frame_s = 0.006;  // the load has ended
     for (int i = 0; i < 2000; ++i) picture.frame();
     EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
 }
@@ -147,7 +147,7 @@ TEST(GovernorScenario, a_low_force_rate_lowers_particles_to_their_floor_before_t
     EXPECT_TRUE(force_fell);
 }
 
-// --- a slow half that does not get through ---
+// --- a slow update that misses its period ---
 
 TEST(GovernorScenario, a_slow_update_that_falls_behind_lowers_the_display_and_then_its_own_work) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
@@ -158,7 +158,7 @@ TEST(GovernorScenario, a_slow_update_that_falls_behind_lowers_the_display_and_th
     for (int i = 0; i < 20; ++i) picture.frame();
     ASSERT_EQ(picture.level(), 1.0F);
     ASSERT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
-    loop.model_.turn_s = 0.008;  // of four milliseconds
+    loop.model_.turn_s = 0.008;  // of a 4 ms period
     const auto force = [&] { return static_cast<double>(loop.levels().path[kForcePathIndex].level); };
     bool force_fell = false;
     for (int i = 0; i < 2000; ++i) {
@@ -167,7 +167,7 @@ TEST(GovernorScenario, a_slow_update_that_falls_behind_lowers_the_display_and_th
         force_fell = true;
         EXPECT_EQ(picture.level(), loop.levels().path[kDisplayPathIndex].floor);
     }
-    // Nine tenths of a turn's time are used, and the servo itself missed nothing.
+    // The slow update uses nine tenths of its period, and the servo has no overruns.
     EXPECT_TRUE(force_fell);
     EXPECT_LT(loop.model_.slow_update_s(), 0.0041);
     EXPECT_GT(loop.model_.slow_update_s(), 0.003);
@@ -177,7 +177,7 @@ TEST(GovernorScenario, a_slow_update_that_falls_behind_lowers_the_display_and_th
     EXPECT_GT(force(), 0.99);
 }
 
-// --- free running: the rate within a tenth of a second ---
+// --- free running: the rate within 0.1 s ---
 
 struct FreeLoop : Lockstep {
     explicit FreeLoop(Law law) : Lockstep(settings(law)) {
@@ -191,7 +191,7 @@ struct FreeLoop : Lockstep {
         s.watchdogs.timing_latches = false;
         return s;
     }
-    // Fewest and most updates in any tenth of the next seconds.
+    // Fewest and most updates in any 0.1 s of the next seconds.
     std::pair<std::size_t, std::size_t> windows(double seconds) {
         std::vector<Instant> begun;
         const Instant end =
@@ -219,8 +219,8 @@ TEST(GovernorScenario, free_running_steps_recompute_less_before_the_law_can_reac
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_GE(loop.windows(0.25).first, 96U);
     EXPECT_GE(loop.windows(5.0).first, 96U);
-    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the level has
-    // Steps of 0.7 ms at most, less the tenth that a rise leaves free.
+    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // the level has fallen by then
+    // Steps take at most 0.7 ms; a newly chosen level uses at most 90 % of that.
     EXPECT_LT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 / 1.5);
     EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
@@ -250,10 +250,10 @@ TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_sleeps_while_the_di
     EXPECT_LT(picture.level(), 1.0F);
     const auto [least, most] = loop.windows(0.3);
     EXPECT_GE(least, 96U);
-    EXPECT_LE(most, 112U);  // what lacked before the core was fast again is made good
+    EXPECT_LE(most, 112U);  // recovers the deficit from before the core was fast again
     EXPECT_GT(loop.health().rested, 0.3F);
     for (int i = 0; i < 400 && picture.level() < 1.0F; ++i) picture.frame();
-    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law saw that there is time to spare
+    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law detected the spare time
     EXPECT_GE(loop.windows(0.3).first, 200U);
 }
 
@@ -277,7 +277,7 @@ TEST(GovernorScenario, hostile_frame_reports_leave_the_levels_within_their_bound
     }
 }
 
-// A step costs up to 500 us by its level; nothing is displayed. Goal 4 kHz: steps of 175 us at most.
+// A step costs up to 500 us, by its level; no display is attached. Goal 4 kHz: steps of 175 us at most.
 TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
     ServoSettings s;
     s.free_running = true;
@@ -293,7 +293,7 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
-    EXPECT_EQ(lateness.total, 0U);  // without a plan nothing is late
+    EXPECT_EQ(lateness.total, 0U);  // without planned times, nothing is late
 }
 
 TEST(GovernorScenario,
@@ -314,7 +314,7 @@ TEST(GovernorScenario,
     loop.cycles(10000);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     EXPECT_GT(loop.said(EventCode::level_changed), 2);
-    // Each change says why.
+    // Each change gives its reason.
     bool fell = false, rose = false;
     RingCursor cursor;
     for (EventTopic e{}; loop.region_->events.next(cursor, e);) {

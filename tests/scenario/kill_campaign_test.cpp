@@ -1,12 +1,11 @@
-// kill -9 of the controller and of the visual process, in any order, at random instants, many times.
+// Kills (kill -9) controller and visual process in any order at random times, many times over.
 //
-// What must hold   the side that was not killed goes on; both find each other again (a new generation, a
-//                  heartbeat); a controller that starts anew is ready, disarmed, and has not shown a force in
-//                  any cycle since.
+// Required         the surviving side continues; both reconnect (a new generation, a heartbeat); a restarted
+//                  controller is ready, disarmed, and has had zero force in every cycle.
 // Visual process   this program itself, started with --visual: the same link, region and heartbeat as
 //                  tact-gui without a window, so that hundreds of kills take seconds. SIGUSR1 makes it ask
 //                  the controller to arm.
-// Repeats          the order of events comes from a seed; the instants are the machine's.
+// Repeats          the order of events comes from a seed; their times depend on the machine.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -106,7 +105,7 @@ private:
         if (coin()) restart_visual(visual_dies);
         if (controller_dies) {
             start_controller();
-            while (coin(4)) {  // and again, before it is up
+            while (coin(4)) {  // kill it again while it starts
                 pause(40);
                 kill_controller();
                 ++count_.while_starting;
@@ -141,7 +140,7 @@ private:
         }
     }
 
-    // The visual process died: no cycle is lost by it, and the force is not.
+    // The visual process died: no cycle is lost, and the force continues.
     void check_goes_on() {
         ASSERT_TRUE(watch_.cycles_pass(50)) << controller_->said();
         EXPECT_EQ(watch_.state(), RunState::active) << controller_->said();
@@ -150,8 +149,7 @@ private:
         ++count_.went_on;
     }
 
-    // A controller of another generation: from its first cycle on it is ready and without force, and stays
-    // so.
+    // A controller of another generation: ready and without force from its first cycle on.
     void check_new_controller() {
         ASSERT_TRUE(watch_.attach(generation_)) << controller_->said();
         generation_ = watch_.generation();
@@ -173,7 +171,7 @@ private:
         ++count_.came_up_ready;
     }
 
-    // Attached, and its heartbeat is heard.
+    // Attached, with a heartbeat.
     void check_visual() {
         ASSERT_TRUE(until([&] {
             const HealthTopic h = watch_.health();
@@ -186,7 +184,7 @@ private:
 
     void arm() {
         ASSERT_TRUE(until([&] {
-            // Asked anew until it is heard: the process may not have been attached when the first one came.
+            // Repeat the request: the process may not have been attached at the first one.
             if (watch_.state() == RunState::ready) kill(visual_->pid(), SIGUSR1);
             ::usleep(10000);
             return watch_.state() == RunState::active && watch_.force_n() > 0.0;

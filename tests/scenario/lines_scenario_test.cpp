@@ -1,5 +1,5 @@
-// The whole loop with emulated safety lines, in lockstep: zero force in the cycle that sees a stop, latched
-// with its cause, and back by a person alone.
+// The whole loop with emulated safety lines, in lockstep: a stop gives zero force in the cycle that reads it and
+// latches its cause; only a person restores the force.
 #include <gtest/gtest.h>
 
 #include "hal/sim/sim_lines.hpp"
@@ -19,7 +19,7 @@ struct WithLines {
 struct Loop : WithLines, Lockstep {
     Loop() : Lockstep({}, {}, &lines_) {
         model_.stiffness_n_m = 4.0;  // still far from its rest when the stop comes
-        cycles(60);                  // contacts have stood
+        cycles(60);                  // contacts have been closed long enough
     }
     [[nodiscard]] std::uint8_t driven() { return lines_.board().driven(); }
     [[nodiscard]] bool enabled() { return (driven() & kLineEnable) != 0; }
@@ -30,7 +30,7 @@ struct Stop {
     const char* name;
     LinesFault fault;
     RunReason reason;
-    int cycles_until_zero;  // 1: the cycle that sees it
+    int cycles_until_zero;  // 1: the cycle that reads it
 };
 
 class LinesScenario : public testing::TestWithParam<Stop> {};
@@ -54,14 +54,14 @@ TEST_P(LinesScenario, leads_to_zero_force_latched_until_a_person_resets_and_arms
         EXPECT_FALSE(loop.enabled());
     }
 
-    // What stops cannot be reset.
+    // An active stop cannot be reset.
     if (stop.fault != LinesFault::pedal_released && stop.fault != LinesFault::amplifier_off) {
         loop.cycles(100);
         loop.order(CommandKind::reset_fault);
         loop.cycles(2);
         EXPECT_EQ(loop.state(), RunState::fault);
     }
-    // Released alone, nothing happens.
+    // Releasing the stop alone changes nothing.
     loop.lines_.inject(LinesFault::stop_pressed);
     loop.cycles(1000);
     loop.lines_.inject(LinesFault::none);
@@ -82,7 +82,7 @@ TEST_P(LinesScenario, leads_to_zero_force_latched_until_a_person_resets_and_arms
     loop.cycles(3);
     EXPECT_EQ(loop.state(), RunState::active);
     EXPECT_TRUE(loop.enabled());
-    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp from its beginning
+    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp restarts
     loop.cycles(300);
     EXPECT_GT(loop.shown_n(), 0.0);
 }
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Stop{"pedal", LinesFault::pedal_released, RunReason::dead_man, 1},
                     Stop{"read_error", LinesFault::read_error, RunReason::lines_lost, 1},
                     Stop{"unplugged", LinesFault::unplugged, RunReason::lines_lost, 1},
-                    // 100 ms to follow, counted from the first look that differs
+                    // 100 ms to follow, counted from the first sample that differs
                     Stop{"amplifier_off", LinesFault::amplifier_off, RunReason::amplifier_readback, 102}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
@@ -110,7 +110,7 @@ TEST(LinesScenarios, an_emergency_stop_is_a_fault_even_unpowered_and_a_released_
     EXPECT_EQ(loop.result(), CommandResult::refused_state);
     EXPECT_EQ(loop.health().lines, static_cast<std::uint8_t>(LinesShown::stopped));
     EXPECT_EQ(loop.health().lines_reason, static_cast<std::uint8_t>(RunReason::dead_man));
-    // A pedal that is up hides no other fault.
+    // A released pedal does not mask other faults.
     loop.device_.inject(SimFault::unplugged);
     loop.cycles(2);
     EXPECT_EQ(loop.reason(), RunReason::device_lost);
@@ -141,7 +141,7 @@ TEST(LinesScenarios, after_the_pedal_is_pressed_again_arming_suffices) {
 TEST(LinesScenarios, a_stop_that_ended_during_a_servo_stall_still_counts) {
     Loop loop;
     loop.active();
-    // The pump goes on while the servo does not.
+    // The pump continues while the servo stands still.
     LinesSample s;
     Instant now = loop.clock_.now();
     loop.lines_.inject(LinesFault::stop_pressed);

@@ -1,4 +1,4 @@
-// What the loop says of every cycle for recordings: all of it, in order, with the inputs as they came.
+// Topics that the loop publishes for recordings: complete, in order, with unchanged inputs.
 #include <gtest/gtest.h>
 
 #include "ipc/recorder/drain.hpp"
@@ -61,7 +61,7 @@ TEST(RecordScenario, a_step_records_the_device_sample_and_the_force_sent) {
     EXPECT_EQ(h.hand_present, 1);
     EXPECT_EQ(h.deadline_check, 0U);
     EXPECT_EQ(batch.cycles.back().run_state, static_cast<std::uint8_t>(RunState::active));
-    EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake, before and behind the model, end
+    EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake, before and after the model, end
 }
 
 TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {

@@ -1,5 +1,5 @@
-// A recorded run done again in the test's own process: orders of a visual process, models built aside, a fault; and a
-// recording that was changed.
+// Replays a recorded run in the test's process: orders of a visual process, rebuilt models, a fault; and a modified
+// recording.
 #include <gtest/gtest.h>
 
 #include "ipc/record/recording_reader.hpp"
@@ -10,7 +10,7 @@
 namespace tact::scenario {
 namespace {
 
-// Records the rig's session on a thread of its own.
+// Records the rig's session on a separate thread.
 class Recording {
 public:
     explicit Recording(const Rig& rig) : file_(rig.folder() / "run.h5") {
@@ -67,7 +67,7 @@ TEST(ReplayScenario, orders_and_rebuilt_models_replay_in_their_steps) {
         EXPECT_EQ(command(visual, watch, kind, 1.0), CommandResult::done);
         ASSERT_TRUE(watch.cycles_pass(200));
     }
-    // The other density is built aside.
+    // Another thread builds the other density.
     const std::uint32_t all = kDockingClash | kDockingLaplacian;
     ASSERT_TRUE(until([&] {
         visual.frame();
@@ -88,13 +88,13 @@ TEST(ReplayScenario, orders_and_rebuilt_models_replay_in_their_steps) {
     EXPECT_EQ(r.steps, outcome.progress.cycles);
     EXPECT_EQ(r.different, 0U) << words(r);
     EXPECT_GT(r.force_n_most, 0.01);
-    // The region of the replay says what the controller's said at its end.
+    // The replay's region ends with the same content as the controller's.
     BodiesTopic was{}, is{};
     ASSERT_TRUE(watch.region().bodies.read(was));
     ASSERT_TRUE(replay.region()->bodies.read(is));
     EXPECT_EQ(was.options, is.options);
     EXPECT_EQ(std::memcmp(was.body, is.body, sizeof was.body), 0);
-    // A second time, at another hour: only differences of time count.
+    // A second replay at another clock time: only time differences count.
     Replay later({.recording = recording.file(), .scene = {}});
     later.shift_by(std::chrono::hours(5));
     EXPECT_EQ(again(later).different, 0U);

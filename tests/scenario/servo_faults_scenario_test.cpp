@@ -1,5 +1,5 @@
-// Faults of the servo loop: zero force within one cycle of detection, latched, said, and only a person brings it
-// back; and what is no fault, but counted.
+// Faults of the servo loop: zero force within one cycle of detection, latched, reported, and reset by a person alone;
+// and events that are counted without a fault.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/lockstep.hpp"
@@ -45,7 +45,7 @@ TEST_P(FaultScenario, leads_to_zero_force_latched_until_a_person_resets_it) {
     EXPECT_EQ(snapshot.reason, static_cast<std::uint64_t>(f.reason));
     EXPECT_EQ(snapshot.cycle, loop.servo_->state().cycle);
 
-    // Arming is refused, the trouble's end changes nothing.
+    // Arming is refused; the end of the fault's cause changes nothing.
     f.fix(loop);
     loop.order(CommandKind::arm);
     loop.cycles(50);
@@ -59,7 +59,7 @@ TEST_P(FaultScenario, leads_to_zero_force_latched_until_a_person_resets_it) {
     loop.order(CommandKind::arm);
     loop.cycles(3);
     EXPECT_EQ(loop.state(), RunState::active);
-    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp from its beginning
+    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp restarts
     loop.cycles(300);
     EXPECT_GT(loop.shown_n(), 0.0);
 }

@@ -1,4 +1,4 @@
-// Stories of the whole loop: it converges, it is commanded, it is stopped, and it repeats to the bit.
+// The whole loop: convergence, commands, stops, and repeatability to the bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -129,7 +129,7 @@ TEST(ServoScenario, device_samples_their_age_and_the_motor_heat_are_published) {
     EXPECT_LT(cool.hand[0].age_ns_most, 5'000'000);
     EXPECT_FLOAT_EQ(cool.hand[0].heat, 0.0F);
     EXPECT_GT(cool.hand[0].force_n_continuous, 0.0F);
-    EXPECT_EQ(cool.hand[0].winding_c_max, 0.0F);  // the emulated device counts none
+    EXPECT_EQ(cool.hand[0].winding_c_max, 0.0F);  // the emulated device has no winding model
     loop.active();
     loop.cycles(2000);
     const DevicesTopic warm = loop.devices();
@@ -201,7 +201,7 @@ TEST(ServoScenario, a_silent_gui_is_reported_and_the_force_continues_or_ramps_ou
     }
 }
 
-// --- handing a model over ---
+// --- model exchange ---
 
 TEST(ServoScenario, a_new_model_starts_with_zero_force_and_the_old_one_is_returned) {
     int destroyed = 0;
@@ -223,7 +223,7 @@ TEST(ServoScenario, a_new_model_starts_with_zero_force_and_the_old_one_is_return
     loop.cycles(4000);
     EXPECT_NEAR(loop.tool().pos_world_m[1], 0.05, 1e-4);
 
-    // Back again, so that the one on the heap is destroyed here.
+    // Swap back, so that the heap-allocated model is destroyed here.
     std::unique_ptr<ForceModel> back(&loop.model_);
     ASSERT_TRUE(loop.mailbox_.model.offer(back));
     loop.cycles(1);

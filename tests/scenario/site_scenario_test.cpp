@@ -1,4 +1,4 @@
-// Dust in the window is the bone that the controller took, to the level: the servo loop, the region between, the site.
+// The dust in the window equals the removed bone, at any level: servo loop, shared region, drill site effects.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ SceneMeta meta_of_block() {
     return m;
 }
 
-// A wall of bone in a region, as tact-rt has it, and a window that looks on.
+// A wall of bone in a region as in tact-rt, and a window that displays it.
 struct WatchedDrill {
     BoneBlock block{kEdge, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
     OwnedBoneRegion region{head()};
@@ -77,7 +77,7 @@ struct WatchedDrill {
         static_cast<void>(loop->region_->drill.read(t));
         return t;
     }
-    // Of so many milliseconds; few bricks are looked at, so that some wait.
+    // A frame of `ms` milliseconds; it processes few bricks, so that some wait.
     std::size_t frame(int ms) {
         loop->cycles(ms);
         const DrillTopic topic = drill();

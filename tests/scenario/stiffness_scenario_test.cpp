@@ -1,5 +1,5 @@
-// What the hand feels of a field when the host stalls: the delay of a second bounds the stiffness, and the felt
-// force glides there.
+// Stiffness bound while the host stalls: the delay of the last second bounds the stiffness, and the force approaches
+// the bound smoothly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr double kSaysNM = 2000.0;
 
-// As stiff as it says somewhere else; where the hand is, so weak that the force lasts for seconds.
+// Reports a high stiffness, but is weak at the hand, so that the force lasts for seconds.
 class StiffModel final : public ForceModel {
 public:
     [[nodiscard]] KnobSpec knob() const noexcept override { return spring_.knob(); }
@@ -89,7 +89,7 @@ TEST_F(StallScenario, the_force_falls_smoothly_to_the_stable_bound_and_returns_m
     const Felt up = seconds(6, false);
     EXPECT_NEAR(up.scale.back(), 1.0, 0.01);
 
-    // Neither steps: what followed at once would leave out two thirds in one cycle.
+    // Neither steps: without smoothing, one cycle would lose two thirds.
     for (const Felt* felt : {&down, &up})
         for (std::size_t i = 1; i < felt->scale.size(); ++i) {
             ASSERT_LT(std::abs(felt->scale[i] / felt->scale[i - 1] - 1.0), 0.02) << i;

@@ -1,5 +1,5 @@
-// The supervisor on real threads: a servo that stands still loses the enable line while it stands, finds that out
-// once it runs again, and only a person brings the line back. How long the drop takes: tests/bench/supervisor_bench.
+// The supervisor on real threads: a stalled servo loses the enable line during the stall, detects the drop when it
+// continues, and only a person restores the line. Duration of the drop: tests/bench/supervisor_bench.
 #include <gtest/gtest.h>
 
 #include "tests/support/real_loop.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using test::wait_for;
 
-// Longer than a busy host stands still by itself; where it does all the same, that is one drop more.
+// Longer than stalls of a busy host; a longer stall causes one more drop.
 constexpr Duration kSilence = std::chrono::milliseconds(500);
 
 class SupervisorScenario : public testing::TestWithParam<Stand> {};
@@ -26,13 +26,13 @@ TEST_P(SupervisorScenario, a_stalled_servo_loses_the_enable_line_until_a_person_
         before = loop.drops();
         return loop.brought_up();
     }));
-    // The servo has no part in it: it stands until it is let go below.
+    // Independent of the servo, which stands still until it is released below.
     loop.stand(GetParam());
     ASSERT_TRUE(wait_for([&] { return loop.drops() > before && !loop.enabled(); }));
     EXPECT_EQ(loop.drops(), before + 1);
     EXPECT_TRUE(wait_for([&] { return loop.lines().drops == loop.drops(); }));
 
-    // It runs again: fault, cause and counter said, and the line stays low.
+    // It runs again: fault, cause and counter are reported, and the line stays low.
     loop.stand(Stand::none);
     ASSERT_TRUE(wait_for([&] { return loop.state() == RunState::fault; }));
     EXPECT_EQ(loop.health().reason, static_cast<std::uint8_t>(RunReason::supervisor));

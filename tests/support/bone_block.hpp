@@ -15,7 +15,7 @@ struct BoneBlock {
     std::vector<std::uint8_t> density;
     std::vector<std::uint32_t> revision;
 
-    // solid(point in voxels): the share of solid bone there, 0 to 1.
+    // solid(point in voxels): fraction of solid bone at that point, 0 to 1.
     template <class Solid>
     BoneBlock(std::uint32_t edge, double voxel_m, const Solid& solid, int parts = 3) {
         bricks.size = {edge, edge, edge};

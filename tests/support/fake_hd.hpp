@@ -1,4 +1,4 @@
-// A stand-in for the vendor's libHD.so: the same functions, an arm of 0.25 kg in oil, errors on demand.
+// Replacement for the vendor's libHD.so: the same functions, a damped arm of 0.25 kg, errors on demand.
 //
 // Time     lockstep: each tick() is one cycle of the scheduler, a millisecond for the arm; with
 //          `threaded` set before hdStartScheduler a thread of its own makes the cycles
@@ -20,15 +20,15 @@ struct FakeHd {
     const char* model = "Fake Arm";
     unsigned init_error = 0;  // of the next hdInitDevice
     int styles = 2, dof = 3;  // automatic; only force
-    int rate_hz = 1000;       // that it reports; 0: it does not know the question
+    int rate_hz = 1000;       // reported rate; 0: the query is unsupported
     double force_n_max = 3.3;
     bool never_calls = false;         // the scheduler runs nothing
-    std::atomic<bool> always{false};  // the error of raise() stays
+    std::atomic<bool> always{false};  // the error of raise() persists
     std::atomic<bool> needs_update{false}, needs_manual{false};
     std::atomic<bool> no_rotation{false}, not_a_number{false};
     std::atomic<int> inkwell{0}, buttons{0};
     std::atomic<unsigned> updates{0}, inits{0};
-    std::array<std::atomic<double>, 3> force_n{}, torque_mn_m{};  // that the motors show now
+    std::array<std::atomic<double>, 3> force_n{}, torque_mn_m{};  // present output of the motors
     std::array<std::atomic<double>, 3> position_mm{};
     std::atomic<bool> output{false}, ramping{true}, clamping{false}, running{false};
 };

@@ -1,7 +1,7 @@
-// A Falcon made of memory, as PROTOCOL.md has it: converter, loader, firmware, legs, and a hand of 0.25 kg at
-// the grip; and the driver in lockstep with it.
+// A simulated Falcon according to PROTOCOL.md: converter, loader, firmware, legs, and a hand of 0.25 kg at the
+// grip; and the driver in lockstep with it.
 //
-// Time    the board's own; wait() moves it on when nothing has come, so that open() runs without sleeping
+// Time    simulated; wait() advances it when no data has come, so that open() runs without sleeping
 // Faults  members of FalconBoard
 #pragma once
 
@@ -78,7 +78,7 @@ public:
             events_.clear();
             if (!late_bytes_survive) coming_.clear();
         }
-        if (r == falcon::ftdi::kDtrHigh && !dtr_) {  // starts anew, without its marks
+        if (r == falcon::ftdi::kDtrHigh && !dtr_) {  // restarts without homing
             dtr_ = true;
             restart();
         }
@@ -113,7 +113,7 @@ public:
         plugged = true;
         restart();
     }
-    // As a person does it: the grip all the way in.
+    // Pushes the grip all the way in, as a person does to home the device.
     void push_through() noexcept { homed = falcon::kHomedAll; }
     void restart() noexcept {
         runs = awake_ = false;
@@ -123,12 +123,12 @@ public:
         heard_.clear();
         loaded.clear();
     }
-    // Bytes of the line, as if the device had sent them.
+    // Injects bytes as if the device had sent them.
     void say(std::span<const std::byte> bytes, Duration after = std::chrono::microseconds(700)) {
         coming_.push_back({now_ + after, {bytes.begin(), bytes.end()}});
     }
     [[nodiscard]] const Vec3& grip_m() const noexcept { return grip_m_; }
-    // What the motors push with now.
+    // Present force of the motors.
     [[nodiscard]] Vec3 force_n() const noexcept {
         return legs_.force_n(legs_.configuration(grip_m_), shown_);
     }
@@ -251,7 +251,7 @@ private:
     Instant now_ = instant_from_ns(4'294'000'000'000);  // microseconds of 32 bits wrap a second later
 };
 
-// The driver, its pump and the board, one after the other on one thread. Its `now` is the caller's.
+// Driver, pump and board, run in sequence on one thread. The caller supplies `now`.
 class LockstepFalcon final : public HapticDevice {
 public:
     explicit LockstepFalcon(const std::string& firmware = {}) {
@@ -264,7 +264,7 @@ public:
         device_ = std::make_unique<Falcon>(settings, std::move(board));
     }
 
-    // Also lets the person push the grip in.
+    // Includes homing by a person.
     DeviceInfo open() override {
         const DeviceInfo info = open_only();
         board_->push_through();
@@ -304,7 +304,7 @@ public:
     }
     // At most a millisecond without the servo.
     void pass(Duration d) noexcept {
-        // In pieces, as a pump's thread has them, so that its requests fall in step with the servo.
+        // In small steps, as in a pump thread, so that its requests align with the servo.
         Duration left = std::min<Duration>(d, std::chrono::milliseconds(1));
         while (left > Duration{0}) {
             const Duration piece = std::min<Duration>(left, std::chrono::microseconds(250));
@@ -328,7 +328,7 @@ private:
     std::unique_ptr<Falcon> device_;
     bool opened_ = false, matched_ = false;
     Duration offset_{0};
-    std::uint64_t heartbeat_ = 1'000'000;  // not the caller's
+    std::uint64_t heartbeat_ = 1'000'000;  // independent of the caller's
 };
 
 }  // namespace tact::emu

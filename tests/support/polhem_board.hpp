@@ -1,5 +1,5 @@
-// A Haptikfabriken board made of memory: the emulated arm of hal/emu behind 14-byte reports, with the board's
-// own watchdog of half a second that lets the force back by itself.
+// A simulated Haptikfabriken board: the emulated arm of hal/emu behind 14-byte reports, with the board's watchdog
+// of half a second, after which the force returns without a reset.
 #pragma once
 
 #include <algorithm>
@@ -100,7 +100,7 @@ private:
     Instant now_ = instant_from_ns(4'294'000'000'000), told_at_ = now_;
 };
 
-// The driver, its pump and the board, one after the other on one thread. Its `now` is the caller's.
+// Driver, pump and board, run in sequence on one thread. The caller supplies `now`.
 class LockstepPolhem final : public HapticDevice {
 public:
     LockstepPolhem() {
@@ -166,7 +166,7 @@ private:
     std::unique_ptr<PhantomUsb> device_;
     bool opened_ = false, matched_ = false;
     Duration offset_{0};
-    std::uint64_t heartbeat_ = 1'000'000;  // not the caller's
+    std::uint64_t heartbeat_ = 1'000'000;  // independent of the caller's
 };
 
 }  // namespace tact::emu

@@ -1,4 +1,4 @@
-// Does an error's text name all of these?
+// True: an error's text contains all of these.
 #pragma once
 
 #include <initializer_list>

@@ -1,4 +1,4 @@
-// A force model whose answer is known: a spring to a point, with faults and delays on demand.
+// A force model with a known result: a spring to a point, with faults and delays on demand.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ public:
     double stiffness_n_m = 40.0;
     double turn_stiffness_n_m = 0.02;
     bool not_a_number = false;
-    ManualClock* clock = nullptr;  // a step then takes `cost`, at the level
+    ManualClock* clock = nullptr;  // if set, a step takes `cost` x level
     Duration cost{0};
-    bool keeps_sums = false;  // a step with a share of its work takes as much less
-    double turn_s = 0.0;      // of its slow half, at the level; 0: it has none
+    bool keeps_sums = false;  // a step takes time in proportion to its work fraction
+    double turn_s = 0.0;      // slow update at level 1; 0: none
     int* destroyed = nullptr;
     int resets = 0;
 
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept override {
         return static_cast<std::uint32_t>(1000.0F * fidelity + 0.5F);
     }
-    // Of a machine on which all of it takes 300 us, and as if half of it were off by half a newton.
+    // Predicts 300 us at level 1, and an error of half a newton at level 0.5.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept override {
         PathLoad load;
         load.cost_predicted = Duration(static_cast<std::int64_t>(3e5 * static_cast<double>(fidelity)));

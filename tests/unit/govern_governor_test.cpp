@@ -1,4 +1,4 @@
-// The governor: the seed's law to the letter, its order of sacrifice, and what holds for any rates.
+// The governor: the published law, the order in which paths are lowered, and invariants for any input.
 #include "rt/govern/display_watch.hpp"
 #include "rt/govern/governor.hpp"
 
@@ -29,7 +29,7 @@ TEST(SensitusLaw, equals_the_published_equation) {
     EXPECT_DOUBLE_EQ(sensitus_factor(600.0, 1000.0, 0.5, 0.05), 1.0 - 0.5 * (1000.0 - 600.0) / 1000.0);
     // V <- V + s V (r_c - r_g) / r_g
     EXPECT_DOUBLE_EQ(sensitus_factor(1500.0, 1000.0, 0.5, 0.05), 1.0 + 0.5 * (1500.0 - 1000.0) / 1000.0);
-    // Within the tolerance, its edges included, nothing.
+    // No change within the tolerance, edges included.
     EXPECT_DOUBLE_EQ(sensitus_factor(950.0, 1000.0, 0.5, 0.05), 1.0);
     EXPECT_DOUBLE_EQ(sensitus_factor(1050.0, 1000.0, 0.5, 0.05), 1.0);
 }
@@ -87,8 +87,8 @@ TEST(Governor, an_absent_display_keeps_its_level_and_the_force_falls_instead) {
     EXPECT_FLOAT_EQ(governor.level(1), 0.75F);
 }
 
-// The seed's set-up: force loop and picture share a processor, so the rate is what the picture leaves.
-// rate = capacity / (force + picture * V). The rest point is known in closed form.
+// Set-up of the docking paper: force loop and display share a processor.
+// rate = capacity / (force + display * V). The equilibrium is known in closed form.
 TEST(Governor, converges_on_a_shared_processor_to_the_level_where_the_rate_is_the_goal) {
     for (const double gain : {0.1, 0.5, 1.0}) {
         Governor governor =
@@ -112,7 +112,7 @@ TEST(Governor, an_unreachable_goal_ends_at_the_floor_and_a_reachable_one_recover
     for (int i = 0; i < 500; ++i)
         static_cast<void>(governor.step(rate_hz(static_cast<double>(governor.level(0))), kStep));
     EXPECT_FLOAT_EQ(governor.level(0), kMesh.floor);
-    EXPECT_FALSE(governor.step(rate_hz(0.05), kStep));  // clamped: nothing winds up
+    EXPECT_FALSE(governor.step(rate_hz(0.05), kStep));  // clamped: no wind-up
     ASSERT_TRUE(governor.set_goal_hz(800.0));
     EXPECT_TRUE(governor.step(rate_hz(0.05), kStep));
     EXPECT_GT(governor.level(0), kMesh.floor);
@@ -146,7 +146,7 @@ TEST(Governor, any_rates_leave_every_level_between_floor_and_one) {
     EXPECT_TRUE(held);
 }
 
-// The same for the law "elastic", whatever the picture says of itself.
+// The same for the law "elastic", for any frame costs.
 TEST(Governor, any_rates_and_frame_costs_leave_every_level_of_the_elastic_law_between_floor_and_one) {
     const bool held = rc::check([] {
         KnobSpec zero{.path = "z", .floor = 0.0F, .start = 0.5F};
@@ -165,7 +165,7 @@ TEST(Governor, any_rates_and_frame_costs_leave_every_level_of_the_elastic_law_be
                 static_cast<void>(governor.step(1e3 * number(5000), kStep));
             } else {
                 static_cast<void>(governor.update({number(3000), number(3000), number(3000)}));
-                RC_ASSERT(governor.level(1) == force);  // no force is given up for a picture
+                RC_ASSERT(governor.level(1) == force);  // the display goal never lowers the force
             }
             for (const GovernedPath& p : governor.paths())
                 RC_ASSERT(p.level >= p.knob.floor && p.level <= 1.0F);
@@ -176,7 +176,7 @@ TEST(Governor, any_rates_and_frame_costs_leave_every_level_of_the_elastic_law_be
 
 TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
     Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
-    // Half of the picture's cost varies (the prior), and it has half of the core.
+    // Half of the display's cost varies (the prior), and the display uses half of the core.
     for (int i = 0; i < 50; ++i)
         static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
     ASSERT_TRUE(governor.step(900.0, kStep));
@@ -223,7 +223,7 @@ TEST(Governor, without_a_display_goal_slow_frames_change_no_level) {
 
 TEST(RateFilter, detects_a_large_error_at_once_and_a_small_one_after_several_intervals) {
     RateFilter filter;
-    EXPECT_EQ(filter.judge(0.003), RateIs::right);  // nothing seen
+    EXPECT_EQ(filter.judge(0.003), RateIs::right);  // no measurement
     filter.add(900.0, 1000.0);
     EXPECT_EQ(filter.judge(0.003), RateIs::low);
     filter.restart();
@@ -265,7 +265,7 @@ TEST(DisplayWatch, returns_each_frame_that_applied_the_levels_once) {
                   .work_s = 0.01,
                   .cpu_s = 1.0,
                   .drawn = true};
-    EXPECT_FALSE(watch.take(w));  // the first one of a process has nothing before it
+    EXPECT_FALSE(watch.take(w));  // the first frame of a process has no predecessor
     watch.asked(7, t);
     EXPECT_TRUE(watch.pending(t));
     const auto next = [&](std::uint64_t sequence) {
@@ -282,9 +282,9 @@ TEST(DisplayWatch, returns_each_frame_that_applied_the_levels_once) {
     EXPECT_NEAR(look->processor_s, 0.02, 1e-12);
     EXPECT_NEAR(look->period_s, 0.05, 1e-12);
     EXPECT_FALSE(watch.pending(t));
-    EXPECT_FALSE(watch.take(w));  // the same again
+    EXPECT_FALSE(watch.take(w));  // same frame
     watch.asked(9, t);
-    EXPECT_FALSE(watch.pending(t + std::chrono::seconds(1)));  // one that does not answer stops nothing
+    EXPECT_FALSE(watch.pending(t + std::chrono::seconds(1)));  // a silent process blocks nothing
 }
 
 TEST(Governor, the_fixed_law_keeps_the_level_that_a_person_set_at_any_rate) {

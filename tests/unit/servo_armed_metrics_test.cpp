@@ -1,4 +1,4 @@
-// The figures of the armed cycles, against sums made by hand.
+// Metrics of the armed cycles, compared with sums computed by hand.
 #include "rt/servo/armed_metrics.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(ArmedMetrics, the_largest_force_step_is_between_consecutive_armed_cycles) {
     EXPECT_NEAR(m.force_step_n_max(), 0.5, 1e-12);
     m.add({.armed = false}, at_ms(2));
     m.add({.armed = true, .force_world_n = Vec3(9.0, 0.0, 0.0)},
-          at_ms(3));  // armed anew: no change of a force
+          at_ms(3));  // newly armed: no force step
     EXPECT_NEAR(m.force_step_n_max(), 0.5, 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// The stages after the force, each called by itself: publish, govern, close; and how a freely running loop keeps its rate.
+// Stages after the force, each tested alone: publish, govern, close; and rate keeping of a free-running loop.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -36,7 +36,7 @@ TEST(StagePublish, the_tool_is_published_each_cycle_and_health_ten_times_a_secon
     EXPECT_EQ(newest(f.region->devices).hand[0].samples, 1U);
 }
 
-// Counts what it is asked to publish.
+// Counts calls of publish().
 class ShowingModel final : public ForceModel {
 public:
     std::uint64_t shown_at = 0;
@@ -142,7 +142,7 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_on
     for (int i = 0; i < 200; ++i) {
         f.c.budget.fidelity = f.c.governor.level(kForcePathIndex);
         tried.insert(f.c.budget.fidelity);
-        // Five times the prediction of 300 us: 1.5 ms with all of it.
+        // Five times the prediction of 300 us: 1.5 ms at level 1.
         f.c.model_cost = microseconds(static_cast<int>(1500.0F * f.c.budget.fidelity));
         servo::govern(f.c, f.settings, *f.region);
     }
