@@ -163,7 +163,7 @@ struct TwoHands {
     [[nodiscard]] std::uint64_t mass() const {
         return std::accumulate(block.density.begin(), block.density.end(), std::uint64_t{0});
     }
-    // Runs 60 cycles first, until the lines have given their 30 samples; then arms.
+    // Runs 60 cycles first, so that the safety lines permit arming (30 samples).
     void active() {
         loop.cycles(60);
         loop.active();

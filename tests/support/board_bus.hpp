@@ -121,7 +121,7 @@ public:
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
     usb::BusFault finding = usb::BusFault::none;
-    unsigned finds = std::numeric_limits<unsigned>::max();  // the first calls of open() that fail with `finding`
+    unsigned finds = std::numeric_limits<unsigned>::max();  // the first ones fail with `finding`
     std::string detail, usb_serial, last_serial;
     bool plugged = true, out_hangs = false, clears = true;
     unsigned stalls = 0, send_fails = 0, stalls_cleared = 0, opens = 0;
