@@ -1,10 +1,10 @@
-// How measured costs of steps lie about their predictions: speed, spread and interrupts (level_fit.hpp).
+// Distribution of measured step costs about their predictions: speed, spread and interrupts (level_fit.hpp).
 //
-// Speed       streaming median: each sample moves it by kStep towards itself
-// Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %; starts with kPrior samples at kPriorSpread at most,
-//             so one early outlier is no tail
-// Interrupts  decaying histogram of the excess, in octaves of 1 us and above. kChangedRun interrupted samples in a row are none: the
-//             cost has changed, and the speed is their least at once
+// Speed       streaming median of measured / predicted cost: each sample moves it by kStep towards itself
+// Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %. It starts with kPrior samples of at
+//             most kPriorSpread, so one early outlier does not define the tail
+// Interrupts  decaying histogram of the excess cost in octaves from 1 us. kChangedRun interrupted samples in a row
+//             count as a change of cost instead: the speed becomes their smallest ratio at once
 // Thread      servo; constant time
 #pragma once
 
@@ -19,8 +19,8 @@ namespace tact {
 
 class CostSpread {
 public:
-    static constexpr double kTail = 1e-3;        // above the quantile
-    static constexpr double kInterrupted = 1.6;  // times the usual cost, and kInterruptLeast_s above it
+    static constexpr double kTail = 1e-3;        // fraction above the quantile
+    static constexpr double kInterrupted = 1.6;  // times the usual cost and kInterruptLeast_s above it
     static constexpr double kInterruptLeast_s = 5e-6;
 
     void restart() noexcept TACT_RT {
@@ -63,7 +63,7 @@ public:
         }
         return 1.0;
     }
-    // Excess in seconds that a thousandth of the steps exceeds; 0 where fewer are interrupted.
+    // Excess (s) that a fraction kTail of the steps exceeds; 0 where fewer steps are interrupted.
     [[nodiscard]] double interrupt_s() const noexcept TACT_RT {
         double above = 0.0;
         for (std::size_t i = kOctaves; i-- > 0;) {
@@ -75,7 +75,7 @@ public:
 
 private:
     static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kMemory = 16000.0;
-    static constexpr double kLeast = 0.5, kWidth = 0.02;  // of the bins, in ln
+    static constexpr double kLeast = 0.5, kWidth = 0.02;  // smallest ratio; bin width in ln
     static constexpr std::size_t kBins = 72, kOctaves = 16;
 
     static std::size_t bin(double ratio) noexcept TACT_RT {
@@ -95,7 +95,7 @@ private:
     }
 
     double speed_ = 1.0, total_ = 0.0;
-    std::size_t run_ = 0;  // interrupted samples in a row, not counted yet
+    std::size_t run_ = 0;  // interrupted samples in a row, not yet in a histogram
     double run_least_ = 0.0;
     std::array<std::size_t, kChangedRun> run_excess_{};
     std::array<double, kBins> ratio_{};

@@ -8,10 +8,10 @@ namespace tact {
 namespace {
 
 constexpr double kRestQuantile = 0.99, kRestStep = 0.02, kRestLeast_s = 1e-7;
-constexpr std::uint32_t kEvery = 16;  // cycles from one choice to the next
+constexpr std::uint32_t kEvery = 16;  // cycles between choices
 constexpr double kSameError = 1e-12;
-constexpr double kPartLeast = 0.02;  // of the work, below which a cost says little about the whole
-constexpr double kMissMemory = 0.95, kMissesClose = 2.5;  // three misses within some twenty cycles
+constexpr double kPartLeast = 0.02;                       // limits the scaling of a partial cost to the whole
+constexpr double kMissMemory = 0.95, kMissesClose = 2.5;  // three misses within about twenty cycles
 
 }  // namespace
 
@@ -40,8 +40,8 @@ bool LevelFit::calibrating(float& level) const noexcept {
     return true;
 }
 
-// The first dry steps find cold caches: the least of the tries counts. A path that is not in contact yet costs less than it will,
-// so a prediction stays where it is the larger one.
+// The first dry steps run with cold caches, so the smallest measurement counts. A model out of contact costs less than
+// in contact, so a larger prediction stays in force.
 void LevelFit::calibrate(double model_s, double rest_s) noexcept {
     if (tries_ >= kTries * count_) return;
     const std::size_t row = tries_ / kTries;
@@ -119,7 +119,7 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
             reason = LevelReason::cost_high;
         } else if (since_fall_s_ > hold_s_) {
             const std::size_t better = best(limits, kRise, 1e9);
-            // Of equal errors the higher level: it costs nothing that is missed.
+            // With equal errors the higher level wins: its cost fits.
             const double gain = rows_[row_].error - rows_[better].error;
             if (gain > kSameError || (gain >= -kSameError && better > row_)) {
                 row_ = better;

@@ -1,7 +1,6 @@
-// Figures of the armed cycles: deadline misses, published error, changes of the force, and when the level settled.
+// Metrics of armed cycles: deadline misses, published error, largest force step, settling time of the level.
 //
-// Counted   cycles in which force may flow. Everything since the loop started, except the level's history, which starts
-//           anew at each arming.
+// Counted   cycles in which force may flow, since the loop started. The level history restarts at each arming.
 // Thread    servo; constant time, no allocation
 #pragma once
 
@@ -18,10 +17,10 @@
 
 namespace tact {
 
-// When a level was last farther than kBand from the value it has now.
+// Finds when the level last differed by more than kBand from its present value.
 class LevelHistory {
 public:
-    static constexpr double kBand = 0.05;  // of the present level
+    static constexpr double kBand = 0.05;  // relative to the present level
     static constexpr std::size_t kBins = 256;
 
     void start(Instant now) noexcept TACT_RT {
@@ -32,7 +31,7 @@ public:
         now_level_ = level;
         seen_[bin(level)] = now;
     }
-    // Seconds from start(); 0 where the level never left the band.
+    // Settling time (s) after start(); 0: the level never left the band.
     [[nodiscard]] double settled_s() const noexcept TACT_RT {
         Instant last = begun_at_;
         for (std::size_t i = 0; i < kBins; ++i) {
@@ -57,9 +56,9 @@ public:
     struct Cycle {
         bool armed = false;
         bool deadline_missed = false;
-        double level = 1.0;                 // of the haptic path
+        double level = 1.0;                 // level of the haptic path
         double error_n = 0.0;               // published bound
-        Vec3 force_world_n = Vec3::Zero();  // as sent to the first device
+        Vec3 force_world_n = Vec3::Zero();  // sent to the first device
     };
 
     void add(const Cycle& c, Instant now) noexcept TACT_RT {
@@ -82,7 +81,7 @@ public:
         history_.add(c.level, now);
         error_.add(Duration(std::llround(1e9 * std::clamp(c.error_n, 0.0, 4.0))));
     }
-    // Once a second.
+    // Call once a second.
     void second_over() noexcept TACT_RT {
         last_second_share_ = share(second_misses_, second_cycles_);
         second_misses_ = second_cycles_ = 0;
@@ -96,7 +95,7 @@ public:
         return 1e-9 * static_cast<double>(error_.percentile_ns(0.5));
     }
     [[nodiscard]] double force_step_n_max() const noexcept TACT_RT { return force_step_n_max_; }
-    // Seconds after the last arming; negative before the first.
+    // Settling time (s) after the last arming; negative before the first arming.
     [[nodiscard]] double level_settled_s() const noexcept TACT_RT {
         return cycles_ > 0 ? history_.settled_s() : -1.0;
     }

@@ -13,7 +13,7 @@ constexpr float kLevelMaxLeast = 0.05F, kLevelMaxRise = 1.1F;
 LevelFit::Limits limits_of(const CycleState& c, const ServoSettings& settings) noexcept {
     const double goal_s = 1.0 / c.governor.settings().goal_hz;
     return {.period_s = settings.free_running ? goal_s : std::min(to_s(settings.period), goal_s),
-            // A loop of fixed rate has its period for itself; what others take of it shows as lateness.
+            // A loop of fixed rate has the whole period; the load of other programs appears as lateness.
             .budget =
                 settings.free_running ? static_cast<double>(c.governor.paths()[kForcePathIndex].budget) : 1.0,
             .level_max = c.govern.level_max};
@@ -75,7 +75,7 @@ bool fit_level(CycleState& c, const ServoSettings& settings) noexcept {
     const LevelFit::Choice choice = c.govern.fit.add(sample_of(c), limits_of(c, settings));
     const GovernedPath& path = c.governor.paths()[kForcePathIndex];
     float level = choice.level;
-    // A continuous knob rises no faster than is comfortable; a model with steps blends them itself.
+    // A continuous knob rises at its slew rate; a model with discrete steps blends them itself.
     if (path.knob.steps == 0)
         level = std::min(level, path.level + path.knob.slew_per_s * static_cast<float>(to_s(c.dt)));
     const bool moved =

@@ -46,7 +46,7 @@ void govern_anew(CycleState& c, const ServoSettings& settings) noexcept {
     choose_level(c, settings);
 }
 
-// Reports what changed and, where the hand holds another structure, governs it anew.
+// Reports changed bodies. If the hand holds another structure, restarts the governor for it.
 void report_bodies(CycleState& c, const ServoSettings& settings, const ServoIo& io,
                    const ModelBodies& before) noexcept {
     const ForceModel& model = *c.hand[0].model;

@@ -33,7 +33,7 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
 }
 
 void Servo::warm_up() noexcept {
-    // Bounded in time too: a step of 100 000 atoms takes a millisecond.
+    // Also limited in time: a step of 100 000 atoms takes a millisecond.
     constexpr Duration kMax = std::chrono::milliseconds(200);
     const Instant begin = io_.clock.now();
     for (std::uint32_t i = 0; i < settings_.dry_cycles && io_.clock.now() - begin < kMax; ++i) dry_cycle();

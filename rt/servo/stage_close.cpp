@@ -49,7 +49,7 @@ void close(CycleState& c, const ServoSettings& settings, const ServoIo& io) noex
     c.govern.cost += c.cost;
     count_work(c);
     if (settings.free_running) {
-        c.behind = c.cost;  // without a plan, a long cycle is the only way to be late
+        c.behind = c.cost;  // without a planned time, only a long cycle is late
     } else {
         c.behind = end - c.planned - settings.period;
         c.overran = c.pacer.ended(end);

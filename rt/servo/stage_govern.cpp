@@ -11,7 +11,7 @@ namespace tact::servo {
 
 namespace {
 
-// The levels as they are, to see which ones change.
+// Copy of all levels, to detect changes.
 using Levels = std::array<float, Governor::kPathsMax>;
 
 Levels levels_of(const Governor& governor) noexcept {
@@ -48,8 +48,8 @@ bool sample_display(CycleState& c) noexcept {
     return sample && c.governor.update(*sample);
 }
 
-// A slow update that takes longer than its period falls behind the hand, and with it what the force is computed on: to
-// the law that is a rate too low, in proportion. From kSlowUpdateFraction of a period on no level rises any more.
+// A slow update that takes longer than kSlowUpdateFraction of its period makes the force's data lag the hand. The law
+// then gets a proportionally lower rate, so levels stop rising and then fall.
 double rate_kept_up(const CycleState& c, double rate_hz) noexcept {
     const double slow_update_s = c.hand[0].model->slow_update_s();
     if (!(slow_update_s > 0.0)) return rate_hz;
@@ -57,13 +57,12 @@ double rate_kept_up(const CycleState& c, double rate_hz) noexcept {
                                  slow_update_s);
 }
 
-// A loop of fixed rate never shows more than its rate. The law needs to know whether there is time to spare: the rate
-// that the cycles of this interval would have allowed. It is cut at a tenth above the goal, so that levels come back
-// by a few percent a step and not in one leap.
-// A freely running loop that is held near its goal shows little else: the law needs the rate that whole steps without
-// rests would have made of the same time. Work is counted, not time: a step that lost its processor in the middle would
-// weigh too much. Dips that were lifted and peaks that were cut even out, so the mean of what the law gets is at the
-// goal where the mean rate is.
+// Rate with which the law can detect spare time.
+// Fixed rate: the measured rate never exceeds the loop's rate, so the law gets the rate that the cost of the cycles
+// would have allowed, at most 1.1 times the goal, so that levels return by a few percent per step.
+// Free running: rate_hold keeps the measured rate near the goal, so the law gets the rate that whole steps without
+// sleep would have reached. It counts work instead of time, because a preempted step would weigh too much.
+// Recovered deficits and sleep cancel, so the law's mean rate is at the goal when the mean rate is.
 double rate_for_law(const CycleState& c, const ServoSettings& settings, Duration interval) noexcept {
     const GovernCycle& g = c.govern;
     const double measured_hz = static_cast<double>(g.cycles) / std::max(to_s(interval), 1e-9);
@@ -117,7 +116,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
         report_levels(c, settings, region, before, true);
         return start_interval(c, c.now);
     }
-    // A measurement from before the display applied the levels tells nothing about them.
+    // Rates measured before the display applies the levels do not describe them.
     if (pending && c.governor.settings().law == Law::elastic) {
         if (!g.display.pending(c.now)) start_interval(c, c.now);
         return;

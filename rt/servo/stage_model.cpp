@@ -28,7 +28,7 @@ ToolDrive drive_of(const CycleState& c, const HandCycle& h, const ServoSettings&
 
 void step_models(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     const Instant begin = timestamp(c, io.clock);
-    // No hand is on the device before the start, and the cost of whole steps is measured there.
+    // Dry cycles have no deadline: they measure the cost of whole steps, and no hand is on the device.
     const bool limited = settings.model_deadline && !c.dry;
     const Instant end = limited ? begin + settings.model_max : Instant::max();
     c.budget = {.fidelity = io.script != nullptr ? io.script->level : c.governor.level(kForcePathIndex),

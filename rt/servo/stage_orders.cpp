@@ -14,7 +14,7 @@ bool concerns_state(CommandKind kind) noexcept {
     return kind == CommandKind::arm || kind == CommandKind::disarm || kind == CommandKind::reset_fault;
 }
 
-// Of the levels.
+// Applies an order that sets law, goal or level.
 bool order_governor(CycleState& c, const ServoSettings& settings, const ServoOrder& order) noexcept {
     switch (static_cast<CommandKind>(order.kind)) {
         case CommandKind::set_law:

@@ -10,7 +10,7 @@ namespace tact::servo {
 
 namespace {
 
-// The topic and the models number the same; neither knows the other.
+// The topic and the models use the same constants without including each other.
 static_assert(ModelBodies::kMax == kBodiesMax && ModelBodies::kNone == kNoBody &&
               ModelBodies::kFixed == kBodyFixed);
 

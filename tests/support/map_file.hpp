@@ -1,4 +1,4 @@
-// A density grid as the bytes of a map file, so that tests and experiments can give tact-prep what a user gives it.
+// Writes a density grid in the format of a map file, as input of tact-prep in tests and experiments.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tact {
 
-// Mode 2 (float), as MRC 2014 has it.
+// Mode 2 (float) of MRC 2014.
 inline std::string map_file_bytes(const DensityGrid& grid) {
     std::array<std::int32_t, 256> header{};
     const auto put_float = [&header](std::size_t word, double value) {

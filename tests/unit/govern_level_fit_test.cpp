@@ -1,4 +1,4 @@
-// The level of a haptic path: least error that fits, whole costs, misses, interrupts, and no hunting.
+// Choice of the haptic level: smallest error that fits, whole costs, misses, interrupts, no hunting.
 #include "rt/govern/level_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ LevelFit with(const Rows& rows) {
     return fit;
 }
 
-// A loop whose steps cost what `cost_us` says of a row; a step ends at the deadline and has then done a part of its work.
+// A loop whose steps cost `cost_us` of their row. The deadline ends a step, which has then done a part of its work.
 class Loop {
 public:
     Loop(LevelFit& fit, double period_us, double other_us = 10.0)
@@ -85,7 +85,7 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
                             .error = error(random)});
         LevelFit fit = with(rows);
         const float chosen = fit.choose({.period_s = 1e-3});
-        // Before any cycle the spread is its prior: the bin of 1.15 ends at 1.1582. A rise leaves a tenth of the limit free.
+        // The spread starts at its prior, whose bin of 1.15 ends at 1.1582. A new row uses at most 90 % of the limit.
         const double most_s = 0.9 * 0.7e-3 / 1.1582;
         double best = 1e9;
         float wanted = -1.0F;
@@ -102,7 +102,7 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
     EXPECT_GT(compared, 300);
 }
 
-TEST(LevelFit, a_dearer_row_with_a_larger_error_is_never_chosen) {
+TEST(LevelFit, a_costlier_row_with_a_larger_error_is_never_chosen) {
     // A blend of two levels costs both and lies between their errors.
     LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {0.5F, 250 * kUs, 0.5}, {1.0F, 200 * kUs, 0.1}});
     EXPECT_EQ(fit.choose({.period_s = 1e-3}), 1.0F);
@@ -135,7 +135,7 @@ TEST(LevelFit, the_tail_of_the_cycle_stays_within_seven_tenths_of_the_period_at_
         EXPECT_LE(loop.p999_us(10000), 0.7 * period_us * 1.02) << period_us;
         EXPECT_EQ(loop.misses, 0) << period_us;
         EXPECT_LE(loop.changes, 2) << period_us;
-        // And no lower than need be: the next row would not fit.
+        // No lower than necessary: the next row would not fit.
         EXPECT_GT(2.0 * loop.p999_us(10000), 0.9 * 0.7 * period_us) << period_us;
     }
 }
@@ -149,7 +149,7 @@ TEST(LevelFit, a_step_cut_by_its_deadline_counts_as_the_whole_one) {
     EXPECT_LE(loop.p999_us(1000), 700.0);
     const int before = loop.misses;
     loop.run(20000, [](std::size_t row) { return 4.0 * 20.0 * std::exp2(static_cast<double>(row)); });
-    EXPECT_EQ(loop.misses, before);  // and it does not climb back into the deadline
+    EXPECT_EQ(loop.misses, before);  // the level does not rise back into the deadline
 }
 
 TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do) {
@@ -216,7 +216,7 @@ TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {
     EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // nothing fits: the floor
 }
 
-TEST(LevelFit, rows_that_are_no_rows_are_left_out) {
+TEST(LevelFit, invalid_rows_are_ignored) {
     LevelFit fit;
     EXPECT_FALSE(fit.set_rows({}));
     EXPECT_EQ(fit.add({.level = 0.4F}, {}).level, 0.4F);

@@ -1,4 +1,4 @@
-// The stages of a cycle up to the model, each called by itself: wake, orders, lines, sense, pose.
+// Stages before the model, each tested alone: wake, orders, lines, sense, pose.
 #include <gtest/gtest.h>
 
 #include "rt/servo/stage_lines.hpp"
@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_kept) {
+TEST(StageWake, a_cycle_begins_at_its_planned_time_with_one_clock_reading) {
     CycleFixture f;
     const Instant planned = f.c.pacer.planned() + milliseconds(1);
     f.c.pacer.restart(planned);
@@ -23,17 +23,17 @@ TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_ke
     EXPECT_EQ(f.c.lateness, Duration{0});
     EXPECT_EQ(f.c.cycle, 1U);
     EXPECT_EQ(f.c.step, 1U);
-    EXPECT_EQ(f.c.dt, Duration{0});  // of the first one
+    EXPECT_EQ(f.c.dt, Duration{0});  // first cycle
     ASSERT_EQ(f.c.timestamps, 1U);
     EXPECT_EQ(f.c.timestamp[0], planned);
 }
 
-TEST(StageWake, a_late_cycle_knows_by_how_much_and_a_dry_one_is_never_late) {
+TEST(StageWake, a_late_cycle_measures_its_lateness_and_a_dry_one_is_never_late) {
     CycleFixture f;
     servo::wake(f.c, f.settings, f.clock);
     f.clock.advance(microseconds(1300));
     servo::wake(f.c, f.settings, f.clock);
-    EXPECT_EQ(f.c.lateness, microseconds(1300));  // its instant has not moved on
+    EXPECT_EQ(f.c.lateness, microseconds(1300));  // the planned time is unchanged
     EXPECT_EQ(f.c.dt, microseconds(1300));
     f.c.dry = true;
     servo::wake(f.c, f.settings, f.clock);
@@ -102,7 +102,7 @@ TEST(StageOrders, a_visual_process_that_falls_silent_is_reported_once_and_ramps_
 
 TEST(StageLines, a_stop_bars_arming_and_old_samples_are_lost_lines) {
     CycleFixture f;
-    servo::check_lines(f.c, f.settings, f.io);  // none are fitted
+    servo::check_lines(f.c, f.settings, f.io);  // no safety lines
     EXPECT_EQ(f.c.lines.stops, RunReason::none);
     f.fit_lines();
     servo::check_lines(f.c, f.settings, f.io);
@@ -152,7 +152,7 @@ TEST(StageLines, arming_re_arms_and_the_outputs_follow_the_state) {
     EXPECT_EQ(f.lines.command.heartbeat, 3U);
 }
 
-TEST(StageLines, a_drop_by_the_supervisor_is_seen_once_and_recorded) {
+TEST(StageLines, a_drop_by_the_supervisor_is_handled_once_and_recorded) {
     CycleFixture f;
     f.mailbox.pulse.drops.store(1);
     EXPECT_TRUE(servo::supervisor_dropped(f.c, f.io));

@@ -1,4 +1,4 @@
-// The stages after the force, each called by itself: publish, govern, close; and how a freely running loop keeps its rate.
+// Stages after the force, each tested alone: publish, govern, close; and rate keeping of a free-running loop.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -36,7 +36,7 @@ TEST(StagePublish, the_tool_is_published_each_cycle_and_health_ten_times_a_secon
     EXPECT_EQ(newest(f.region->devices).hand[0].samples, 1U);
 }
 
-// Counts what it is asked to publish.
+// Counts calls of publish().
 class ShowingModel final : public ForceModel {
 public:
     std::uint64_t shown_at = 0;
@@ -63,7 +63,7 @@ TEST(StagePublish, a_model_publishes_its_own_topic) {
     EXPECT_EQ(model.force_n, 2.0);
 }
 
-TEST(PublishLevels, a_visual_path_shows_what_the_report_has_of_it) {
+TEST(PublishLevels, a_visual_path_publishes_items_and_cost_of_the_report) {
     CycleFixture f;
     f.c.housekeeping.gui_vertices_max = 1000;
     f.c.housekeeping.gui_busy_s = 0.004;
@@ -99,7 +99,7 @@ TEST(StageGovern,
     EXPECT_TRUE(f.reported(EventCode::level_changed));
 }
 
-TEST(StageGovern, steps_that_cost_more_than_fits_lower_the_level_at_once_and_say_why) {
+TEST(StageGovern, steps_that_cost_too_much_lower_the_level_at_once_with_the_reason) {
     CycleFixture f;
     servo::make_level_rows(f.c);
     servo::choose_level(f.c, f.settings);
@@ -142,7 +142,7 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_on
     for (int i = 0; i < 200; ++i) {
         f.c.budget.fidelity = f.c.governor.level(kForcePathIndex);
         tried.insert(f.c.budget.fidelity);
-        // Five times the prediction of 300 us: 1.5 ms with all of it.
+        // Five times the prediction of 300 us: 1.5 ms at level 1.
         f.c.model_cost = microseconds(static_cast<int>(1500.0F * f.c.budget.fidelity));
         servo::govern(f.c, f.settings, *f.region);
     }
@@ -153,7 +153,7 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_on
     EXPECT_GT(1.5 * static_cast<double>(f.c.governor.level(kForcePathIndex)), 0.45);
 }
 
-TEST(StageGovern, dry_cycles_count_and_ask_for_nothing) {
+TEST(StageGovern, dry_cycles_count_and_publish_no_levels) {
     CycleFixture f;
     f.c.dry = true;
     f.c.now += milliseconds(500);
@@ -217,7 +217,7 @@ TEST(Record, the_start_names_the_devices) {
     EXPECT_STREQ(t.device[0].name, "stub");
 }
 
-TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
+TEST(RateKeeping, a_loop_of_fixed_rate_recomputes_all_work_and_never_sleeps) {
     CycleFixture f;
     EXPECT_EQ(servo::work_fraction(f.c, f.settings), 1.0);
     const Instant before = f.clock.now();
@@ -225,7 +225,7 @@ TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
     EXPECT_EQ(f.c.timestamps, 1U);
 }
 
-TEST(RateKeeping, a_free_loop_behind_its_goal_keeps_part_of_its_sums) {
+TEST(RateKeeping, a_free_running_loop_behind_its_goal_reuses_part_of_its_sums) {
     ServoSettings settings;
     settings.free_running = true;
     settings.governor.law = Law::elastic;

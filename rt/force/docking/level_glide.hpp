@@ -1,9 +1,9 @@
-// Lets a level jump without a step in the force: the difference at the jump stays as an offset that decays.
+// Prevents a step of the force when the level jumps: the difference becomes an offset that decays.
 //
-// Offset    wrench shown before the jump less the new level's wrench. Its force is at most the sum of both levels' error bounds, which
-//           is all that two levels at one place can differ by; what goes beyond it is motion and passes through.
-// Decay     exponential, kTau_s. While it lasts the force is not the derivative of an energy; what remains of the offset is part of
-//           the published error.
+// Offset    wrench before the jump minus the new level's wrench. Its force is limited to the sum of both levels' error
+//           bounds, the largest difference of two levels at one pose; any excess is due to motion and stays.
+// Decay     exponential, time constant kTau_s. Meanwhile the force is not the derivative of an energy; the remaining
+//           offset is part of the published error.
 // Thread    servo; constant time
 #pragma once
 
@@ -19,10 +19,10 @@ class LevelGlide {
 public:
     static constexpr double kTau_s = 0.03;
 
-    // Another body, density or grip: the next wrench follows no earlier one.
+    // Call for another body, map or grip: the next wrench has no predecessor.
     void restart() noexcept TACT_RT { *this = {}; }
 
-    // jumped: this wrench is of another level than the one before. Changes wrench and error to what is shown.
+    // jumped: the level differs from that of the previous wrench. Adds the offset to wrench and error.
     void apply(bool jumped, double step_s, Wrench& wrench, double& error_n) noexcept TACT_RT {
         const double keep = std::exp(-std::clamp(step_s, 0.0, 1.0) / kTau_s);
         offset_.force_n *= keep;
