@@ -63,7 +63,7 @@ double LatenessBars::edge_ns(std::size_t bar) {
 }
 
 LatenessBars::LatenessBars(const LatenessWindow::Counts& counts) {
-    // Four of the 16 buckets of an octave make a bar: their edges are linear within it, near enough to the bar's.
+    // Four of an octave's 16 buckets make a bar. Bucket edges are linear within an octave, close enough to the bar's.
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] == 0) continue;
         const double ns = static_cast<double>(DurationHistogram::upper_ns(i));

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kBenchStep_s = 0.01;
 constexpr double kBenchPlenty_s = 10.0;
-constexpr std::uint32_t kBenchNamed = 100000;  // whose keys also stand without a number
+constexpr std::uint32_t kBenchNamed = 100000;  // its keys also stand without a number
 
-// Most of what there is lies where it fell.
+// Most particles rest where they fell.
 class BenchSite {
 public:
     explicit BenchSite(std::uint32_t most)
@@ -37,7 +37,7 @@ private:
                 for (std::uint32_t x = 0; x < 256; ++x) density_[bricks_.voxel(x, y, z)] = 200;
         return density_;
     }
-    // The next hundredth.
+    // Adds the next hundredth.
     void come() {
         std::size_t left = most_ / 100;
         for (std::size_t misses = 0; left > 0 && misses < 1000 && particles_.all().size() < most_;) {
@@ -53,7 +53,7 @@ private:
 
     std::uint32_t most_;
     double layers_ =
-        std::max(6.0, 6.0 * most_ / kBenchNamed);  // where they come, so that there is room for all
+        std::max(6.0, 6.0 * most_ / kBenchNamed);  // layers in which they appear, with room for all
     BoneBricks bricks_{.size = {256, 128, 128}, .voxel_m = 3e-4};
     std::vector<std::uint8_t> density_;
     Particles particles_;

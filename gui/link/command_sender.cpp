@@ -42,7 +42,7 @@ void CommandSender::update(const HealthTopic& health, std::int64_t now_ns) {
 void CommandSender::forget() {
     if (stage_ == Stage::sent || stage_ == Stage::unanswered) {
         stage_ = Stage::unanswered;
-        text_ = std::string(command_kind_text(kind_)) + ": the controller went before it answered";
+        text_ = std::string(command_kind_text(kind_)) + ": the controller ended before it answered";
     }
     if (stage_ != Stage::unanswered) stage_ = Stage::none;
 }

@@ -1,6 +1,6 @@
 // Log-linear histogram of durations: constant-time insert, 6 % bucket width, no allocation.
 //
-// Range   0 to about 4.3 s; what is longer counts in the last bucket. 32 octaves of 16 buckets, in ns.
+// Range   0 to about 4.3 s; longer durations count in the last bucket. 32 octaves of 16 buckets, in ns.
 // Thread  one writer. Copies of counts may be read elsewhere (ipc/topics/lateness.hpp).
 #pragma once
 
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] std::uint64_t percentile_ns(double p) const noexcept {
         return percentile_ns(counts_.data(), total_, max_ns_, p);
     }
-    // The same over counts that came from somewhere else; p in [0, 1].
+    // The same for external counts; p in [0, 1].
     static std::uint64_t percentile_ns(const std::uint64_t* counts, std::uint64_t total, std::uint64_t max_ns,
                                        double p) noexcept {
         if (total == 0) return 0;

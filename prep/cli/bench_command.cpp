@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kRuns = 3;  // the fastest counts
 
-// Of this process, so that others on the machine matter less.
+// CPU time of this process, to reduce the effect of other load.
 double processor_s() {
     std::timespec now{};
     ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -23,6 +23,9 @@
 
 namespace tact {
 
+// Of the period: the default deadline of the model's step, and the largest one that leaves time for the rest of a cycle.
+inline constexpr double kModelShare = 0.75, kModelShareMost = 0.9;
+
 struct RtConfig {
     struct Servo {
         double period_us = 1000.0;
@@ -30,7 +33,7 @@ struct RtConfig {
         double spin_us = 100.0;  // busy-waiting before a cycle; hides the kernel's wake-up latency
         std::int64_t core = -1;  // -1: the last isolated core, or with FIFO the last core; -2: not pinned
         std::int64_t priority = kServoPriority;  // FIFO; 0: ordinary scheduling
-        double model_us_max = 600.0;
+        double model_us_max = 0.0;               // deadline of the model's step; 0: kModelShare of the period
         bool lock_memory = true;
     } servo;
     struct Device {

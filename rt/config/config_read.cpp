@@ -122,6 +122,13 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
             "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
             "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
     }
+    const double model_us_most = kModelShareMost * config.servo.period_us;
+    if (!config.servo.free_running && config.servo.model_us_max > model_us_most) {
+        errors.emplace_back(where, "servo.model_us_max",
+                            number_text(config.servo.model_us_max) + " us do not fit the period of " +
+                                number_text(config.servo.period_us) + " us",
+                            "at most " + number_text(model_us_most) + ", or 0 to follow the period");
+    }
     check_pedals(config, where, errors);
     const auto drivers = device_drivers();
     const bool real = std::any_of(drivers.begin(), drivers.end(), [&](const DeviceEntry& d) {

@@ -37,6 +37,7 @@ constexpr double kWorthwhile = 0.1;
 // A level is a factor: below this one it would need many steps to come back, and nothing is cheaper there.
 constexpr double kLeastLevel = 1e-3;
 constexpr double kShareLeast = 0.02, kShareMost = 0.9;
+constexpr double kBudgetLeast = 0.05;  // of a fitted path
 
 bool possible(const KnobSpec& knob) noexcept {
     return knob.floor >= 0.0F && knob.floor <= 1.0F && knob.start >= knob.floor && knob.start <= 1.0F &&
@@ -82,6 +83,7 @@ bool Governor::apply_requests(double dt_s) noexcept {
 bool Governor::say_hold() noexcept {
     bool changed = false;
     for (std::size_t i = 0; i < count_; ++i) {
+        if (paths_[i].fitted) continue;
         changed = changed || paths_[i].reason != LevelReason::hold;
         paths_[i].reason = LevelReason::hold;
     }
@@ -193,15 +195,17 @@ bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
         if (!p.present || p.knob.haptic != haptic) continue;
-        const double before = static_cast<double>(p.level);
+        float& value = p.fitted ? p.budget : p.level;
+        const double floor = p.fitted ? kBudgetLeast : static_cast<double>(p.knob.floor);
+        const double before = static_cast<double>(value);
         const double base = factor > 1.0 ? std::max(before, kLeastLevel) : before;
-        const double least = std::max(static_cast<double>(p.knob.floor), std::min(before, kLeastLevel));
+        const double least = std::max(floor, std::min(before, kLeastLevel));
         double wanted = std::clamp(base * factor, least, 1.0);
         if (factor > 1.0) wanted = std::min(wanted, before + static_cast<double>(p.knob.slew_per_s) * dt_s);
         const auto level = static_cast<float>(wanted);
-        moved = moved || level != p.level;
-        p.reason = level == p.level ? stuck : up_or_down;
-        p.level = level;
+        moved = moved || level != value;
+        if (!p.fitted) p.reason = level == value ? stuck : up_or_down;
+        value = level;
     }
     if (moved && !haptic) frame_s_ = 0.0;
     return moved;
@@ -221,6 +225,22 @@ bool Governor::set_level(std::size_t path, double level) noexcept {
     if (settings_.law != Law::fixed) set_law(Law::fixed);
     p.requested = static_cast<float>(level);
     return true;
+}
+
+bool Governor::set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept {
+    if (path >= count_ || settings_.law == Law::fixed || !(level >= 0.0F && level <= 1.0F)) return false;
+    GovernedPath& p = paths_[path];
+    p.fitted = true;
+    p.reason = reason;
+    const bool changed = level != p.level;
+    p.level = std::max(level, p.knob.floor);
+    return changed;
+}
+
+bool Governor::visual_can_give() const noexcept {
+    return std::any_of(
+        paths_.begin(), paths_.begin() + static_cast<std::ptrdiff_t>(count_),
+        [](const GovernedPath& p) { return p.present && !p.knob.haptic && p.level > p.knob.floor; });
 }
 
 // The law "fixed" starts with the levels as they are, so that nothing jumps.

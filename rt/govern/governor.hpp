@@ -38,6 +38,9 @@ struct GovernedPath {
     float level = 1.0F;
     float requested = 1.0F;  // by a person, for the law "fixed"
     bool present = true;     // an absent path (no GUI attached) keeps its level and takes no part
+    // A fitted path has its level from level_fit.hpp. The laws move its budget, by the factors and in the order of levels.
+    bool fitted = false;
+    float budget = 1.0F;
     LevelReason reason = LevelReason::start;
 };
 
@@ -68,10 +71,14 @@ public:
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate
     bool set_level(std::size_t path, double level) noexcept TACT_RT;  // turns the law to "fixed"
     void set_law(Law law) noexcept TACT_RT;
+    // The path becomes a fitted one. True: the level is another than before. The law "fixed" leaves it to the person.
+    bool set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept TACT_RT;
     void set_present(std::size_t path, bool present) noexcept TACT_RT;
 
     [[nodiscard]] std::span<const GovernedPath> paths() const noexcept { return {paths_.data(), count_}; }
     [[nodiscard]] float level(std::size_t path) const noexcept { return paths_[path].level; }
+    // A visual path that could be lowered.
+    [[nodiscard]] bool visual_can_give() const noexcept;
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:

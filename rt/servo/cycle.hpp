@@ -17,11 +17,13 @@
 #include "rt/force/force_model.hpp"
 #include "rt/govern/display_watch.hpp"
 #include "rt/govern/governor.hpp"
+#include "rt/govern/level_fit.hpp"
 #include "rt/govern/rate_hold.hpp"
 #include "rt/safety/output_chain.hpp"
 #include "rt/safety/smooth_gain.hpp"
 #include "rt/safety/state_machine.hpp"
 #include "rt/safety/watchdogs.hpp"
+#include "rt/servo/armed_metrics.hpp"
 #include "rt/servo/mailbox.hpp"
 #include "rt/servo/servo_settings.hpp"
 #include "rt/servo/statistics.hpp"
@@ -82,6 +84,7 @@ struct ReportCycle {
     std::uint64_t page_faults = 0;
     std::uint32_t schedule_flags = 0;
     std::uint64_t levels_sequence = 0;
+    std::array<std::int64_t, kPathsMax> level_changed_at_ns{};
     std::array<std::uint32_t, kPathsMax> items_max{};  // of the paths, as last published
 };
 
@@ -96,6 +99,9 @@ struct GovernCycle {
     DisplayWatch display;
     RateHold hold;                                   // beneath the governor, where the loop runs freely
     double whole_model_s = 0.0, whole_cost_s = 0.0;  // of steps that did all of their work, lately
+    LevelFit fit;                                    // of the haptic path
+    double other_s = 0.0;                            // of the cycle before: its cost without the models
+    float level_max = 1.0F;                          // up to which the slow update keeps its period
 };
 
 // Stable at the delay of the last second.
@@ -119,7 +125,7 @@ struct CycleState {
     Budget budget{};
     double recomputed_fraction = 1.0;  // of the models' work; a mean over the hands
     bool overran = false;              // the cycle before this one
-    std::uint64_t out_of_time = 0;
+    bool deadline_missed = false;      // the models ended after their deadline, in this cycle
     HousekeepingReport housekeeping{};
     ServoOrder order{};  // of this cycle that concerns the state; kind none: nothing asked
     RunEvents events;
@@ -135,6 +141,7 @@ struct CycleState {
     Watchdogs watchdogs;
     Governor governor;
     ServoStatistics statistics;
+    ArmedMetrics armed;
     std::uint32_t hands = 0;
     HandCycle hand[kHandsMax];
 };

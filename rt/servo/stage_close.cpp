@@ -42,6 +42,7 @@ void note_overrun(CycleState& c, Instant end, RtRegion& region) noexcept {
 void close(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     const Instant end = timestamp(c, io.clock);
     c.cost = end - c.now;
+    c.govern.other_s = to_s(c.cost - c.model_cost);
     publish_cycle(c, io.region);
     if (c.dry) return;
     c.statistics.spent(c.cost);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "rt/servo/fit_level.hpp"
 #include "rt/servo/publish_levels.hpp"
 #include "rt/servo/report.hpp"
 
@@ -10,10 +11,15 @@ namespace tact::servo {
 
 namespace {
 
-constexpr double kSlowUpdateFraction = 0.9;
-
 // The levels as they are, to see which ones change.
 using Levels = std::array<float, Governor::kPathsMax>;
+
+Levels levels_of(const Governor& governor) noexcept {
+    Levels levels{};
+    const auto paths = governor.paths();
+    for (std::size_t i = 0; i < paths.size(); ++i) levels[i] = paths[i].level;
+    return levels;
+}
 
 void report_levels(CycleState& c, const ServoSettings& settings, RtRegion& region, const Levels& before,
                    bool changed) noexcept {
@@ -21,6 +27,7 @@ void report_levels(CycleState& c, const ServoSettings& settings, RtRegion& regio
     if (changed) ++c.report.levels_sequence;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (paths[i].level == before[i]) continue;
+        c.report.level_changed_at_ns[i] = to_ns(c.now);
         report(c, region, EventCode::level_changed, static_cast<double>(i),
                static_cast<double>(paths[i].level), static_cast<std::uint16_t>(paths[i].reason));
         if (!paths[i].knob.haptic) c.govern.display.asked(c.report.levels_sequence, c.now);
@@ -98,10 +105,12 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     ++g.cycles;
     g.model_cost += c.model_cost;
     g.recomputed += c.recomputed_fraction;
-    if (c.dry) return;
-    Levels before{};
-    const auto paths = c.governor.paths();
-    for (std::size_t i = 0; i < paths.size(); ++i) before[i] = paths[i].level;
+    if (c.dry) return calibrate_level(c);
+    Levels before = levels_of(c.governor);
+    if (fit_level(c, settings)) {
+        report_levels(c, settings, region, before, true);
+        before = levels_of(c.governor);
+    }
 
     const bool pending = c.housekeeping.gui_attached != 0 && g.display.pending(c.now);
     if (sample_display(c)) {
@@ -118,6 +127,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     g.law_rate_hz = rate_kept_up(c, rate_for_law(c, settings, interval));
     g.model_cost_s = to_s(g.model_cost) / static_cast<double>(g.cycles);
     set_display_present(c, settings, c.housekeeping.gui_attached != 0);
+    limit_by_slow_update(c);
     const bool changed = c.governor.step(g.law_rate_hz, interval);
     report_levels(c, settings, region, before, changed || resized(c, settings));
     start_interval(c, c.now);

@@ -10,7 +10,7 @@
 
 namespace tact::servo {
 
-// Sets budget, each hand's step, model_cost and recomputed_fraction. Reads the clock twice.
+// Sets budget, each hand's step, model_cost, deadline_missed and recomputed_fraction. Reads the clock twice.
 void step_models(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
 
 }  // namespace tact::servo

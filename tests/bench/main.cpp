@@ -11,6 +11,7 @@
 #include "ipc/version/version.hpp"
 #include "tests/bench/bench_docking.hpp"
 #include "tests/bench/bench_drilling.hpp"
+#include "tests/bench/bench_governor.hpp"
 #include "tests/bench/bench_ipc.hpp"
 #include "tests/bench/bench_mesh.hpp"
 #include "tests/bench/bench_particles.hpp"
@@ -91,6 +92,14 @@ json drilling_and_particles() {
     return all;
 }
 
+// Set by the command line.
+GovernorBenchSettings& governor_settings() {
+    static GovernorBenchSettings settings;
+    return settings;
+}
+
+json governor() { return bench_governor(governor_settings()); }
+
 constexpr Measure kMeasures[] = {
     {"servo", "lateness of a cycle of 1 ms", &servo},
     {"docking", "time of one docking force, of a change of surface detail, and of mesh simplification",
@@ -103,6 +112,11 @@ constexpr Measure kMeasures[] = {
      "time of a drilling step (force and erosion) for burrs of 1 to 20 mm, and of moving particles; takes "
      "two minutes",
      &drilling_and_particles, true},
+    {"governor",
+     "deadline misses, error and force steps of adaptive runs beside fixed levels, at 1, 2 and 4 kHz and "
+     "free running; "
+     "takes half an hour",
+     &governor, true},
     {"ipc", "time to publish and to read the state of a servo cycle", &ipc},
 };
 
@@ -131,7 +145,7 @@ void describe(CLI::App& app, int& exit_code) {
     const auto wanted = std::make_shared<std::vector<std::string>>();
     const auto as_json = std::make_shared<bool>(false);
     std::vector<std::string> names;
-    std::string help = "Measurements to run; default: all but surface and drilling.";
+    std::string help = "Measurements to run; default: all but surface, drilling and governor.";
     for (const Measure& m : kMeasures) {
         names.emplace_back(m.name);
         help += std::string(" ") + m.name + ": " + m.help + ".";
@@ -174,6 +188,28 @@ void describe(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     bone->add_option("--burr-radius-mm", drilling->radius_mm, "Burr radius (mm)")
         ->check(CLI::Range(0.1, 50.0))
+        ->capture_default_str();
+    GovernorBenchSettings& governed = governor_settings();
+    auto* const runs = command->add_option_group("Governor", "Runs of the measurement governor");
+    auto* const map = runs->add_option("--map", governed.map,
+                                       "Density map of the docking scenes; default: that of the demo")
+                          ->check(CLI::ExistingFile);
+    auto* const structure = runs->add_option("--structure", governed.structure,
+                                             "Structure whose copies are docked; default: that of the demo")
+                                ->check(CLI::ExistingFile)
+                                ->needs(map);
+    map->needs(structure);
+    runs->add_option("--scene", governed.scenes, "Scenes of the measurement governor")
+        ->check(CLI::IsMember({"docking", "surface", "drilling"}))
+        ->capture_default_str();
+    runs->add_option("--atoms", governed.atoms, "Numbers of atoms of the docking scenes")
+        ->check(CLI::Range(1000, 2'000'000))
+        ->capture_default_str();
+    runs->add_option("--rate", governed.rates_hz, "Rates of the measurement governor (Hz); 0: free running")
+        ->check(CLI::Range(0.0, 20'000.0))
+        ->capture_default_str();
+    runs->add_option("--seconds", governed.seconds, "Length of an adaptive run (s)")
+        ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
     command->callback([=, &exit_code] {
         if (*volume && !*path)

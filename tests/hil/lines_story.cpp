@@ -29,7 +29,7 @@ enum Pin : unsigned { kStopA, kStopB, kPedal, kAmplifier, kEnable, kWatchdog, kL
 // Large limits: a busy host pauses its processor from time to time.
 constexpr const char* kPatient = R"([servo]
 period_us = 1000.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 supervisor_us_max = 5e6
@@ -37,7 +37,7 @@ supervisor_us_max = 5e6
 constexpr const char* kCounted = R"([servo]
 period_us = 2000.0
 spin_us = 0.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 )";
@@ -200,10 +200,10 @@ public:
             claim(said && said->ending.number != 0 && said->text.find(wanted) != std::string::npos,
                   "tact-rt --check reports " + wanted + "; its output: " + (said ? said->text : ""));
         };
-        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "there are only gpiochip");
-        says("lamp = \"6\"", "lamp = \"11\"", "taking line \"11\"");
-        says("lamp = \"6\"", "lamp = \"5\"", "two meanings");
-        says("lamp = \"6\"", "lamp = \"STATE\"", "there is no such line");
+        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "the chips present are gpiochip");
+        says("lamp = \"6\"", "lamp = \"11\"", "requesting line \"11\"");
+        says("lamp = \"6\"", "lamp = \"5\"", "assigned to two keys");
+        says("lamp = \"6\"", "lamp = \"STATE\"", "the chip has no such line");
     }
 
 private:

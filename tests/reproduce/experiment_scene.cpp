@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstring>
-#include <span>
 #include <string>
 
 #include "deploy/tact/files.hpp"
@@ -15,6 +13,7 @@
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "tests/reproduce/run_prep.hpp"
+#include "tests/support/map_file.hpp"
 
 namespace tact::launch {
 namespace {
@@ -22,30 +21,6 @@ namespace {
 void bake(std::vector<std::string> words, const std::filesystem::path& scene) {
     words.insert(words.end(), {"-o", scene.string()});
     run_prep(words, scene.string() + ".log", "baking " + scene.string());
-}
-
-// A map file of mode 2 (float), according to MRC 2014.
-std::string mrc_of(const DensityGrid& grid) {
-    std::array<std::int32_t, 256> header{};
-    const auto put_float = [&header](std::size_t word, double value) {
-        const auto f = static_cast<float>(value);
-        std::memcpy(&header[word], &f, sizeof f);
-    };
-    for (std::size_t i = 0; i < 3; ++i) {
-        header[i] = static_cast<std::int32_t>(grid.size[i]);
-        header[7 + i] = header[i];  // one voxel of the cell per grid point
-        put_float(10 + i, grid.spacing_m[static_cast<Eigen::Index>(i)] / kAngstromM * grid.size[i]);
-        put_float(13 + i, 90.0);
-        header[16 + i] = static_cast<std::int32_t>(i + 1);
-        put_float(49 + i, grid.origin_m[static_cast<Eigen::Index>(i)] / kAngstromM);
-    }
-    header[3] = 2;
-    header[22] = 1;
-    std::memcpy(&header[52], "MAP ", 4);
-    header[53] = 0x00004144;  // little endian
-    std::string bytes(reinterpret_cast<const char*>(header.data()), sizeof header);
-    bytes.append(reinterpret_cast<const char*>(grid.values.data()), grid.values.size() * sizeof(float));
-    return bytes;
 }
 
 std::string pdb_of(const Structure& s) {
@@ -107,7 +82,7 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     const DensityGrid grid = read_grid(demo);
     const Structure structure = read_structure(demo, 0);
     if (!std::filesystem::exists(fine_path, ignored)) {
-        write_whole(folder / "fine.mrc", mrc_of(finer(grid, meta, scale.map_finer)));
+        write_whole(folder / "fine.mrc", map_file_bytes(finer(grid, meta, scale.map_finer)));
         write_whole(folder / "one.pdb", pdb_of(structure));
         bake({"dock", (folder / "fine.mrc").string(), (folder / "one.pdb").string(), "--contour",
               std::to_string(meta.contour)},

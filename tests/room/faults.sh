@@ -45,13 +45,13 @@ room_as root 'mv /usr/bin/sudo.away /usr/bin/sudo; echo "anna ALL=(ALL) NOPASSWD
 ROOM_MOUNT="mount --bind \"\$1$room_checkout\" \"\$1$room_checkout\"; mount -o remount,bind,ro \"\$1$room_checkout\"" \
     step "a read-only checkout" refused 10 "the file system is read-only" anna ./deploy/run
 room_as root "chown -R root: '$room_checkout'"
-step "another user's checkout" refused 10 "not this user's to write" anna ./deploy/run
+step "another user's checkout" refused 10 "not writable for this user" anna ./deploy/run
 room_as root "chown -R anna: '$room_checkout'"
 
 moved() {
     anna ". deploy/shell/progress.sh; . deploy/shell/packages.sh; . deploy/shell/build.sh; tact_install_packages deploy/packages-run.txt >/dev/null && tact_build release tact_base >/dev/null" || return
     room_as anna "mv '$room_checkout' ~/moved && cd ~/moved && . deploy/shell/progress.sh && . deploy/shell/packages.sh && . deploy/shell/build.sh && tact_build release tact_base" |
         tee "$room/moved.txt"
-    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured anew." "$room/moved.txt"
+    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured again." "$room/moved.txt"
 }
 step "a moved checkout" moved

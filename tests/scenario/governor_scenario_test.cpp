@@ -7,6 +7,7 @@ namespace tact {
 namespace {
 
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
 // A visual process with a frame time proportional to the level; frame_s at level 1.
 struct Picture {
@@ -124,16 +125,19 @@ TEST(GovernorScenario, a_low_force_rate_reduces_particles_to_their_floor_before_
     settings.watchdogs.timing_latches = false;
     Lockstep loop(settings);
     loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(990);
+    loop.model_.cost = microseconds(300);
     loop.active();
     Picture picture{loop, 0.004};
     for (int i = 0; i < 3; ++i) picture.frame();
     ASSERT_EQ(particles_of(loop).level, 1.0F);
-    loop.model_.cost = microseconds(4000);
     const float force_before = loop.levels().path[kForcePathIndex].level;
     bool force_fell = false;
     for (int i = 0; i < 400 && !force_fell; ++i) {
         picture.frame();
+        for (int turn = 0; turn < 10; ++turn) {  // another program has the processor for most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(3));
+        }
         const LevelsTopic l = loop.levels();
         force_fell = l.path[kForcePathIndex].level < force_before;
         if (!force_fell) continue;
@@ -199,8 +203,8 @@ struct FreeLoop : Lockstep {
         std::pair<std::size_t, std::size_t> w{100000, 0};
         std::size_t from = 0;
         for (std::size_t to = 0; to < begun.size(); ++to) {
-            if (begun[to] - begun[0] < std::chrono::milliseconds(100)) continue;
-            while (begun[to] - begun[from] > std::chrono::milliseconds(100)) ++from;
+            if (begun[to] - begun[0] < milliseconds(100)) continue;
+            while (begun[to] - begun[from] > milliseconds(100)) ++from;
             w = {std::min(w.first, to - from + 1), std::max(w.second, to - from + 1)};
         }
         return w;
@@ -209,15 +213,16 @@ struct FreeLoop : Lockstep {
 
 TEST(GovernorScenario, free_running_steps_reduce_their_work_before_the_law_can_react) {
     FreeLoop loop(Law::elastic);
-    loop.model_.cost = std::chrono::microseconds(950);
+    loop.model_.cost = std::chrono::microseconds(500);
     static_cast<void>(loop.windows(1.0));
     EXPECT_FLOAT_EQ(loop.health().recomputed_fraction_least, 1.0F);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_GE(loop.windows(0.25).first, 96U);
-    EXPECT_LT(loop.health().recomputed_fraction_least, 0.95F);
     EXPECT_GE(loop.windows(5.0).first, 96U);
-    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the law has reacted
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.66, 0.05);
+    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the level has
+    // Steps of 0.7 ms at most, less the tenth that a rise leaves free.
+    EXPECT_LT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 / 1.5);
+    EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
 
 TEST(GovernorScenario, free_running_a_fixed_level_is_computed_completely_at_any_rate) {
@@ -233,9 +238,14 @@ TEST(GovernorScenario, free_running_a_fixed_level_is_computed_completely_at_any_
 TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_if_the_display_could_be_finer) {
     FreeLoop loop(Law::elastic);
     Picture picture{loop, 0.02};
-    loop.model_.cost = std::chrono::microseconds(2000);
-    while (picture.level() > 0.5F) picture.frame();
-    loop.model_.cost = std::chrono::microseconds(400);
+    loop.model_.cost = microseconds(400);
+    while (picture.level() > 0.5F) {
+        picture.frame();
+        for (int turn = 0; turn < 20; ++turn) {  // another program has the processor for most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(2));
+        }
+    }
     picture.frame();
     EXPECT_LT(picture.level(), 1.0F);
     const auto [least, most] = loop.windows(0.3);
@@ -267,7 +277,7 @@ TEST(GovernorScenario, hostile_reports_of_the_display_keep_the_levels_within_bou
     }
 }
 
-// A step costs up to 500 us by its level; without a display. Goal 4 kHz: a level of one half.
+// A step costs up to 500 us by its level; nothing is displayed. Goal 4 kHz: steps of 175 us at most.
 TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
     ServoSettings s;
     s.free_running = true;
@@ -277,15 +287,17 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(500);
     loop.cycles(30000);
-    EXPECT_NEAR(loop.health().force_rate_hz, 4000.0, 0.05 * 4000.0);
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.5, 0.03);
+    EXPECT_GE(loop.health().force_rate_hz, 4000.0);
+    EXPECT_LE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.35);
+    EXPECT_GE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.25);
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
     EXPECT_EQ(lateness.total, 0U);  // without a plan no cycle is late
 }
 
-TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_return_when_there_is_time) {
+TEST(GovernorScenario,
+     at_a_fixed_rate_the_level_falls_when_steps_cost_too_much_and_returns_when_there_is_time) {
     ServoSettings s;
     s.watchdogs.timing_latches = false;
     Lockstep loop(s);
@@ -293,8 +305,11 @@ TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_retur
     loop.model_.cost = microseconds(1600);
     loop.cycles(20000);
     const float low = loop.levels().path[kForcePathIndex].level;
-    EXPECT_LT(low, 0.75F);
+    EXPECT_LT(low, 0.7F / 1.6F);
     EXPECT_GT(low, 0.35F);
+    const std::uint64_t misses = loop.health().deadline_misses;
+    loop.cycles(10000);
+    EXPECT_EQ(loop.health().deadline_misses, misses);
     loop.model_.cost = microseconds(100);
     loop.cycles(10000);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
@@ -305,9 +320,8 @@ TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_retur
     for (EventTopic e{}; loop.region_->events.next(cursor, e);) {
         if (e.code != static_cast<std::uint16_t>(EventCode::level_changed)) continue;
         const auto why = static_cast<LevelReason>(e.detail);
-        EXPECT_TRUE(why == LevelReason::rate_low || why == LevelReason::rate_high) << e.detail;
-        fell = fell || why == LevelReason::rate_low;
-        rose = rose || why == LevelReason::rate_high;
+        fell = fell || why == LevelReason::cost_high || why == LevelReason::deadline_missed;
+        rose = rose || why == LevelReason::cost_low;
     }
     EXPECT_TRUE(fell);
     EXPECT_TRUE(rose);
@@ -320,10 +334,13 @@ TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its
     s.watchdogs.timing_latches = false;
     Lockstep loop(s);
     loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(2000);  // the machine is still too slow
+    loop.model_.cost = microseconds(300);
     for (int i = 0; i < 20; ++i) {
         loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
-        loop.cycles(100);
+        for (int turn = 0; turn < 100; ++turn) {  // other programs have the processor for most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(2));
+        }
         if (loop.levels().path[kDisplayPathIndex].level > 0.011F) {
             EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
         }

@@ -340,6 +340,34 @@ TEST(Config, the_second_emulated_hand_has_a_script_of_its_own) {
     EXPECT_TRUE(device2_settings_from(config).sim.hand.at_m.isApprox(Vec3(-8e-3, 2e-3, 0.0)));
 }
 
+TEST(Config, the_deadline_of_the_model_follows_the_period) {
+    RtConfig config;
+    for (const double period_us : {2000.0, 1000.0, 500.0, 125.0}) {
+        config.servo.period_us = period_us;
+        EXPECT_EQ(settings_from(config, true).model_max, duration_us(0.75 * period_us));
+    }
+    config.servo.model_us_max = 40.0;
+    EXPECT_EQ(settings_from(config, true).model_max, duration_us(40.0));
+    config.servo.model_us_max = 0.0;
+    config.servo.free_running = true;  // no period: the goal stands for it
+    config.governor.goal_hz = 4000.0;
+    EXPECT_EQ(settings_from(config, true).model_max, duration_us(187.5));
+}
+
+TEST(Config, a_deadline_that_leaves_no_time_for_the_rest_of_the_cycle_is_refused) {
+    const auto problems = [](const char* text) {
+        const TempFile file(text);
+        RtConfig config;
+        std::string all;
+        for (const ConfigError& e : config_errors(file.path(), config)) all += e.what();
+        return all;
+    };
+    EXPECT_TRUE(says(problems("[servo]\nperiod_us = 500\nmodel_us_max = 600\n"),
+                     {"servo.model_us_max", "600 us", "500 us", "at most 450", "0"}));
+    EXPECT_EQ(problems("[servo]\nperiod_us = 500\nmodel_us_max = 450\n"), "");
+    EXPECT_EQ(problems("[servo]\nfree_running = true\nmodel_us_max = 5000\n"), "");
+}
+
 TEST(Config, a_fast_loop_keeps_time_to_sleep) {
     RtConfig::Servo servo;
     EXPECT_EQ(spin_tail(servo), duration_us(100.0));

@@ -132,7 +132,7 @@ TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace_time) {
     ASSERT_TRUE(ending);
     EXPECT_TRUE(ending->forced);
     EXPECT_EQ(ending->number, SIGKILL);
-    EXPECT_NE(ending->text().find("ignored the request"), std::string::npos);
+    EXPECT_NE(ending->text().find("did not end on request"), std::string::npos);
 }
 
 TEST(Child, a_missing_program_is_refused_with_its_path) {

@@ -88,7 +88,7 @@ TEST(Doctor, controllers_on_one_core_are_warned_about) {
     m.servos = {{100, 3, "default"}, {200, 2, "lab2"}};
     EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::ok);
     EXPECT_EQ(one(m, "servo_cores").says,
-              "controllers that run: session default on core 3, session lab2 on core 2");
+              "running controllers: session default on core 3, session lab2 on core 2");
     m.servos.push_back({300, 3, "lab3"});
     EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::warn);
     EXPECT_NE(
@@ -114,20 +114,20 @@ TEST(Doctor, the_missing_step_is_reported_with_its_own_fix) {
     expect("not a member of the group realtime", kRightsFix);
     EXPECT_EQ(one(m, "dma_latency").fix, kRightsFix);
     m.person.listed = {"users", "realtime"};
-    expect("this session is older than that", kLoginFix);
+    expect("this session began before that", kLoginFix);
     EXPECT_EQ(one(m, "dma_latency").fix, kLoginFix);
     m.person.groups = {"users", "realtime"};
     expect("tact.conf is missing", kRightsFix);
     m.person.limits = "# @realtime - rtprio 95\n@audio - rtprio 95\n@audio - memlock unlimited\n";
-    expect("tact.conf is missing or does not grant it", kRightsFix);
+    expect("tact.conf is missing or does not grant this limit", kRightsFix);
     std::ifstream shipped("deploy/limits.conf");
     m.person.limits = {std::istreambuf_iterator<char>(shipped), {}};
-    expect("the limits of this session are not those", kSessionLimitsFix);
-    m.person.limits = "@realtime - rtprio 95\n";  // one of the two limits
+    expect("this session does not have it", kSessionLimitsFix);
+    m.person.limits = "@realtime - rtprio 95\n";  // one of the two
     EXPECT_EQ(one(m, "rtprio").fix, kSessionLimitsFix);
     EXPECT_EQ(one(m, "memlock").fix, kRightsFix);
     m.person = {true, {}, {}, ""};  // root without the capability, in a container
-    expect("root has no capability", kCapabilityFix);
+    expect("root lacks the capability", kCapabilityFix);
 }
 
 TEST(Doctor, a_person_is_read_with_the_groups_of_the_process_and_of_the_database) {

@@ -101,7 +101,7 @@ TEST(Probe, a_machine_without_devices_is_reported_and_an_emulated_run_is_ok) {
     const Answer a = ask(tree, {});
     EXPECT_FALSE(a.fails());
     EXPECT_EQ(a.one("usb").level, FindingLevel::warn);
-    EXPECT_TRUE(says(a.one("usb").says, {"no /sys/bus/usb", "nothing on it can be seen"}));
+    EXPECT_TRUE(says(a.one("usb").says, {"no /sys/bus/usb", "no device can be detected"}));
     EXPECT_TRUE(says(a.one("can").says, {"no CAN"}));
     EXPECT_TRUE(says(a.one("gpio").says, {"no GPIO"}));
 }
@@ -127,8 +127,8 @@ TEST(Probe, an_arm_is_identified_by_its_interface_class_and_reported_with_its_se
     EXPECT_FALSE(a.fails());
     EXPECT_EQ(a.one("device").level, FindingLevel::ok);
     EXPECT_TRUE(says(a.one("usb").says, {"2 devices", "1 arm "}));
-    EXPECT_TRUE(says(a.one("arm").says,
-                     {"Phantom arm", "1209:0001", "P15-7", "driver phantom-usb", "may be opened"}));
+    EXPECT_TRUE(
+        says(a.one("arm").says, {"Phantom arm", "1209:0001", "P15-7", "driver phantom-usb", "accessible"}));
 }
 
 TEST(Probe, several_arms_need_a_serial_and_a_wrong_serial_fails) {
@@ -155,12 +155,12 @@ TEST(Probe, a_node_without_rights_fails_for_the_configured_arm_and_warns_for_ano
     node.mode = 0664;
     const Answer wanted{judge_devices(buses, phantom_request(), kMember, "")};
     EXPECT_EQ(wanted.one("arm").level, FindingLevel::fail);
-    EXPECT_TRUE(says(wanted.one("arm").says, {"may not open", "group root, mode 664"}));
+    EXPECT_TRUE(says(wanted.one("arm").says, {"no permission to open", "group root, mode 664"}));
     EXPECT_TRUE(says(wanted.one("arm").fix, {"deploy/install.sh --rights"}));
     const Answer other{judge_devices(buses, {}, kMember, "")};
     EXPECT_EQ(other.one("arm").level, FindingLevel::warn);
     fs::remove(tree.root() / "dev/bus/usb/001/004");
-    EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"is not there", "container"}));
+    EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"does not exist", "container"}));
 }
 
 TEST(Probe, a_slow_port_is_warned_about) {
@@ -206,9 +206,9 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     DeviceRequest request;
     request.driver = "polhem";
     EXPECT_FALSE(ask(tree, request).fails());
-    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, may be opened"}));
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, accessible"}));
     fs::remove(tree.root() / "dev/hidraw2");
-    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 does not exist"}));
     ASSERT_EQ(usb.there[1].nodes.size(), 1U);
     EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
     EXPECT_FALSE(usb.there[1].nodes[0].usable);
@@ -222,9 +222,9 @@ TEST(Probe, a_falcon_is_reported_with_the_firmware_that_it_needs) {
     EXPECT_EQ(ask(tree, request).one("firmware").says, "");  // none configured
     request.driver = "falcon";
     Answer a = ask(tree, request);
-    EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, may be opened"}));
+    EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, accessible"}));
     EXPECT_EQ(a.one("firmware").level, FindingLevel::warn);
-    EXPECT_TRUE(says(a.one("firmware").fix, {"the file that came with the device"}));
+    EXPECT_TRUE(says(a.one("firmware").fix, {"the firmware file of the manufacturer"}));
     const auto read_again = [&] {
         return device_request_from(
             {{"ok", true},
@@ -233,7 +233,7 @@ TEST(Probe, a_falcon_is_reported_with_the_firmware_that_it_needs) {
     };
     a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
-    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "no such file"}));
+    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "the file does not exist"}));
     tree.file("fw.bin", "");
     a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
@@ -253,7 +253,7 @@ TEST(Probe, a_can_interface_must_exist_be_up_and_have_the_frame_size) {
     EXPECT_EQ(ask(tree, request).one("can").says.find("eth0"), std::string::npos);
     EXPECT_FALSE(ask(tree, request).fails());
     request.tracker = "can";
-    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"it is down"}));
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"the interface is down"}));
     EXPECT_TRUE(says(ask(tree, request).one("can").fix, {"deploy/can-up can0"}));
     tree.can("can0", "0x400c1\n", 16);
     EXPECT_FALSE(ask(tree, request).fails());
@@ -284,7 +284,7 @@ TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_duplicates_are_refuse
     EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"several chips"}));
     request.lines_chip = "gpiochip2";
     fs::remove(tree.root() / "dev/gpiochip2");
-    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"does not exist"}));
 }
 
 TEST(Probe, the_vendors_library_is_found_in_its_place_or_by_path) {
@@ -294,7 +294,7 @@ TEST(Probe, the_vendors_library_is_found_in_its_place_or_by_path) {
     EXPECT_TRUE(says(ask(tree, request).one("device").says, {"libHD.so"}));
     EXPECT_TRUE(ask(tree, request).fails());
     tree.file("usr/lib/libHD.so", "");
-    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"/usr/lib/libHD.so", "only seen when"}));
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"/usr/lib/libHD.so", "known only when"}));
     request.hd_library = "/nowhere/libHD.so";
     EXPECT_TRUE(ask(tree, request).fails());
 }
@@ -309,7 +309,7 @@ TEST(Probe, groups_are_reported_by_purpose) {
     EXPECT_TRUE(says(f.fix, {"--rights"}));
     const Finding later = ask(tree, {}, {false, {"users"}, {"users", "tact", "realtime"}, ""}).one("groups");
     EXPECT_EQ(later.level, FindingLevel::warn);
-    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session is older"}));
+    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session began before that"}));
     EXPECT_EQ(later.fix, kLoginFix);
     // With one missing membership and one missing login, the fix is the former: a login alone would not suffice.
     EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").fix, kRightsFix);
@@ -354,7 +354,7 @@ TEST(Probe, the_second_device_is_probed_too) {
     request.driver2 = "phantom-usb";
     EXPECT_FALSE(ask(tree, request).fails());
     EXPECT_TRUE(
-        says(ask(tree, request).one("device2").says, {"device2.driver = \"phantom-usb\": there is one"}));
+        says(ask(tree, request).one("device2").says, {"device2.driver = \"phantom-usb\": one device found"}));
     request.serial2 = "RIGHT";
     EXPECT_TRUE(ask(tree, request).fails());
     EXPECT_TRUE(says(ask(tree, request).one("device2").says, {"no such device with serial RIGHT"}));

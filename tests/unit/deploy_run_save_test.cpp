@@ -38,7 +38,7 @@ TEST_F(DeployRun, at_the_end_tact_prep_saves_the_last_poses) {
 TEST_F(DeployRun, an_impossible_save_is_refused_before_the_run) {
     options_.gui = false;
     options_.save = scratch_.path() / "fit";
-    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("made in code"), std::string::npos);
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("is synthetic"), std::string::npos);
     write_scene_of_files(scene_);
     std::filesystem::create_directory(options_.save);
     std::ofstream(options_.save / "mine") << "x";

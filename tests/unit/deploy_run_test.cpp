@@ -119,7 +119,7 @@ TEST_F(DeployRun, a_controller_that_hangs_is_killed_and_the_run_fails) {
     options_.grace = std::chrono::milliseconds(100);
     EXPECT_EQ(run(), 1);
     EXPECT_EQ(report_["ended"]["tact-rt"]["signal"], SIGKILL);
-    EXPECT_NE(said_.find("ignored the request"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("did not end on request"), std::string::npos) << said_;
 }
 
 TEST_F(DeployRun, a_signal_to_tact_ends_all_in_order) {
@@ -137,7 +137,7 @@ TEST_F(DeployRun, a_signal_to_tact_ends_all_in_order) {
     ASSERT_EQ(waitpid(pid, &status, 0), pid);
     ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
     report_ = nlohmann::json::parse(read_small(options_.json));
-    EXPECT_EQ(report_["ended"]["why"], "asked by Interrupt");
+    EXPECT_EQ(report_["ended"]["why"], "requested by signal: Interrupt");
     EXPECT_EQ(report_["ended"]["tact-rt"]["exit_code"], 0);
 }
 

@@ -41,7 +41,7 @@ TEST_F(OtherScene, the_launcher_switches_to_the_other_scene_unarmed_with_the_sam
               scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15");
     EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
     EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
-    EXPECT_NE(said_.find("another scene was asked for"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("another scene was requested"), std::string::npos) << said_;
 }
 
 TEST_F(OtherScene, the_next_window_keeps_the_state_of_the_last_one) {
@@ -80,7 +80,7 @@ TEST_F(OtherScene, a_file_that_is_not_a_scene_is_refused_in_the_window_and_the_r
     EXPECT_EQ(lines("controllers").size(), 1U);
     const auto told = lines("told");
     ASSERT_GE(told.size(), 3U);
-    EXPECT_NE(told[1].find("so it is not a scene of tact"), std::string::npos) << told[1];
+    EXPECT_NE(told[1].find("so it is not a Tact scene"), std::string::npos) << told[1];
     EXPECT_NE(told[2].find("fix:"), std::string::npos) << told[2];
 }
 

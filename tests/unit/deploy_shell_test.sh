@@ -46,7 +46,7 @@ install() {
 
 out=$(install)
 expect_text "$out" "Missing Debian packages (2): held lack"
-expect_text "$out" "With what they need: 2 packages, 13 MB to download."
+expect_text "$out" "With dependencies: 2 packages, 13 MB to download."
 expect_text "$out" "Downloading packages"
 expect_text "$out" "exit 0"
 out=$(bash -uc '. "$1/deploy/shell/packages.sh"; tact_packages_missing "$2"' _ "$root" "$work/list")
@@ -82,8 +82,8 @@ cause install "The following packages have unmet dependencies:
  lack : Depends: libbar (>= 2)" "their dependencies cannot be met: lack : Depends: libbar" "sudo apt-get --fix-broken install"
 cause install "E: dpkg was interrupted, you must manually run 'dpkg --configure -a'" "an earlier installation was interrupted" \
     "sudo dpkg --configure -a"
-cause install "E: You don't have enough free space in /var/cache/apt/archives/." "the disk is full" "make room"
-cause update "E: Failed to fetch http://a/x  Connection timed out" "the download broke off" "check the network"
+cause install "E: You don't have enough free space in /var/cache/apt/archives/." "the disk is full" "free disk space"
+cause update "E: Failed to fetch http://a/x  Connection timed out" "the download was interrupted" "check the network"
 cause install "E: something new" "apt-get failed" "as root, run: apt-get install --no-install-recommends held lack"
 
 # A lock that is released in time; also that of the package lists, whose other output is hidden.
@@ -135,11 +135,11 @@ out=$(build)
 mv "$work/project at home" "$work/Prüfstand"
 cd "$work/Prüfstand" || exit 1
 out=$(build)
-expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured anew."
+expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured again."
 expect_text "$out" "exit 0"
 ./build/release/p || fail "the moved checkout's program does not run"
 echo "another compiler" >build/release/toolchain.txt
-expect_text "$(build)" "The compiler or the system has changed: build/release is configured anew."
+expect_text "$(build)" "The compiler or the system has changed: build/release is configured again."
 echo 'int main() { return wrong; }' >p.cpp
 out=$(build)
 expect_text "$out" "error: "
@@ -152,7 +152,7 @@ out=$(sh -c 'true'; bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.s
 expect_text "$out" "the file system is read-only"
 out=$(bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.sh
     mkdir() { return 1; }; findmnt() { echo rw,noatime; }; tact_check_writable 2>&1')
-expect_text "$out" "the folder is not this user's to write"
+expect_text "$out" "the folder is not writable for this user"
 expect_text "$out" "fix: clone it into a folder of your own"
 
 [ "$failures" -eq 0 ] && echo "all causes explained"

@@ -88,7 +88,7 @@ class Setup(Case):
     def test_wrong_usage_has_its_own_exit_code(self):
         self.tact("station", code=2)
         self.tact("station", "setup", "--root", f"{self.dir}/absent", code=2)
-        self.assertIn("steps: kernel", self.tact("station", "setup", "--root", self.tree, "--skip", "x", code=1)[1])
+        self.assertIn("choose one of kernel", self.tact("station", "setup", "--root", self.tree, "--skip", "x", code=1)[1])
         self.assertIn("--dry-run", self.tact("station", "setup", "--help")[0])
 
 

@@ -244,7 +244,7 @@ TEST_F(Station, a_failed_step_reverts_the_earlier_ones) {
 TEST_F(Station, a_journal_writable_by_others_is_refused) {
     set_up_station(plan(), tools());
     chmod((root_ / "var/lib/tact/station.json").c_str(), 0666);
-    EXPECT_NE(message_of([&] { undo_station(tools(), true); }).find("others"), std::string::npos);
+    EXPECT_NE(message_of([&] { undo_station(tools(), true); }).find("other than you"), std::string::npos);
     EXPECT_THROW(static_cast<void>(parse_journal("{}")), StartupError);
     Journal journal;
     journal.steps = {{.name = "x",

@@ -198,14 +198,28 @@ TEST(PartialSums, another_density_and_other_points_are_summed_completely) {
     EXPECT_EQ(partial.step(map(), fewer, on_the_way(3), 0.125, Instant::max()).recomputed_fraction, 1.0F);
 }
 
-TEST(PartialSums, a_deadline_that_has_passed_leaves_the_old_sums_as_they_were) {
+TEST(PartialSums, after_the_deadline_the_older_sums_stand_for_all_points_and_say_how_stale_they_are) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     const PartialSums::Result late = partial.step(map(), points(), on_the_way(3), 0.5, Monotonic::now());
-    EXPECT_FALSE(late.complete);
+    EXPECT_TRUE(late.late);
+    EXPECT_TRUE(late.complete);
     EXPECT_EQ(late.recomputed_fraction, 0.0F);
+    EXPECT_GE(late.stale, (whole(on_the_way(3)).gradient - late.sums.gradient).norm());
+    EXPECT_GT(late.stale, 0.0);
     expect_equal(late.sums, whole(on_the_way(2)));
     expect_equal(step(partial, on_the_way(3), 1.0).sums, whole(on_the_way(3)));
+}
+
+TEST(PartialSums, without_an_older_sum_nearby_a_passed_deadline_leaves_the_step_incomplete) {
+    PartialSums partial;
+    EXPECT_FALSE(partial.step(map(), points(), on_the_way(0), 1.0, Monotonic::now()).complete);
+    (void)step(partial, on_the_way(0), 1.0);
+    Pose far = on_the_way(0);
+    far.p_m += Vec3::Constant(2.0 * map().spacing_m().minCoeff());
+    const PartialSums::Result late = partial.step(map(), points(), far, 1.0, Monotonic::now());
+    EXPECT_TRUE(late.late);
+    EXPECT_FALSE(late.complete);
 }
 
 }  // namespace

@@ -104,13 +104,13 @@ protected:
 
 TEST_F(BrowserInTheWindow, a_scene_that_is_pressed_runs_and_is_the_newest_of_the_list) {
     // The scene that runs comes first, then the one from before.
-    EXPECT_TRUE(until_words("asking the launcher for " + second_, [] {
+    EXPECT_TRUE(until_words("requesting from the launcher: " + second_, [] {
         x("key --clearmodifiers o");
         std::this_thread::sleep_for(milliseconds(500));
         press("600 162");
     })) << log();
     ASSERT_TRUE(wait_for_words("showing " + second_)) << log();
-    EXPECT_NE(log().find("another scene was asked for: " + second_), std::string::npos) << log();
+    EXPECT_NE(log().find("another scene was requested: " + second_), std::string::npos) << log();
     const Instant until = Monotonic::now() + kPatience;
     while (recents().find("second.tact") > recents().find("first.tact") && Monotonic::now() < until)
         std::this_thread::sleep_for(milliseconds(20));

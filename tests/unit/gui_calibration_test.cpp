@@ -142,7 +142,7 @@ TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silen
     EXPECT_EQ(window.samples(), 0U);
     for (int i = 0; i < 1200; ++i, t += 0.02) window.add(t, 400 + i, at, false);
     EXPECT_EQ(window.state(), RestWindow::State::failed);
-    EXPECT_NE(window.text("the wand").find("nothing is heard"), std::string::npos);
+    EXPECT_NE(window.text("the wand").find("no data"), std::string::npos);
 }
 
 TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual_is_of_the_noise) {
@@ -199,14 +199,14 @@ TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
         EXPECT_EQ(calibration.glass_text(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
-        EXPECT_NE(calibration.instruction().find("All points are taken"), std::string::npos);
+        EXPECT_NE(calibration.instruction().find("All points are measured"), std::string::npos);
         calibration.redo(missed);
         EXPECT_EQ(calibration.marks().current, missed);
         EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
         EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
         EXPECT_FALSE(calibration.marks().outlier());
-        EXPECT_EQ(calibration.glass_text(), "ALL POINTS ARE TAKEN");
+        EXPECT_EQ(calibration.glass_text(), "ALL POINTS DONE");
     }
 }
 
@@ -253,7 +253,7 @@ TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
     calibration.go(CalibrationStep::screen);
     for (std::size_t i = 0; i < kMarks; ++i) person.touch(lab.mark_screen_m(i));
     EXPECT_NE(calibration.status().grade, FitGrade::green);
-    EXPECT_NE(calibration.status().text.find("off what was typed"), std::string::npos)
+    EXPECT_NE(calibration.status().text.find("off the typed size"), std::string::npos)
         << calibration.status().text;
     calibration.use_measured_size();
     EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
@@ -271,7 +271,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.message().find("Nothing is heard of the tracker"), std::string::npos);
+    EXPECT_NE(calibration.message().find("No data from the tracker"), std::string::npos);
     person.seen = true;
     person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
@@ -283,7 +283,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     EXPECT_NE(calibration.live().find("lost"), std::string::npos);
     for (int i = 0; i < 1000; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.message().find("Not taken"), std::string::npos);
+    EXPECT_NE(calibration.message().find("Not measured"), std::string::npos);
     // A pose that is no number is as good as none.
     CalibrationInput in;
     in.now_s = 1e3;
@@ -318,16 +318,16 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     for (const CalibrationStep step : {CalibrationStep::screen, CalibrationStep::workspace}) {
         calibration.go(step);
         EXPECT_EQ(calibration.lacking(), Lacking::size);
-        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE SIZE OF THE PICTURE");
-        EXPECT_NE(calibration.instruction().find("size comes first"), std::string::npos);
+        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE DISPLAY SIZE");
+        EXPECT_NE(calibration.instruction().find("size is missing"), std::string::npos);
         calibration.take();
         EXPECT_FALSE(calibration.measuring());
-        EXPECT_NE(calibration.message().find("size comes first"), std::string::npos) << calibration.message();
+        EXPECT_NE(calibration.message().find("size is missing"), std::string::npos) << calibration.message();
     }
     calibration.set_workspace_by_wand(true);  // which needs no picture
     EXPECT_EQ(calibration.lacking(), Lacking::nothing);
     EXPECT_EQ(calibration.glass_text(), "STYLUS TO WAND: POINT 1");
-    EXPECT_EQ(calibration.instruction().find("size comes first"), std::string::npos);
+    EXPECT_EQ(calibration.instruction().find("size is missing"), std::string::npos);
     calibration.set_workspace_by_wand(false);
     calibration.set_picture_size(lab.width_m, lab.height_m);
     EXPECT_EQ(calibration.glass_text(), "STYLUS: TOUCH MARK 1");
@@ -338,9 +338,9 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     calibration.take();
     person.seen = person.arm = false;
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
-    EXPECT_EQ(calibration.glass_text(), "THE TRACKER SEES NO SENSOR");
+    EXPECT_EQ(calibration.glass_text(), "NO SENSOR TRACKED");
     calibration.go(CalibrationStep::workspace);
-    EXPECT_EQ(calibration.glass_text(), "NOTHING IS HEARD OF THE STYLUS");
+    EXPECT_EQ(calibration.glass_text(), "NO DATA FROM THE STYLUS");
 }
 
 TEST(Calibration, the_stylus_button_takes_once_per_press) {
@@ -371,7 +371,7 @@ TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
                              0.4 * Vec3(std::sin(0.05 * i), well ? std::cos(0.07 * i) : 0.0, 0.0)));
         EXPECT_FALSE(calibration.measuring());
         if (!well) {  // about one axis the tip may be anywhere along it
-            EXPECT_NE(calibration.message().find("turned too little"), std::string::npos)
+            EXPECT_NE(calibration.message().find("tilted too little"), std::string::npos)
                 << calibration.message();
         } else {
             EXPECT_LT((calibration.draft().wand_tip_sensor_m - lab.tip_sensor_m).norm(), 1e-3)
@@ -386,7 +386,7 @@ TEST(Calibration, what_is_typed_is_checked) {
     EXPECT_FALSE(calibration.draft().screen_measured);
     EXPECT_NE(calibration.message(), "");
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.3, 0.3, 0)});
-    EXPECT_NE(calibration.message().find("no rectangle"), std::string::npos);
+    EXPECT_NE(calibration.message().find("not form a rectangle"), std::string::npos);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, INFINITY, 0), Vec3(0, 0.3, 0)});
     EXPECT_FALSE(calibration.draft().screen_measured);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.3, 0)});

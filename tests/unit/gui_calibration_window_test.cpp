@@ -165,7 +165,7 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
     ASSERT_TRUE(test::wait_for([&] { return laboratory_->attached(); })) << log();
     laboratory_->hold_wand(mark_m(0));
     press("k");
-    ASSERT_TRUE(logged("calibration: begins")) << log();
+    ASSERT_TRUE(logged("calibration: started")) << log();
     press("Return");
     press("Return");
     ASSERT_TRUE(logged("step 3, Screen")) << log();
@@ -173,28 +173,28 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
         // The third mark is missed by 3 cm at first.
         laboratory_->hold_wand(mark_m(i) + (i == 2 ? Vec3(0.03, 0.0, 0.01) : Vec3(Vec3::Zero())));
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken")) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured")) << log();
     }
     press("Return");
-    ASSERT_TRUE(logged("Point 3 does not fit the others: take it again")) << log();
+    ASSERT_TRUE(logged("Point 3 does not fit the others: measure it again")) << log();
     press("Escape");
-    ASSERT_TRUE(logged("calibration: left")) << log();
+    ASSERT_TRUE(logged("calibration: closed")) << log();
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/stage.toml"));
 
     press("k");
-    ASSERT_TRUE(logged("calibration: begins", 2)) << log();
+    ASSERT_TRUE(logged("calibration: started", 2)) << log();
     press("Return");
     press("Return");
     ASSERT_TRUE(logged("step 3, Screen", 2)) << log();
     for (std::size_t i = 0; i < kMarks; ++i) {
         laboratory_->hold_wand(mark_m(i));
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", 2)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured", 2)) << log();
     }
     press("b");  // the last one once more
-    ASSERT_TRUE(logged("Point 6 is to be taken again")) << log();
+    ASSERT_TRUE(logged("Point 6 will be measured again")) << log();
     press("t");
-    ASSERT_TRUE(logged("Point 6 is taken", 3)) << log();
+    ASSERT_TRUE(logged("Point 6 measured", 3)) << log();
     press("Return");
     ASSERT_TRUE(logged("calibration: Screen: green")) << log();
     ASSERT_TRUE(logged("step 4, Workspace")) << log();
@@ -210,7 +210,7 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
         }
         laboratory_->hold_stylus(at_world_m);
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", i == 5 ? 4 : 3)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured", i == 5 ? 4 : 3)) << log();
         ++taken;
     }
     ASSERT_GE(taken, kMarksMin);
@@ -222,7 +222,7 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
     press("ctrl+s");
     ASSERT_TRUE(logged("and read back")) << log();
     press("Escape");
-    ASSERT_TRUE(logged("calibration: left", 2)) << log();
+    ASSERT_TRUE(logged("calibration: closed", 2)) << log();
 
     const StageSettings found = read_stage_file(file);
     const ScreenPlace flat = ScreenPlace::of_size(kWidthM, kHeightM);

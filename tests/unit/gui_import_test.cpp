@@ -106,9 +106,9 @@ TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
     BrowserController dashboard({});
     dashboard.drop({"/a/notes.txt"}, state_);
     EXPECT_TRUE(state_.open);
-    EXPECT_NE(state_.message.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
+    EXPECT_NE(state_.message.find("'notes.txt' has an ending that Tact does not read"), std::string::npos)
         << state_.message;
-    EXPECT_NE(state_.message.find("What can be dropped: a scene"), std::string::npos) << state_.message;
+    EXPECT_NE(state_.message.find("Files to drop: a scene"), std::string::npos) << state_.message;
 }
 
 TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {

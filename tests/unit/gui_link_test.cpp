@@ -392,8 +392,20 @@ TEST(StatusText, every_grade_comes_with_words) {
     };
     EXPECT_EQ(overran(0, 1000).grade, Grade::good);
     EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
-    EXPECT_EQ(overran(1, 1'000'000).text, "the last 12 s ago");
+    EXPECT_EQ(overran(1, 1'000'000).text, "last: 12 s ago");
     EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
+    const auto missed = [](std::uint64_t misses, float share) {
+        HealthTopic h{};
+        h.deadline_misses = misses;
+        h.deadline_miss_share = share;
+        h.deadline_missed_at_ns = 1'000'000'000;
+        return deadline_status(h, 13'000'000'000);
+    };
+    EXPECT_EQ(missed(0, 0.0F).grade, Grade::good);
+    EXPECT_EQ(missed(3, 0.0F).text, "last: 12 s ago");
+    EXPECT_EQ(missed(3, 5e-4F).grade, Grade::watch);
+    EXPECT_EQ(missed(300, 0.3F).grade, Grade::bad);
+    EXPECT_EQ(missed(300, 0.3F).text, "30 % in the last second");
     EXPECT_EQ(lateness_status(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_status(900'000, 1'000'000).grade, Grade::bad);
     EXPECT_EQ(bus_status({.packets = 1000}).grade, Grade::good);

@@ -55,7 +55,7 @@ TEST_F(TestDashboard, a_list_that_is_wrong_is_told_with_its_mend) {
             << bad;
     std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
     EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("larger"), std::string::npos);
-    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("no regular file"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("not a regular file"), std::string::npos);
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
 
@@ -92,7 +92,7 @@ TEST_F(TestDashboard, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
     EXPECT_EQ(rows[0].kind, "docking");
     EXPECT_EQ(rows[0].when, "5 min ago");
     EXPECT_TRUE(rows[0].trouble.empty()) << rows[0].trouble;
-    EXPECT_EQ(rows[1].trouble, "it is not whole");
+    EXPECT_EQ(rows[1].trouble, "the file is incomplete");
     EXPECT_TRUE(rows[2].trouble.starts_with("missing: ")) << rows[2].trouble;
 }
 

@@ -76,14 +76,14 @@ TEST(WindowStateFile, what_is_wrong_is_named) {
     const auto says = [&](const std::string& text, const std::string& words) {
         EXPECT_NE(refused(text).find(words), std::string::npos) << refused(text);
     };
-    says("size_px = [1, 2]", "size_px: a number from 240");
+    says("size_px = [1, 2]", "size_px: must be a number from 240");
     says("size_px = [640.0, nan]", "size_px");
     says("span = \"a week\"", "'a week' is none of 1 min, 10 min, 1 h, 6 h, 24 h");
     says("traces = 1", "true or false");
     says("armed = true", "armed: there is no such key");
     says("[show]\nforces = true", "show.forces: there is no such key");
-    says("[scene]\nchecksum = \"12\"", "16 digits");
-    says("[scene]\nquat_eye_scene_xyzw = [0, 0, 0, 0]", "its length is not 1");
+    says("[scene]\nchecksum = \"12\"", "16 hexadecimal digits");
+    says("[scene]\nquat_eye_scene_xyzw = [0, 0, 0, 0]", "its norm must be 1");
     says("[scene]\ndistance_a = -1", "scene.distance_a");
     says("[scene]\ntarget_a = [0, 0]", "a list of 3 numbers");
     says("= 3", "line 1");

@@ -115,12 +115,12 @@ TEST_F(FalconBoot, what_fails_is_said_with_its_mend) {
     wrong.board().runs = false;
     wrong.board().wrong_echo_at = 5;
     wrong.board().wrong_echoes = 100;
-    EXPECT_TRUE(says(opening(wrong), {"gives the firmware's bytes back wrong", "fix:"}));
+    EXPECT_TRUE(says(opening(wrong), {"echoes wrong firmware bytes", "fix:"}));
     EXPECT_EQ(wrong.board().wrong_echoes, 97U);
     LockstepFalcon dead(path());
     dead.board().runs = false;
     dead.board().hellos_missed = 1'000'000;
-    EXPECT_TRUE(says(opening(dead), {"its loader does not answer", "power supply"}));
+    EXPECT_TRUE(says(opening(dead), {"the boot loader does not answer", "power supply"}));
     LockstepFalcon stops(path());
     stops.board().runs = false;
     stops.board().mute = true;
@@ -128,17 +128,17 @@ TEST_F(FalconBoot, what_fails_is_said_with_its_mend) {
     LockstepFalcon other(path());
     other.board().runs = false;
     other.board().firmware.push_back(std::byte{0});  // it would wait for more
-    EXPECT_TRUE(says(opening(other), {"took the firmware, which then does not answer"}));
+    EXPECT_TRUE(says(opening(other), {"accepted the firmware, but the firmware does not answer"}));
     LockstepFalcon stubborn(path());
     stubborn.board().refuses_settings = true;
-    EXPECT_TRUE(says(opening(stubborn), {"serial converter does not take its settings"}));
+    EXPECT_TRUE(says(opening(stubborn), {"serial converter does not accept its settings"}));
 }
 
 TEST_F(FalconBoot, a_file_that_is_not_there_empty_or_too_large_is_an_error_before_the_bus_is_touched) {
     write("empty.bin", {});
     write("large.bin", std::vector<std::byte>(falcon::kFirmwareBytesMax + 1));
     for (const auto& [name, why] :
-         {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "nothing in it"},
+         {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "the file is empty"},
           std::pair{"large.bin", "more than 131072 bytes"}}) {
         LockstepFalcon arm(path(name));
         EXPECT_TRUE(says(opening(arm), {name, why, "fix: device.firmware"})) << name;
@@ -153,7 +153,7 @@ TEST_F(FalconBoot, a_file_that_is_not_there_empty_or_too_large_is_an_error_befor
 TEST_F(FalconBoot, what_the_bus_finds_is_said_with_its_mend) {
     for (const auto& [fault, why] :
          {std::pair{BusFault::missing, "0403:cb48"}, std::pair{BusFault::several, "device.serial"},
-          std::pair{BusFault::twins, "two have this serial"},
+          std::pair{BusFault::twins, "two devices have this serial number"},
           std::pair{BusFault::denied, "install.sh --rights"}, std::pair{BusFault::busy, "lsof"},
           std::pair{BusFault::failed, "dmesg"}}) {
         LockstepFalcon arm;

@@ -343,7 +343,7 @@ TEST_F(FalconArm, many_bad_packets_are_said) {
     }
     run(30, {});
     EXPECT_EQ(arm_.sample.notice, DeviceNotice::states_refused);
-    EXPECT_NE(summary(arm_.news().counts).find("refused for their frame"), std::string::npos);
+    EXPECT_NE(summary(arm_.news().counts).find("refused: frame"), std::string::npos);
 }
 
 // With its own thread and the machine's clock: what passes between the threads, and the end of it.

@@ -210,11 +210,11 @@ TEST(SocketCan, refusals_name_the_interface_and_the_mend) {
     says(CanStep::socket, EAFNOSUPPORT, "no CAN", "modprobe can_raw");
     says(CanStep::socket, EPERM, "refused", "AF_CAN");
     says(CanStep::interface, ENODEV, "no such interface", "tracker.interface");
-    says(CanStep::type, 0, "no CAN interface", "type can");
+    says(CanStep::type, 0, "not a CAN interface", "type can");
     says(CanStep::state, 0, "down", "ip link set can7 up type can bitrate 1000000");
     says(CanStep::mtu, 0, "CAN FD", "fd on");
     says(CanStep::option, EINVAL, "option", "kernel");
-    says(CanStep::bind, ENETDOWN, "listened", "ip link set can7 up");
+    says(CanStep::bind, ENETDOWN, "binding", "ip link set can7 up");
 }
 
 // Whether this kernel has CAN or not.

@@ -164,7 +164,7 @@ TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {
 TEST_F(Link, client_waits_in_words_and_attaches_when_the_controller_comes_and_comes_again) {
     LinkClient client("t", -1);
     EXPECT_FALSE(client.poll().arrived);
-    EXPECT_NE(client.status_text().find("none is running"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("it is not running"), std::string::npos) << client.status_text();
     for (int round = 0; round < 3; ++round) {
         auto server = std::make_unique<LinkServer>("t", rt_.fd());
         bool arrived = false;
@@ -321,7 +321,7 @@ TEST_F(Link, client_refuses_a_controller_that_answers_garbage) {
     FileDescriptor s(accept(fake.get(), nullptr, nullptr));
     EXPECT_EQ(send(s.get(), "welcome", 7, 0), 7);
     EXPECT_FALSE(client.poll().arrived);
-    EXPECT_NE(client.status_text().find("garbage"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("invalid"), std::string::npos) << client.status_text();
     EXPECT_FALSE(client.attached());
 }
 
@@ -330,7 +330,7 @@ TEST_F(Link, folder_that_others_may_write_to_is_refused_by_both_sides) {
     EXPECT_THROW(LinkServer("t", rt_.fd()), StartupError);
     LinkClient client("t", -1);
     client.poll();
-    EXPECT_NE(client.status_text().find("others may write"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("other users may write"), std::string::npos) << client.status_text();
     ASSERT_EQ(chmod(folder_.c_str(), 0700), 0);
 
     const std::string link = folder_ + "/link";

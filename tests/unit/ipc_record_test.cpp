@@ -236,7 +236,7 @@ TEST_F(RecordFile, a_file_that_is_there_is_not_overwritten) {
 TEST_F(RecordFile, what_is_no_recording_is_refused_in_words) {
     EXPECT_NE(refusal().find("opening"), std::string::npos);
     std::ofstream(path_) << "no such thing";
-    EXPECT_NE(refusal().find("is no HDF5 file"), std::string::npos);
+    EXPECT_NE(refusal().find("is not an HDF5 file"), std::string::npos);
     std::filesystem::remove(path_);
     { const Hdf5Handle other = hdf5::create_file(path_); }
     EXPECT_NE(refusal().find("end"), std::string::npos);

@@ -106,7 +106,8 @@ TEST(Region, every_seal_is_demanded) {
         f.seals = kAllSeals & ~missing;
         const std::string refusal = refusal_of(forge(f));
         EXPECT_NE(refusal.find("seals are " + std::to_string(f.seals)), std::string::npos) << refusal;
-        EXPECT_NE(refusal.find("wanted at least " + std::to_string(kAllSeals)), std::string::npos) << refusal;
+        EXPECT_NE(refusal.find("expected at least " + std::to_string(kAllSeals)), std::string::npos)
+            << refusal;
     }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ipc/base/device_notice.hpp"
+#include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact {
@@ -26,13 +27,36 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
     EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
 }
 
+TEST(LevelText, says_what_limits_a_level_since_when_and_at_which_error) {
+    PathLevel p{};
+    p.haptic = 1;
+    p.level = 0.5F;
+    p.error = 0.0131;
+    p.changed_at_ns = 1'000'000'000;
+    p.reason = static_cast<std::uint8_t>(LevelReason::cost_low);
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "limited by step cost for 12 s, error 0.013 N");
+    p.reason = static_cast<std::uint8_t>(LevelReason::deadline_missed);
+    EXPECT_EQ(level_status_text(p, 3'500'000'000), "lowered after a deadline miss for 2.5 s, error 0.013 N");
+    p.level = 1.0F;
+    p.error = 0.0;
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "full detail");
+    p.haptic = 0;
+    p.level = 0.3F;
+    p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
+    EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "limited by the frame rate for 30 min");
+    // Of another clock, or of no number: left out.
+    p.haptic = 1;
+    p.error = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(level_status_text(p, 0), "limited by the frame rate");
+}
+
 TEST(Text, every_code_has_words_of_its_own) {
     expect_own_words(run_state_text, RunState::fault, false);
     expect_own_words(run_reason_text, RunReason::supervisor, true);
     expect_own_words(event_code_text, EventCode::device_notice, true);
     expect_own_words(lines_text, LinesShown::permitted, true);
     expect_own_words(device_notice_text, static_cast<DeviceNotice>(kDeviceNotices - 1), true);
-    expect_own_words(level_reason_text, LevelReason::picture_high, false);
+    expect_own_words(level_reason_text, LevelReason::deadline_missed, false);
     expect_own_words(command_kind_text, kLastCommand, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
     expect_own_words(frame_part_text, FramePart::particles, false);
@@ -64,11 +88,11 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
               "stopping: the servo did not sleep for 1 s; choose a lower rate");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
-    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
+    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N requested, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
-    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: picture to 0.5, start");
+    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: display to 0.5, start");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
                    static_cast<std::uint16_t>(LevelReason::rate_low)),
               "level changed: force to 0.25, force rate below goal");

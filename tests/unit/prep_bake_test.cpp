@@ -126,7 +126,7 @@ TEST(Bake, given_contour_resolution_and_vertex_limit_are_obeyed) {
     EXPECT_LE(baked.vertices, 1500U);
     EXPECT_GT(baked.vertices, 1000U);
     EXPECT_TRUE(has_line(baked.note, "contour: 60, as given")) << baked.note;
-    EXPECT_TRUE(has_line(baked.note, "resolution: 12 Å, guessed")) << baked.note;
+    EXPECT_TRUE(has_line(baked.note, "resolution: 12 Å, estimated")) << baked.note;
 }
 
 TEST(Bake, the_hand_feels_a_smoothed_map_where_asked_while_the_map_itself_stays) {
@@ -140,9 +140,9 @@ TEST(Bake, the_hand_feels_a_smoothed_map_where_asked_while_the_map_itself_stays)
     EXPECT_EQ(read_grid(file).values, input.grid.values);
     EXPECT_EQ(read_force_map_grid(file).values,
               low_pass(input.grid, baked.meta.map_background, 18e-10).values);
-    EXPECT_TRUE(has_line(baked.note, "felt map: smoothed")) << baked.note;
+    EXPECT_TRUE(has_line(baked.note, "force map: smoothed")) << baked.note;
 
-    EXPECT_TRUE(has_line(baked_ring().told.note, "felt map: as it is"));
+    EXPECT_TRUE(has_line(baked_ring().told.note, "force map: not smoothed"));
     EXPECT_EQ(read_force_map_grid(SceneFile::from_bytes(baked_ring().bytes, "plain")).values,
               input.grid.values);
 }
@@ -185,9 +185,9 @@ TEST(Bake, impossible_wishes_are_refused) {
                   in.structures.resize(17, in.structures[0]);
               }).find("17 structures are more than 16"),
               std::string::npos);
-    EXPECT_NE(error([](DockingInput& in) { in.contour = 1e6; }).find("outside of the map's values"),
+    EXPECT_NE(error([](DockingInput& in) { in.contour = 1e6; }).find("outside the map's values"),
               std::string::npos);
-    EXPECT_NE(error([](DockingInput& in) { in.contour = std::nan(""); }).find("outside of the map's values"),
+    EXPECT_NE(error([](DockingInput& in) { in.contour = std::nan(""); }).find("outside the map's values"),
               std::string::npos);
     EXPECT_NE(error([](DockingInput& in) { in.resolution_m = 1.0; }).find("resolution"), std::string::npos);
     const std::string far = error([](DockingInput& in) { in.structures[1].home_com_model_m.x() += 1e-6; });

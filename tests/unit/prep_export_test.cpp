@@ -330,7 +330,7 @@ TEST_F(Export, nothing_is_overwritten_and_inputs_never) {
     fs::create_symlink(file, folder_ / "trap" / "small-body1.pdb");
     EXPECT_NE(error_of([&] {
                   export_bodies(scene, bodies, {.folder = folder_ / "trap", .force = true});
-              }).find("baked from"),
+              }).find("from which the scene was baked"),
               std::string::npos);
     EXPECT_EQ(read(file), kPdb);
     EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = file / "x"}); }), "");
@@ -346,13 +346,13 @@ TEST_F(Export, a_source_that_is_gone_or_changed_is_said) {
     EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("has changed"),
               std::string::npos);
     fs::remove(file);
-    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("is not there"),
+    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("does not exist"),
               std::string::npos);
     EXPECT_FALSE(fs::exists(out()));
     sample::scene().write(folder_ / "made.tact");
     EXPECT_NE(error_of([&] {
                   export_bodies(SceneFile::open(folder_ / "made.tact"), bodies, {.folder = out()});
-              }).find("made in code"),
+              }).find("is synthetic"),
               std::string::npos);
 }
 

@@ -59,10 +59,10 @@ TEST(FieldImport, wrong_files_are_refused_with_the_line_and_the_fix) {
         const std::string error = error_of(csv);
         EXPECT_NE(error.find(part), std::string::npos) << error;
     };
-    refused("", "it holds no point");
-    refused("x,y,z,phi\n", "it holds no point");
+    refused("", "the file has no points");
+    refused("x,y,z,phi\n", "the file has no points");
     refused("0 0 0 1\n0 0 a 2\n", "line 2");
-    refused("0 0 0 1\n0 0 2\n", "it has 3 numbers");
+    refused("0 0 0 1\n0 0 2\n", "the line has 3 numbers");
     refused("0 0 0 nan\n", "not finite");
     refused("0 0 0 1e999\n", "not finite");
     refused(csv_of(5, 5, 5) + "10,-5,0,7\n", "do not fill a grid");
@@ -71,11 +71,11 @@ TEST(FieldImport, wrong_files_are_refused_with_the_line_and_the_fix) {
         0, twice.find('\n'),
         twice.substr(twice.find('\n') + 1, twice.find('\n', twice.find('\n') + 1) - twice.find('\n') - 1));
     refused(twice, "given twice");
-    refused(csv_of(3, 5, 5), "along x there are 3 points");
+    refused(csv_of(3, 5, 5), "axis x has 3 points");
     std::string uneven = csv_of(5, 5, 5);
     for (std::size_t at = 0; (at = uneven.find("12,", at)) != std::string::npos; at += 3)
         uneven.replace(at, 3, "12.5,");
-    refused(uneven, "are not equal");
+    refused(uneven, "unequal steps");
 }
 
 TEST(FieldImport, an_nrrd_keeps_its_geometry_and_refuses_values_that_are_no_numbers) {

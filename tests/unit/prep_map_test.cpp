@@ -174,13 +174,13 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 TEST(MrcMap, bad_headers_are_refused_with_the_place_and_the_reason) {
     expect_refused({}, ".mrc", "0 bytes", "header");
     expect_refused(std::vector<char>(1023, '\0'), ".mrc", "1023 bytes", "header");
-    expect_refused(std::vector<char>(5000, '\0'), ".mrc", "neither byte order", "sizes 0, 0, 0");
-    expect_refused(std::vector<char>(5000, 'x'), ".mrc", "neither byte order", "sizes");
+    expect_refused(std::vector<char>(5000, '\0'), ".mrc", "invalid in both byte orders", "sizes 0, 0, 0");
+    expect_refused(std::vector<char>(5000, 'x'), ".mrc", "invalid in both byte orders", "sizes");
     expect_refused(with_word(4, 12), ".mrc", "word 4", "16-bit floats");
     expect_refused(with_word(4, 3), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 4), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 5), ".mrc", "word 4", "mode 5");
-    expect_refused(with_word(17, 2), ".mrc", "neither byte order", "axes 2, 2, 3");
+    expect_refused(with_word(17, 2), ".mrc", "invalid in both byte orders", "axes 2, 2, 3");
     expect_refused(with_word(1, 1), ".mrc", "word 1", "1 voxels along an axis");
     expect_refused(with_word(3, 60000), ".mrc", "word 3", "60000 voxels");
     expect_refused(with_word(11, 0), ".mrc", "word 11", "cell edge");
@@ -195,11 +195,11 @@ TEST(MrcMap, bad_headers_are_refused_with_the_place_and_the_reason) {
     expect_refused(with_word(24, 0xffffff00U), ".mrc", "word 24", "extended header");
     Mrc flat;
     flat.angles = {150.0F, 150.0F, 150.0F};
-    expect_refused(flat.bytes(), ".mrc", "words 14-16", "make no cell");
+    expect_refused(flat.bytes(), ".mrc", "words 14-16", "no cell has these angles");
     Mrc thin;
     thin.angles = {90.0F, 70.0F, 90.0F};
     thin.cell = {12.0F, 15.0F, 0.1F};
-    expect_refused(thin.bytes(), ".mrc", "skew cell", "voxels at right angles");
+    expect_refused(thin.bytes(), ".mrc", "skew cell", "voxels on axes at right angles");
 }
 
 TEST(MrcMap, declared_sizes_are_refused_before_memory_is_taken) {
@@ -243,8 +243,8 @@ TEST(SitusMap, bad_text_is_refused_with_the_line) {
     refused("", "line 1", "ends before the voxel size");
     refused("hello world", "line 1", "'hello' is not a number");
     refused("2.0 0 0", "line 1", "ends before the origin");
-    refused("0 0 0 0 4 4 4\n", "line 1", "voxel of 0");
-    refused("nan 0 0 0 4 4 4\n", "line 1", "voxel of nan");
+    refused("0 0 0 0 4 4 4\n", "line 1", "voxel size 0");
+    refused("nan 0 0 0 4 4 4\n", "line 1", "voxel size nan");
     refused("1 0 inf 0 4 4 4\n", "line 1", "origin");
     refused("1 0 0 0 4 4 -4\n", "line 1", "-4 voxels");
     refused("1 0 0 0 4 4.5 4\n", "line 1", "'4.5' is not a number");
@@ -289,7 +289,7 @@ TEST_F(MapFiles, packed_and_plain_files_are_the_same) {
 TEST_F(MapFiles, bad_files_are_refused_by_name) {
     const auto error = [](const fs::path& path) { return sample::error_of([&] { (void)import_map(path); }); };
     EXPECT_NE(error(folder_ / "absent.mrc").find("absent.mrc: No such file"), std::string::npos);
-    EXPECT_NE(error(write("empty.mrc", {})).find("empty.mrc: it is empty"), std::string::npos);
+    EXPECT_NE(error(write("empty.mrc", {})).find("empty.mrc: the file is empty"), std::string::npos);
     EXPECT_NE(error(write("a.txt", {'x'})).find("'.txt' is not that of a map"), std::string::npos);
     fs::create_directory(folder_ / "folder.mrc");
     EXPECT_NE(error(folder_ / "folder.mrc").find("not a regular file"), std::string::npos);
@@ -303,7 +303,7 @@ TEST(MrcMap, a_small_skew_file_does_not_grow_into_a_huge_grid) {
     Mrc mrc;
     mrc.angles = {90.0F, 90.0F, 120.0F};
     mrc.cell = {12000.0F, 15000.0F, 16.0F};
-    expect_refused(mrc.bytes(), ".mrc", "skew cell", "allowed are 7680");
+    expect_refused(mrc.bytes(), ".mrc", "skew cell", "more than 7680");
 }
 
 }  // namespace

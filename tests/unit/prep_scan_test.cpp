@@ -161,15 +161,15 @@ TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
         return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
     };
     const std::string unit = "\nspacings: 1 1 1\nencoding: raw";
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "fix:"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "the file has 3", "fix:"}));
     EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "fix: crop"}));
     EXPECT_TRUE(says(nrrd("sizes: 99999 5 4" + unit), {"99999 x 5 x 4", "8192"}));
     EXPECT_TRUE(says(nrrd("sizes: 1000 1000 1000\nspacings: 1 1 1\nencoding: gzip"),
-                     {"than 3 packed ones can hold"}));
-    EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"no whole number"}));
+                     {"than 3 compressed bytes can hold"}));
+    EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"not a whole number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5" + unit), {"axes"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"it has no voxel spacing"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"no number"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"the header has no voxel spacing"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"not a number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 0 1\nencoding: raw"), {"axis 1", "--unit"}));
     EXPECT_TRUE(
         says(nrrd("sizes: 6 5 4\nencoding: raw\nspace: lps\nspace directions: (1,0,0) (1,1,0) (0,0,1)"),
@@ -180,7 +180,7 @@ TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
     EXPECT_TRUE(says(refusal(of(f.write("y.mha", "NDims = 3\nDimSize = 6 5 4\nElementDataFile = LOCAL\n"))),
                      {"ElementSpacing"}));
     EXPECT_TRUE(says(refusal(of(f.write("z.nii", std::string(400, 'x')))), {"NIfTI-1"}));
-    EXPECT_TRUE(says(refusal(of(f.write("z.txt", "hello"))), {"no format that is known", ".nrrd"}));
+    EXPECT_TRUE(says(refusal(of(f.write("z.txt", "hello"))), {"the format is unknown", ".nrrd"}));
     EXPECT_TRUE(says(refusal(of(f.path / "absent.nrrd")), {"does not exist"}));
 }
 
@@ -188,11 +188,11 @@ TEST(Scans, values_of_an_unknown_kind_are_not_guessed) {
     const ScanFolder f;
     const fs::path file = f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
                                                 sample::bone_numbers({0, 1, 2}));
-    EXPECT_TRUE(says(refusal(of(file)), {"unknown kind", "--threshold-hu"}));
+    EXPECT_TRUE(says(refusal(of(file)), {"unit of the values is unknown", "--threshold-hu"}));
     BoneImport o = hu(of(file));
     EXPECT_TRUE(std::isnan(import_bone(o).bone.hu_at_0));
     o.solid = 200.0;
-    EXPECT_TRUE(says(refusal(o), {"threshold is 300"}));
+    EXPECT_TRUE(says(refusal(o), {"threshold 300"}));
 }
 
 TEST(Scans, crop_voxel_and_memory_are_heeded) {
@@ -272,19 +272,19 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         const ScanFolder f;
         write_series(f, {0, 1, 2});
         write_series(f, {1}, "again");
-        EXPECT_TRUE(says(refusal(of(f.path)), {"s8.dcm", "again8.dcm", "same place"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s8.dcm", "again8.dcm", "same position"}));
     }
     {
         const ScanFolder f;
         write_series(f, {0, 1, 2, 3});
         const std::string whole = sample::dicom_bytes(sample::bone_slice(2));
         f.write("s7.dcm", whole.substr(0, whole.size() - 30));
-        EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "cut short"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "truncated"}));
     }
     const ScanFolder f;
     EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM image"}));
     write_series(f, {0});
-    EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
+    EXPECT_TRUE(says(refusal(of(f.path)), {"only one slice"}));
 }
 
 TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
@@ -302,7 +302,7 @@ TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
     o.series = 1;
     expect_bone(import_bone(o).bone);
     o.series = 3;
-    EXPECT_TRUE(says(refusal(o), {"no series 3"}));
+    EXPECT_TRUE(says(refusal(o), {"series 3 is not in this list"}));
     // A planning view beside a volume needs no choice.
     const ScanFolder g;
     for (int u = 0; u < 9; ++u) g.write(numbered("v", u), sample::dicom_bytes(sample::bone_slice(u)));
@@ -372,7 +372,8 @@ TEST(Dicom, what_is_no_grey_scan_is_refused) {
                      }),
                      {"fix:"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.spacing = 0.0; }), {"mm"}));
-    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unknown kind"}));
+    EXPECT_TRUE(
+        says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unit of the values is unknown"}));
     EXPECT_TRUE(
         says(with([](sample::DicomSample& s) { s.maker = "NewTom VGi"; }), {"no error", "cone-beam"}));
 }
@@ -411,14 +412,14 @@ TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enou
     EXPECT_TRUE(says(refusal(o), {"ITK-SNAP"}));
     o.label_names.clear();
     o.labels = o.scan;
-    EXPECT_TRUE(says(refusal(o), {"no whole number from 0 to 255"}));
+    EXPECT_TRUE(says(refusal(o), {"not a whole number from 0 to 255"}));
     o.labels = f.write("small.nrrd",
                        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 2\nspacings: 1 1 1\n"
                        "encoding: raw\n\n" +
                            numbers);
     EXPECT_TRUE(says(refusal(o), {"6 x 5 x 2", "6 x 5 x 4"}));
     o.labels = f.write("none.nrrd", head + "\n" + std::string(120, '\0'));
-    EXPECT_TRUE(says(refusal(o), {"none of them lies in the volume"}));
+    EXPECT_TRUE(says(refusal(o), {"no label lies in the volume"}));
 }
 
 void write_rgba(const fs::path& path, std::uint32_t wide,
@@ -439,11 +440,11 @@ TEST(Pictures, are_ordered_by_number_without_gaps) {
     const auto why = [](std::vector<std::string> names) {
         return told([&] { (void)stack_order(std::move(names), "read"); });
     };
-    EXPECT_TRUE(says(why({"a1.png", "a2.png", "a5.png"}), {"after number 2 comes 5"}));
+    EXPECT_TRUE(says(why({"a1.png", "a2.png", "a5.png"}), {"number 2 is followed by 5"}));
     EXPECT_TRUE(says(why({"a1.png", "a01.png"}), {"same number"}));
     EXPECT_TRUE(says(why({"a1.png", "b2.png"}), {"two names"}));
     EXPECT_TRUE(says(why({"a.png"}), {"no number"}));
-    EXPECT_TRUE(says(why({"a99999999999999999999.png"}), {"very long"}));
+    EXPECT_TRUE(says(why({"a99999999999999999999.png"}), {"more than 9 digits"}));
     EXPECT_TRUE(says(why({}), {"no .png"}));
 }
 

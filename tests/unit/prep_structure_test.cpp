@@ -56,7 +56,7 @@ TEST(PdbStructure, hydrogens_waters_alternates_and_later_models_are_dropped) {
     EXPECT_NEAR(place_a(in.structure, 0).x(), 2.0, 1e-4) << "the higher occupancy";
     EXPECT_NEAR(place_a(in.structure, 1).x(), 3.0, 1e-4) << "the first among equals";
     EXPECT_EQ(in.summary,
-              "2 atoms in 1 chain (A), 1 on the backbone; dropped 2 hydrogens, 1 atoms of water, 2 alternate "
+              "2 atoms in 1 chain (A), 1 on the backbone; dropped 2 hydrogens, 1 water atoms, 2 alternate "
               "locations");
 }
 
@@ -121,8 +121,8 @@ TEST(PdbStructure, bad_files_are_refused_with_the_line) {
     expect_refused("", ".pdb", "no atoms", "no atoms");
     expect_refused("REMARK nothing\nEND\n", ".pdb", "no atoms", "no atoms");
     expect_refused(std::string(3000, '\0'), ".pdb", "no atoms", "no atoms");
-    expect_refused(pdb_atom(" O  ", "HOH", 'A', 1, 1, 2, 3), ".pdb", "1 atoms of water", "no atoms besides");
-    expect_refused(good + good.substr(0, 40) + "\n", ".pdb", "line 2", "ends before its coordinates");
+    expect_refused(pdb_atom(" O  ", "HOH", 'A', 1, 1, 2, 3), ".pdb", "1 water atoms", "no atoms besides");
+    expect_refused(good + good.substr(0, 40) + "\n", ".pdb", "line 2", "ends before column 54");
     std::string bad = good;
     bad.replace(38, 8, "********");
     expect_refused("REMARK\n" + good + bad, ".pdb", "line 3", "y '********' is not a number");
@@ -131,7 +131,7 @@ TEST(PdbStructure, bad_files_are_refused_with_the_line) {
     bad.replace(38, 8, "        ");
     expect_refused(bad, ".pdb", "line 1", "y '' is not a number");
     bad.replace(38, 8, "   1e300");
-    expect_refused(bad, ".pdb", "line 1", "farther than");
+    expect_refused(bad, ".pdb", "line 1", "more than 100000");
     bad.replace(38, 8, " 99000.0");
     expect_refused(good + bad, ".pdb", "residue 1", "from the centre of mass");
     expect_refused("x", ".xyz", "'.xyz'", "not that of a structure");

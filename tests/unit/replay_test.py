@@ -107,7 +107,7 @@ def main():
         code, _, err = s.run("tact", "replay", recording, "--scene", s.path("ground.tact"))
         s.claim("another scene is refused", code == 1 and "differs from the recorded one" in err, (code, err))
         code, _, err = s.run("tact", "replay", s.path("dock.tact"))
-        s.claim("a file that is not a recording is refused", code == 1 and "no HDF5 file" in err, (code, err))
+        s.claim("a file that is not a recording is refused", code == 1 and "not an HDF5 file" in err, (code, err))
         code, _, err = s.run("tact", "run", s.path("dock.tact"), "--no-gui", "--seconds", 1, "--record", recording)
         s.claim("a recording is not overwritten", code == 1 and "exists already" in err, (code, err))
         s.late(s.path("dock.tact"))

@@ -7,6 +7,7 @@ tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_smooth_gain_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_watchdogs_test.cpp USES base safety)
 tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
+tact_test(unit/govern_level_fit_test.cpp USES base govern)
 tact_test(unit/govern_rate_hold_test.cpp USES base govern)
 tact_test(unit/govern_replay_test.cpp USES base govern)
 tact_test(unit/hal_sim_test.cpp USES base hal)
@@ -34,9 +35,11 @@ tact_test(unit/start_drill_test.cpp USES base shm topics scene hal force servo t
 # The stages of a cycle, without a Servo.
 tact_test(unit/servo_input_stages_test.cpp USES base topics hal_api force servo)
 tact_test(unit/servo_force_stages_test.cpp USES base topics hal_api force servo)
+tact_test(unit/servo_armed_metrics_test.cpp USES base servo)
 tact_test(unit/servo_output_stages_test.cpp USES base topics hal_api force servo)
 
 tact_test(unit/bench_servo_test.cpp USES base bench_servo)
+tact_test(unit/bench_governor_test.cpp USES base bench SYSTEM nlohmann_json::nlohmann_json)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config start)

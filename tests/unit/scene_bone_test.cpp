@@ -143,7 +143,7 @@ TEST(BoneVolume, what_no_maker_writes_is_refused_by_name) {
     refused(kLabl, "size", [](Bytes& b) { poke(b, 0, 8U); });
     refused(kLabl, "structures", [](Bytes& b) { poke(b, 12, 0U); });
     refused(kLabl, "structures", [](Bytes& b) { poke(b, 12, 255U); });
-    refused(kLabl, "label 2, but there are 1", [](Bytes& b) {
+    refused(kLabl, "label 2, but the table has 1", [](Bytes& b) {
         poke(b, 12, 1U);
         b.erase(b.begin() + 128, b.begin() + 192);
     });

@@ -113,7 +113,7 @@ TEST(SceneContent, every_field_of_the_grid_is_checked) {
                        "GRID", word);
     };
     refused("voxels", [](DensityGrid& g) { g.size[0] = 6; });
-    refused("left over", [](DensityGrid& g) { g.size[0] = 4; });
+    refused("follow its content", [](DensityGrid& g) { g.size[0] = 4; });
     refused("along an axis", [](DensityGrid& g) { g.size[1] = 0; });
     refused("along an axis", [](DensityGrid& g) { g.size[2] = 0xffffffffU; });
     refused("voxels", [](DensityGrid& g) { g.size = {8192, 8192, 8192}; });
@@ -147,7 +147,7 @@ TEST(SceneContent, every_field_of_a_structure_is_checked) {
     refused("chain 2", [](Structure& s) { s.chain[1] = 2; });
     refused("element 119", [](Structure& s) { s.element[1] = 119; });
     refused("trace", [](Structure& s) { s.trace[1] = 2; });
-    refused("left over", [](Structure& s) { s.trace.push_back(0); });
+    refused("follow its content", [](Structure& s) { s.trace.push_back(0); });
     refused("trace", [](Structure& s) { s.trace.pop_back(); });
 }
 

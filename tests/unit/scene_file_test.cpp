@@ -72,7 +72,7 @@ TEST_F(SceneFileOnDisk, an_old_scene_survives_a_failed_write) {
     const std::uint64_t before = SceneFile::open(path).checksum();
     const std::string error = sample::error_of([&] { sample::scene().write(path_ / "absent" / "b.tact"); });
     EXPECT_NE(error.find("No such file"), std::string::npos) << error;
-    EXPECT_NE(sample::error_of([&] { sample::scene().write(path_); }).find("it is a folder"),
+    EXPECT_NE(sample::error_of([&] { sample::scene().write(path_); }).find("the path is a folder"),
               std::string::npos);
     EXPECT_EQ(SceneFile::open(path).checksum(), before);
     EXPECT_EQ(entries(), 1U);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <typeinfo>
 #include <utility>
 
@@ -16,6 +17,8 @@
 
 namespace tact {
 namespace {
+
+constexpr float kLevelJump = 0.01F;  // of the knob in one step; its slew is less
 
 // 0: a command for another system.
 std::uint32_t option_of(std::uint8_t command) noexcept {
@@ -81,7 +84,12 @@ KnobSpec DockingModel::knob() const noexcept {
     spec.start = blend().start_fidelity();
     spec.slew_per_s = 4.0F;
     spec.haptic = true;
+    spec.steps = static_cast<std::uint32_t>(parts_->levels[bodies_.structure()].size() - 1);
     return spec;
+}
+
+PathLoad DockingModel::predict(float fidelity) const noexcept {
+    return bodies_.in_hand() ? blend().predict(fidelity) : PathLoad{};
 }
 
 std::uint32_t DockingModel::items(float fidelity) const noexcept {
@@ -119,6 +127,7 @@ void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const
 }
 
 void DockingModel::grip(const Pose& T_world_tool) noexcept {
+    glide_.restart();
     if (!bodies_.in_hand()) return;
     const Pose& body = bodies_.list().T_model_body[bodies_.list().active];
     com_from_tool_world_m_ = parts_->meta.to_world(body.p_m) - T_world_tool.p_m;
@@ -173,6 +182,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     add_clash(body, clash);
     StepResult result = blend().evaluate(body, budget, &kept_);
     audit(result, body);
+    glide(budget.fidelity, result);
     result.wrench_world.force_n += clash.wrench_world.force_n;
     result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
     result.load.cost += clash.load.cost;
@@ -180,6 +190,15 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     result.wrench_world.force_n *= gain;
     result.wrench_world.torque_n_m *= gain;
     return result;
+}
+
+// Small steps of the knob blend two levels and need no offset.
+void DockingModel::glide(float fidelity, StepResult& result) noexcept {
+    const bool fell_back = result.load.items != blend().items(fidelity);
+    const bool jumped = std::abs(fidelity - level_before_) > kLevelJump || fell_back != fell_back_;
+    glide_.apply(jumped, step_s_, result.wrench_world, result.load.error);
+    level_before_ = fidelity;
+    fell_back_ = fell_back;
 }
 
 // A measurement above the bound raises the bound of all levels of this structure, for good. A step that used
@@ -198,6 +217,7 @@ void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noe
 // What is shown fades from here, and what is felt instead fades in after it.
 void DockingModel::fade(const ForceFade& shown) noexcept {
     fade_.follow(shown);
+    glide_.restart();
     audit_.restart();
 }
 

@@ -38,6 +38,7 @@
 #include "rt/force/docking/error_audit.hpp"
 #include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/level_blend.hpp"
+#include "rt/force/docking/level_glide.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 
@@ -51,8 +52,10 @@ public:
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     // By the choice of the scene's gain (ipc/scene/density/docking_gain.hpp), and of the clash on top.
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
+    void drive(const ToolDrive& drive) noexcept TACT_RT override { step_s_ = drive.step_s; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_.list(); }
@@ -88,6 +91,7 @@ private:
     [[nodiscard]] LevelBlend blend() const noexcept;  // of the structure in the hand
     void add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
     void show_options() noexcept;
+    void glide(float fidelity, StepResult& result) noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
@@ -110,6 +114,10 @@ private:
     bool clutched_ = true;  // until the first good step, which takes the grip where the tool then is
     ForceFade fade_;
     KeptSums kept_;
+    LevelGlide glide_;
+    float level_before_ = 0.0F;
+    bool fell_back_ = false;  // the last step used a smaller level than its budget's
+    double step_s_ = 1e-3;
     ErrorAudit audit_;
     std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
 };

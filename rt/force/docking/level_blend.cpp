@@ -68,6 +68,8 @@ PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model
                                                   static_cast<double>(budget.work_fraction), deadline);
     PartialSums::Result result;
     result.complete = sum_until(map, points.view(), T_model_body, deadline, result.sums);
+    result.late = !result.complete;
+    if (!result.complete) result.recomputed_fraction = 0.0F;
     return result;
 }
 
@@ -100,15 +102,14 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
     const PartialSums::Result lower = sum_level(p.lower, T_model_body, budget, kept);
     if (!lower.complete) {
         result.status = StepStatus::out_of_time;
+        result.load.work_done = lower.recomputed_fraction;
     } else {
         use(p.lower, lower);
+        bool late = lower.late;
         if (p.upper != p.lower) {
-            PartialSums::Result upper;
-            upper.complete = false;
-            if (!budget.deadline.passed()) upper = sum_level(p.upper, T_model_body, budget, kept);
-            if (!upper.complete) {
-                result.status = StepStatus::out_of_time;
-            } else {
+            const PartialSums::Result upper = sum_level(p.upper, T_model_body, budget, kept);
+            late = late || upper.late;
+            if (upper.complete) {
                 const Wrench a = wrench(lower.sums), b = wrench(upper.sums);
                 result.wrench_world.force_n = (1.0 - p.blend) * a.force_n + p.blend * b.force_n;
                 result.wrench_world.torque_n_m = (1.0 - p.blend) * a.torque_n_m + p.blend * b.torque_n_m;
@@ -120,9 +121,9 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
                 result.load.recomputed_fraction =
                     (m * lower.recomputed_fraction + n * upper.recomputed_fraction) / (m + n);
             }
-        } else if (budget.deadline.passed()) {
-            result.status = StepStatus::out_of_time;  // complete, but too late
         }
+        if (late || budget.deadline.passed()) result.status = StepStatus::out_of_time;
+        if (late) result.load.work_done = result.load.recomputed_fraction;
     }
     result.load.cost = Monotonic::now() - begin;
     return result;

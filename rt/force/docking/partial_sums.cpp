@@ -64,15 +64,19 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
         Slice& slice = slices_[k];
         const double moved_m = slice.made ? motion_m(slice.made_at, T_model_body) : 0.0;
         const double most = slice.slope < 0.0 ? kStillVoxels : kFarthestVoxels;
-        if (turn >= due && slice.made && moved_m <= most * voxel_m) {
-            result.stale += kMargin * std::max(slice.slope, 0.0) * moved_m;
-            continue;
-        }
+        const bool near = slice.made && moved_m <= most * voxel_m;
         const std::size_t begin = k * n / kSlices, end = (k + 1) * n / kSlices;
         DensitySums sums;
-        if (!sum_until(map, points.view(begin, end - begin), T_model_body, deadline, sums)) {
+        const bool due_now = turn < due || !near;
+        if (due_now && !result.late)
+            result.late = !sum_until(map, points.view(begin, end - begin), T_model_body, deadline, sums);
+        if (due_now && result.late && !near) {
             result.complete = false;
             break;
+        }
+        if (!due_now || result.late) {
+            result.stale += kMargin * std::max(slice.slope, 0.0) * moved_m;
+            continue;
         }
         summed += end - begin;
         if (moved_m > kStillVoxels * voxel_m)

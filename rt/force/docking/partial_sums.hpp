@@ -4,6 +4,8 @@
 // Work      in proportion to the share; slices are renewed in turn, so with any share each of them is at most
 //           kSlices - 1 steps old. As a step with less to do is over sooner, the oldest sum is hardly older
 //           than the time that all of them take.
+// Late      once the deadline has passed nothing is summed any more where an older sum is near enough (kFarthestVoxels): the
+//           step is late, but no point is left out. Without such sums it is not complete.
 // Whole     with share 1; and slice by slice, whatever the share, where a sum says nothing: of another level
 //           or density, never made, or made more than kFarthestVoxels of motion ago. A sum is a function of
 //           these and of the place, so no grip, order or reset need be told.
@@ -36,6 +38,7 @@ public:
         double stale = 0.0;                // of the gradient
         float recomputed_fraction = 1.0F;  // of the points, summed in this step
         bool complete = true;              // else the deadline came first; the slices made by then are kept
+        bool late = false;                 // the deadline passed before all due slices were summed
     };
 
     // share in (0, 1]; anything else is 1. The pose finite.

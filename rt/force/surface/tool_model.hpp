@@ -63,7 +63,7 @@ public:
     [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
 
     // Predicted cost and error bound of a level.
-    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT;
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
     [[nodiscard]] const ToolContact& contact() const { return solver_; }
     [[nodiscard]] double torque_n_m_rad() const { return torque_n_m_rad_; }  // stiffness in rotation

@@ -1,0 +1,105 @@
+// How measured costs of steps lie about their predictions: speed, spread and interrupts (level_fit.hpp).
+//
+// Speed       streaming median: each sample moves it by kStep towards itself
+// Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %; starts with kPrior samples at kPriorSpread at most,
+//             so one early outlier is no tail
+// Interrupts  decaying histogram of the excess, in octaves of 1 us and above. kChangedRun interrupted samples in a row are none: the
+//             cost has changed, and the speed is their least at once
+// Thread      servo; constant time
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "ipc/base/rt.hpp"
+
+namespace tact {
+
+class CostSpread {
+public:
+    static constexpr double kTail = 1e-3;        // above the quantile
+    static constexpr double kInterrupted = 1.6;  // times the usual cost, and kInterruptLeast_s above it
+    static constexpr double kInterruptLeast_s = 5e-6;
+
+    void restart() noexcept TACT_RT {
+        *this = {};
+        ratio_[bin(1.0)] = kPrior * (1.0 - 2.0 * kTail);
+        ratio_[bin(kPriorSpread)] = kPrior * 2.0 * kTail;
+        total_ = kPrior;
+    }
+    enum class Kind { usual, interrupted, changed };
+    static constexpr std::size_t kChangedRun = 4;
+
+    Kind add(double cost_s, double predicted_s, double speed_least) noexcept TACT_RT {
+        if (!(predicted_s > 0.0) || !(cost_s >= 0.0)) return Kind::usual;
+        const double ratio = cost_s / predicted_s, usual_s = speed_ * predicted_s;
+        const bool interrupted = ratio > kInterrupted * speed_ && cost_s > usual_s + kInterruptLeast_s;
+        if (total_ >= kMemory) decay();
+        if (interrupted) {
+            run_least_ = run_ == 0 ? ratio : std::min(run_least_, ratio);
+            run_excess_[run_++] = octave(cost_s - usual_s);
+            if (run_ < kChangedRun) return Kind::interrupted;
+            run_ = 0;
+            speed_ = run_least_;
+            return Kind::changed;
+        }
+        for (; run_ > 0; --run_) {
+            interrupt_[run_excess_[run_ - 1]] += 1.0;
+            total_ += 1.0;
+        }
+        speed_ = std::max(speed_ * (ratio > speed_ ? 1.0 + kStep : 1.0 - kStep), speed_least);
+        ratio_[bin(ratio / speed_)] += 1.0;
+        total_ += 1.0;
+        return Kind::usual;
+    }
+    [[nodiscard]] double speed() const noexcept TACT_RT { return speed_; }
+    [[nodiscard]] double spread() const noexcept TACT_RT {
+        double above = 0.0;
+        for (std::size_t i = kBins; i-- > 0;) {
+            above += ratio_[i];
+            if (above > kTail * total_) return std::max(upper(i), 1.0);
+        }
+        return 1.0;
+    }
+    // Excess in seconds that a thousandth of the steps exceeds; 0 where fewer are interrupted.
+    [[nodiscard]] double interrupt_s() const noexcept TACT_RT {
+        double above = 0.0;
+        for (std::size_t i = kOctaves; i-- > 0;) {
+            above += interrupt_[i];
+            if (above > kTail * total_) return 1e-6 * std::exp2(static_cast<double>(i) + 1.0);
+        }
+        return 0.0;
+    }
+
+private:
+    static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kMemory = 16000.0;
+    static constexpr double kLeast = 0.5, kWidth = 0.02;  // of the bins, in ln
+    static constexpr std::size_t kBins = 72, kOctaves = 16;
+
+    static std::size_t bin(double ratio) noexcept TACT_RT {
+        const double place = std::log(std::max(ratio, kLeast) / kLeast) / kWidth;
+        return std::min(static_cast<std::size_t>(place), kBins - 1);
+    }
+    static double upper(std::size_t bin) noexcept TACT_RT {
+        return kLeast * std::exp(kWidth * static_cast<double>(bin + 1));
+    }
+    static std::size_t octave(double excess_s) noexcept TACT_RT {
+        return std::min(static_cast<std::size_t>(std::max(std::log2(1e6 * excess_s), 0.0)), kOctaves - 1);
+    }
+    void decay() noexcept TACT_RT {
+        for (double& n : ratio_) n *= 0.5;
+        for (double& n : interrupt_) n *= 0.5;
+        total_ *= 0.5;
+    }
+
+    double speed_ = 1.0, total_ = 0.0;
+    std::size_t run_ = 0;  // interrupted samples in a row, not counted yet
+    double run_least_ = 0.0;
+    std::array<std::size_t, kChangedRun> run_excess_{};
+    std::array<double, kBins> ratio_{};
+    std::array<double, kOctaves> interrupt_{};
+};
+
+}  // namespace tact
