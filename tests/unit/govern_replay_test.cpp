@@ -1,6 +1,5 @@
-// The laws over the same loads, on a plant in arithmetic: nothing is measured on this machine, and every run
-// repeats to the bit. Prints the table of rt/govern/README.md and holds the default law to being the better
-// one.
+// The laws under the same loads, on a calculated plant: results do not depend on this machine and repeat bit by bit.
+// Prints the table of rt/govern/README.md and requires the default law to beat the published one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +15,9 @@ namespace tact {
 namespace {
 
 constexpr double kGoal_hz = 1000.0;
-constexpr double kSettled_s = 2.0;  // after a change of the load; what comes later is held to the goal
+constexpr double kSettled_s = 2.0;  // after a load change; later samples must hold the goal
 
-// A load that changes at instants: from each on, until the next.
+// A load that changes at given instants.
 struct Story {
     std::string name;
     std::vector<std::pair<double, Load>> from;
@@ -44,7 +43,7 @@ std::vector<Story> stories() {
     return all;
 }
 
-// The highest level with which the goal is held under a load that stays: by trying.
+// The highest level that holds the goal under a constant load, found by bisection.
 double best_level(const Story& story, const Load& load) {
     double low = static_cast<double>(SharedCorePlant::kMesh.floor), high = 1.0;
     for (int i = 0; i < 12; ++i) {
@@ -68,21 +67,22 @@ double best_level(const Story& story, const Load& load) {
 }
 
 struct Figures {
-    double missed_percent = 0.0;   // updates that lacked to the goal, of those wanted, over all of it
-    double settling_s = 0.0;       // longest, after a change: back at 95 % of the goal for a second
-    double mean_percent = 0.0;     // rate against the goal, where the goal binds and the change is past
-    double worst_percent = 100.0;  // lowest tenth of a second there, of the goal
-    double fidelity = 0.0;         // level over the best possible, mean where the goal binds
-    double overshoot = 0.0;        // furthest below the best possible, of it
+    double missed_percent = 0.0;  // missing updates, of all required
+    double settling_s =
+        0.0;  // longest time after a change until the rate stays at 95 % of the goal for a second
+    double mean_percent = 0.0;     // mean rate against the goal, settled, where the goal limits the level
+    double worst_percent = 100.0;  // lowest rate in 0.1 s there, of the goal
+    double fidelity = 0.0;         // mean level over the best possible, where the goal limits the level
+    double overshoot = 0.0;        // largest relative shortfall below the best possible level
     int changes = 0;
 };
 
-// A law with its settings. The published one says nothing of its interval and gain.
+// A law with its settings. The publication of sensitus gives neither interval nor gain.
 struct Contender {
     std::string name;
     Law law;
     double gain, interval_s;
-    bool hold = false;  // with rate_hold.hpp beneath it, as the controller runs
+    bool hold = false;  // with rate_hold.hpp, as the controller runs
 };
 const std::vector<Contender> kContenders{{"sensitus, s 0.5, 0.2 s", Law::sensitus, 0.5, 0.2},
                                          {"sensitus, s 0.5, 0.1 s", Law::sensitus, 0.5, 0.1},
@@ -107,7 +107,7 @@ Figures metrics(const Story& story, const Contender& c) {
         const double from_s = story.at(s.t_s - 0.05).first, level = best[from_s];
         wanted += kGoal_hz;
         missed += std::max(kGoal_hz - s.rate_hz, 0.0);
-        // Settled: the first instant of a second at 95 % or more.
+        // Settled: the first instant from which the rate stays at 95 % or more for a second.
         if (from_s != change_s) change_s = since_s = from_s, settled = false;
         if (s.rate_hz < 0.95 * kGoal_hz && !settled) since_s = s.t_s;
         settled = settled || s.t_s - since_s >= 1.0;
@@ -131,7 +131,7 @@ Figures metrics(const Story& story, const Contender& c) {
 TEST(LawReplay, the_default_law_is_better_than_the_published_one_over_the_same_loads) {
     std::printf("| load | law | missed | settled | mean | worst 0.1 s | fidelity | overshoot | changes |\n");
     for (const Story& story : stories()) {
-        Figures best{.missed_percent = 1e9, .settling_s = 1e9};  // of the published law, column by column
+        Figures best{.missed_percent = 1e9, .settling_s = 1e9};  // of the published law, per column
         for (const Contender& c : kContenders) {
             const Figures f = metrics(story, c);
             std::printf("| %s | %s | %.2f %% | %.1f s | %+.1f %% | %.1f %% | %.2f | %.2f | %d |\n",
@@ -155,8 +155,8 @@ TEST(LawReplay, the_default_law_is_better_than_the_published_one_over_the_same_l
     }
 }
 
-// What a neighbour on the same physical core does: everything takes 1.45 times as long for up to seconds.
-TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_the_core_leaps) {
+// The effect of another program on the same physical core: everything takes 1.45 times as long for up to 3 s.
+TEST(LawReplay, rate_hold_keeps_the_goal_in_every_tenth_of_a_second_on_a_changing_core) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> length_s(0.2, 3.0);
     std::vector<double> leap_s{0.0};
@@ -179,12 +179,12 @@ TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_t
             ++n;
         }
         std::printf(
-            "a core that leaps, %s: mean %+.1f %%, worst 0.1 s %.1f %%, %.1f %% of the steps' work done "
-            "anew, mean level %.3f\n",
+            "a core that leaps, %s: mean %+.1f %%, worst 0.1 s %.1f %%, %.1f %% of the steps' work "
+            "recomputed, mean level %.3f\n",
             hold ? "held" : "by the law alone", 100.0 * (sum / n - 1.0), 100.0 * worst, 100.0 * fresh / n,
             level / n);
         if (!hold) {
-            EXPECT_LT(worst, 0.8);  // what there is to win
+            EXPECT_LT(worst, 0.8);  // the possible gain
             continue;
         }
         EXPECT_NEAR(sum / n, 1.0, 0.01);
@@ -208,7 +208,7 @@ TEST(LawReplay, the_same_load_twice_gives_the_same_levels) {
     EXPECT_NE(run(1), run(2));
 }
 
-// Ten times the load for a minute, then none: what went down meanwhile must not have to be paid back.
+// Ten times the load for a minute, then none: the level must recover without delay.
 TEST(LawReplay, nothing_winds_up_at_the_floor) {
     for (const double bad_s : {2.0, 60.0}) {
         PlantSettings p;
@@ -218,13 +218,13 @@ TEST(LawReplay, nothing_winds_up_at_the_floor) {
         double back_s = -1.0;
         for (const PlantSample& x : s)
             if (back_s < 0.0 && x.t_s > bad_s && x.level > 0.5) back_s = x.t_s - bad_s;
-        std::printf("%.0f s at the floor: half of the picture is back after %.1f s\n", bad_s, back_s);
+        std::printf("%.0f s at the floor: half of the display level is back after %.1f s\n", bad_s, back_s);
         EXPECT_GT(back_s, 0.0);
         EXPECT_LT(back_s, 8.0);
     }
 }
 
-TEST(LawReplay, inside_the_dead_band_nothing_moves) {
+TEST(LawReplay, inside_the_dead_band_the_level_does_not_change) {
     PlantSettings p;
     p.frame_jitter = 0.0;
     p.seconds = 40.0;
@@ -240,12 +240,12 @@ TEST(LawReplay, inside_the_dead_band_nothing_moves) {
         }
 }
 
-// A map too big for the renderer: the force rate is at its goal all the time, the picture is not at its own.
-TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it_has_to) {
+// A map too large for the renderer: the force rate holds its goal, the frame rate does not.
+TEST(LawReplay, a_display_below_its_goal_gets_only_as_coarse_as_necessary) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         PlantSettings p;
         p.free_running = false;
-        p.frame_full_s = 0.6;  // 1.6 frames a second with all of it
+        p.frame_full_s = 0.6;  // 1.6 frames/s at full level
         p.fps_max = 60.0;
         p.seconds = 20.0;
         SharedCorePlant plant(p, {.law = law, .goal_hz = kGoal_hz, .display_goal_hz = 30.0});
@@ -260,19 +260,20 @@ TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it
                     plant.changes());
         EXPECT_LT(below_s, 4.0);
         EXPECT_GE(fps, 28.0);
-        const double rest = (1.0 / 30.0 - p.frame_fixed_s) / p.frame_full_s;  // where a frame takes its goal
+        const double rest =
+            (1.0 / 30.0 - p.frame_fixed_s) / p.frame_full_s;  // level at which a frame takes its goal
         EXPECT_GT(s.back().level, 0.5 * rest);
         EXPECT_LT(s.back().level, 1.1 * rest);
         EXPECT_EQ(plant.governor().paths()[0].reason, LevelReason::picture_low);
-        EXPECT_FLOAT_EQ(plant.governor().level(1), 1.0F);  // the force is not touched for a picture
+        EXPECT_FLOAT_EQ(plant.governor().level(1), 1.0F);  // the force keeps its level
     }
 }
 
-TEST(LawReplay, a_picture_with_time_to_spare_comes_back_to_all_of_it) {
+TEST(LawReplay, a_display_with_spare_time_returns_to_full_level) {
     PlantSettings p;
     p.free_running = false;
     p.fps_max = 60.0;
-    p.frame_full_s = 0.02;  // 37 frames a second with all of it
+    p.frame_full_s = 0.02;  // 37 frames/s at full level
     p.seconds = 20.0;
     SharedCorePlant plant(p, {.goal_hz = kGoal_hz, .display_goal_hz = 30.0});
     const auto& s = plant.run([](double t) { return Load{.frame_times = t < 5.0 ? 20.0 : 1.0}; });

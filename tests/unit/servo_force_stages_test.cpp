@@ -1,4 +1,4 @@
-// The stages between a pose and a force, each called by itself: exchange of models, model, shape, safety, actuate.
+// The stages from pose to force, each in isolation: exchange of models, model, shape, safety, actuate.
 #include <gtest/gtest.h>
 
 #include "rt/servo/model_exchange.hpp"
@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(ModelExchange, another_model_enters_with_a_reset_and_the_old_one_goes_back) {
+TEST(ModelExchange, another_model_starts_with_a_reset_and_the_old_one_is_returned) {
     CycleFixture f;
     auto* const fresh = new SpringModel;
     std::unique_ptr<ForceModel> offered(fresh);
@@ -23,11 +23,11 @@ TEST(ModelExchange, another_model_enters_with_a_reset_and_the_old_one_goes_back)
     EXPECT_EQ(f.c.hand[0].model, fresh);
     EXPECT_EQ(fresh->resets, 1);
     EXPECT_TRUE(f.reported(EventCode::model_swapped));
-    EXPECT_EQ(f.mailbox.model.collect().release(), &f.model);  // the fixture's own
+    EXPECT_EQ(f.mailbox.model.collect().release(), &f.model);  // the model of the fixture
     delete fresh;
 }
 
-// Remembers how it was driven.
+// Keeps the last drive command.
 class DrivenModel final : public ForceModel {
 public:
     ToolDrive driven;
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] ModelBodies bodies() const noexcept override { return {}; }
 };
 
-TEST(StageModel, the_model_steps_at_the_governors_level_between_two_readings_of_the_clock) {
+TEST(StageModel, the_model_steps_at_the_governor_level_between_two_timestamps) {
     CycleFixture f;
     f.model.clock = &f.clock;
     f.model.cost = microseconds(40);
@@ -53,7 +53,7 @@ TEST(StageModel, the_model_steps_at_the_governors_level_between_two_readings_of_
     EXPECT_LT((f.c.hand[0].step.wrench_world.force_n - 40.0 * f.model.rest_world_m).norm(), 1e-12);
 }
 
-TEST(StageModel, a_repeated_cycle_has_the_recorded_level) {
+TEST(StageModel, a_replayed_cycle_has_the_recorded_level) {
     CycleFixture f;
     const CycleScript script{.level = 0.25F, .deadline_check = {3, 0}};
     f.io.script = &script;
@@ -73,7 +73,7 @@ TEST(StageModel, a_tool_is_driven_while_its_switch_and_the_force_are_on) {
         return model.driven.on;
     };
     f.c.hand[0].tool.buttons = kDriveButton;
-    EXPECT_FALSE(on());  // no force
+    EXPECT_FALSE(on());  // the force is off
     EXPECT_FALSE(model.driven.enabled);
     f.c.run.state = RunState::active;
     EXPECT_TRUE(on());
@@ -88,7 +88,7 @@ TEST(StageModel, a_tool_is_driven_while_its_switch_and_the_force_are_on) {
     EXPECT_TRUE(on());
 }
 
-TEST(StageModel, a_line_that_cannot_be_read_switches_nothing_on) {
+TEST(StageModel, an_unreadable_input_switches_nothing_on) {
     CycleFixture f;
     DrivenModel model;
     f.c.hand[0].model = &model;
@@ -100,7 +100,7 @@ TEST(StageModel, a_line_that_cannot_be_read_switches_nothing_on) {
         servo::step_models(f.c, f.settings, f.io);
         return model.driven.on;
     };
-    EXPECT_FALSE(on());  // none are fitted
+    EXPECT_FALSE(on());  // no digital I/O is fitted
     f.c.lines.fitted = true;
     EXPECT_TRUE(on());
     f.c.lines.age = f.settings.lines_age_max + microseconds(1);
@@ -124,7 +124,7 @@ TEST(StageShape, a_force_is_scaled_and_damped) {
     EXPECT_LT((h.wanted_world.force_n - Vec3(0.5, -0.2, 0.0)).norm(), 1e-12);
 }
 
-TEST(StageShape, at_a_delay_the_walls_are_no_stiffer_than_is_stable) {
+TEST(StageShape, at_a_delay_the_walls_are_no_stiffer_than_the_stable_limit) {
     CycleFixture f;
     f.c.statistics.metrics.delay_p99_ns = 20'000'000;
     servo::bound_by_delay(f.c, f.settings);
@@ -138,7 +138,7 @@ TEST(StageShape, at_a_delay_the_walls_are_no_stiffer_than_is_stable) {
     EXPECT_GT(f.c.bounds.stiffness_n_m, bound);
 }
 
-TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
+TEST(StageSafety, the_force_ramps_in_when_armed_with_a_hand) {
     CycleFixture f;
     f.c.events.arm = true;
     f.c.order.kind = static_cast<std::uint32_t>(CommandKind::arm);
@@ -162,7 +162,7 @@ TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
     EXPECT_NEAR(before_n, 1.0, 1e-9);
 }
 
-TEST(StageSafety, a_force_that_is_no_number_is_a_fault_with_a_snapshot_and_zero_force) {
+TEST(StageSafety, a_force_that_is_not_finite_gives_a_fault_a_snapshot_and_zero_force) {
     CycleFixture f;
     f.c.run.state = RunState::active;
     f.c.hand[0].wanted_world.force_n = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -175,7 +175,7 @@ TEST(StageSafety, a_force_that_is_no_number_is_a_fault_with_a_snapshot_and_zero_
     EXPECT_EQ(newest(f.mailbox.fault).reason, static_cast<std::uint64_t>(RunReason::force_not_finite));
 }
 
-TEST(StageSafety, a_stop_ends_the_run_once_no_force_is_shown) {
+TEST(StageSafety, a_stop_ends_the_run_after_the_force_is_zero) {
     CycleFixture f;
     f.mailbox.stop_signal.store(15);
     servo::make_safe(f.c, f.settings, f.io);
@@ -192,7 +192,7 @@ TEST(StageSafety, a_dry_cycle_changes_no_state) {
     EXPECT_EQ(f.c.run.state, RunState::ready);
 }
 
-TEST(StageActuate, the_device_gets_the_wrench_after_the_chain) {
+TEST(StageActuate, the_device_gets_the_wrench_from_the_chain) {
     CycleFixture f;
     f.c.cycle = 12;
     f.c.hand[0].out.wrench_dev.force_n = Vec3(0.0, 0.3, 0.0);

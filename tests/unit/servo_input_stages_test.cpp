@@ -1,4 +1,4 @@
-// The stages of a cycle up to the model, each called by itself: wake, orders, lines, sense, pose.
+// The stages before the model, each in isolation: wake, orders, digital I/O, sense, pose.
 #include <gtest/gtest.h>
 
 #include "rt/servo/stage_lines.hpp"
@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_kept) {
+TEST(StageWake, a_cycle_begins_at_its_planned_instant_and_keeps_one_timestamp) {
     CycleFixture f;
     const Instant planned = f.c.pacer.planned() + milliseconds(1);
     f.c.pacer.restart(planned);
@@ -23,24 +23,24 @@ TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_ke
     EXPECT_EQ(f.c.lateness, Duration{0});
     EXPECT_EQ(f.c.cycle, 1U);
     EXPECT_EQ(f.c.step, 1U);
-    EXPECT_EQ(f.c.dt, Duration{0});  // of the first one
+    EXPECT_EQ(f.c.dt, Duration{0});  // the first cycle has no predecessor
     ASSERT_EQ(f.c.timestamps, 1U);
     EXPECT_EQ(f.c.timestamp[0], planned);
 }
 
-TEST(StageWake, a_late_cycle_knows_by_how_much_and_a_dry_one_is_never_late) {
+TEST(StageWake, a_late_cycle_reports_its_lateness_and_a_dry_one_is_never_late) {
     CycleFixture f;
     servo::wake(f.c, f.settings, f.clock);
     f.clock.advance(microseconds(1300));
     servo::wake(f.c, f.settings, f.clock);
-    EXPECT_EQ(f.c.lateness, microseconds(1300));  // its instant has not moved on
+    EXPECT_EQ(f.c.lateness, microseconds(1300));  // the planned instant has not moved
     EXPECT_EQ(f.c.dt, microseconds(1300));
     f.c.dry = true;
     servo::wake(f.c, f.settings, f.clock);
     EXPECT_EQ(f.c.lateness, Duration{0});
 }
 
-TEST(StageOrders, a_level_is_set_answered_and_recorded) {
+TEST(StageOrders, an_order_for_a_level_is_applied_answered_and_recorded) {
     CycleFixture f;
     f.order(CommandKind::set_level, 0.5, kForcePathIndex);
     servo::take_orders(f.c, f.settings, f.io);
@@ -55,13 +55,13 @@ TEST(StageOrders, a_level_is_set_answered_and_recorded) {
     EXPECT_EQ(recorded.order.value, 0.5);
 }
 
-TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_for_the_orders_behind_it) {
+TEST(StageOrders, an_order_for_the_state_is_answered_by_the_state_machine_and_delays_later_orders) {
     CycleFixture f;
     f.order(CommandKind::arm);
     f.order(CommandKind::disarm);
     servo::take_orders(f.c, f.settings, f.io);
     EXPECT_TRUE(f.c.events.arm);
-    EXPECT_FALSE(f.c.events.disarm);  // in the next cycle
+    EXPECT_FALSE(f.c.events.disarm);  // handled in the next cycle
     EXPECT_EQ(f.c.report.last_sequence, 0U);
     f.c.run.state = RunState::armed;
     servo::answer_state_order(f.c, RunState::ready, *f.region);
@@ -69,7 +69,7 @@ TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_for_the
     EXPECT_EQ(f.c.report.last_result, CommandResult::done);
 }
 
-TEST(StageOrders, a_model_without_such_a_setting_refuses_it_and_an_unknown_command_is_answered) {
+TEST(StageOrders, an_unsupported_setting_is_refused_and_an_unknown_command_is_answered) {
     CycleFixture f;
     f.order(CommandKind::set_clash, 1.0);
     servo::take_orders(f.c, f.settings, f.io);
@@ -79,7 +79,7 @@ TEST(StageOrders, a_model_without_such_a_setting_refuses_it_and_an_unknown_comma
     EXPECT_EQ(f.c.report.last_result, CommandResult::unknown);
 }
 
-TEST(StageOrders, a_visual_process_that_falls_silent_is_reported_once_and_ramps_out_where_asked) {
+TEST(StageOrders, a_silent_visual_process_is_reported_once_and_ramps_out_if_configured) {
     ServoSettings settings;
     settings.gui_silent_ramps = true;
     CycleFixture f(settings);
@@ -100,9 +100,9 @@ TEST(StageOrders, a_visual_process_that_falls_silent_is_reported_once_and_ramps_
     EXPECT_EQ(times, 1);
 }
 
-TEST(StageLines, a_stop_bars_arming_and_old_samples_are_lost_lines) {
+TEST(StageLines, a_stop_bars_arming_and_old_samples_count_as_lost) {
     CycleFixture f;
-    servo::check_lines(f.c, f.settings, f.io);  // none are fitted
+    servo::check_lines(f.c, f.settings, f.io);  // no digital I/O is fitted
     EXPECT_EQ(f.c.lines.stops, RunReason::none);
     f.fit_lines();
     servo::check_lines(f.c, f.settings, f.io);
@@ -132,7 +132,7 @@ TEST(StageLines, a_stop_between_two_samples_is_not_missed_once_armed) {
     EXPECT_EQ(f.c.lines.stops, RunReason::lines_lost);
 }
 
-TEST(StageLines, arming_re_arms_and_the_outputs_follow_the_state) {
+TEST(StageLines, arming_rearms_the_inputs_and_the_outputs_follow_the_state) {
     CycleFixture f;
     f.fit_lines();
     f.c.run.state = RunState::armed;
@@ -152,7 +152,7 @@ TEST(StageLines, arming_re_arms_and_the_outputs_follow_the_state) {
     EXPECT_EQ(f.lines.command.heartbeat, 3U);
 }
 
-TEST(StageLines, a_drop_by_the_supervisor_is_seen_once_and_recorded) {
+TEST(StageLines, a_drop_by_the_supervisor_is_handled_once_and_recorded) {
     CycleFixture f;
     f.mailbox.pulse.drops.store(1);
     EXPECT_TRUE(servo::supervisor_dropped(f.c, f.io));
@@ -160,7 +160,7 @@ TEST(StageLines, a_drop_by_the_supervisor_is_seen_once_and_recorded) {
     EXPECT_EQ(f.region->mailbox.pushed(), 1U);
 }
 
-TEST(StageSense, a_sample_that_is_not_finite_or_of_a_lost_device_is_not_usable) {
+TEST(StageSense, a_non_finite_sample_or_a_lost_device_is_not_usable) {
     CycleFixture f;
     servo::sense(f.c);
     EXPECT_TRUE(f.c.hand[0].sample_usable);
@@ -174,7 +174,7 @@ TEST(StageSense, a_sample_that_is_not_finite_or_of_a_lost_device_is_not_usable) 
     EXPECT_EQ(f.c.hand[0].read_status, IoStatus::lost);
 }
 
-TEST(StageSense, the_oldest_sample_is_remembered) {
+TEST(StageSense, the_largest_sample_age_is_kept) {
     CycleFixture f;
     f.device.sample.taken_at = f.c.now - milliseconds(3);
     servo::sense(f.c);
@@ -183,7 +183,7 @@ TEST(StageSense, the_oldest_sample_is_remembered) {
     EXPECT_EQ(f.c.hand[0].age_most, milliseconds(3));
 }
 
-TEST(StagePose, a_sample_is_turned_into_the_world_and_an_unusable_one_leaves_the_tool) {
+TEST(StagePose, a_sample_is_transformed_to_the_world_and_an_unusable_one_keeps_the_tool_pose) {
     ServoSettings settings;
     settings.T_world_dev.p_m = Vec3(0.0, 1.0, 0.0);
     settings.T_world_dev.q = Quat(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()));

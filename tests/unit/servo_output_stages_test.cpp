@@ -63,7 +63,7 @@ TEST(StagePublish, a_model_publishes_its_own_topic) {
     EXPECT_EQ(model.force_n, 2.0);
 }
 
-TEST(PublishLevels, a_visual_path_shows_what_the_report_has_of_it) {
+TEST(PublishLevels, a_visual_path_has_the_values_of_the_report) {
     CycleFixture f;
     f.c.housekeeping.gui_vertices_max = 1000;
     f.c.housekeeping.gui_busy_s = 0.004;
@@ -99,7 +99,7 @@ TEST(StageGovern,
     EXPECT_TRUE(f.reported(EventCode::level_changed));
 }
 
-TEST(StageGovern, steps_that_cost_more_than_fits_lower_the_level_at_once_and_say_why) {
+TEST(StageGovern, steps_that_exceed_their_time_lower_the_level_at_once_with_the_reason) {
     CycleFixture f;
     servo::make_level_rows(f.c);
     servo::choose_level(f.c, f.settings);
@@ -133,7 +133,7 @@ TEST(StageGovern, the_law_fixed_leaves_the_level_to_the_person) {
     EXPECT_EQ(f.c.governor.level(kForcePathIndex), 1.0F);
 }
 
-TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_one_that_fits) {
+TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_uses_the_best_that_fits) {
     CycleFixture f;
     f.settings.period = milliseconds(1);
     servo::make_level_rows(f.c);
@@ -153,7 +153,7 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_on
     EXPECT_GT(1.5 * static_cast<double>(f.c.governor.level(kForcePathIndex)), 0.45);
 }
 
-TEST(StageGovern, dry_cycles_count_and_ask_for_nothing) {
+TEST(StageGovern, dry_cycles_count_and_request_nothing) {
     CycleFixture f;
     f.c.dry = true;
     f.c.now += milliseconds(500);
@@ -186,7 +186,7 @@ TEST(StageClose, a_cycle_is_recorded_and_traced_with_its_cost) {
     EXPECT_EQ(trace.status, static_cast<std::uint32_t>(RunState::active) | 1U << 17);
 }
 
-TEST(StageClose, a_cycle_that_ends_after_the_next_one_is_due_overran) {
+TEST(StageClose, a_cycle_that_ends_after_its_successor_is_due_is_an_overrun) {
     CycleFixture f;
     f.c.planned = f.c.now;
     f.clock.advance(microseconds(1200));
@@ -197,7 +197,7 @@ TEST(StageClose, a_cycle_that_ends_after_the_next_one_is_due_overran) {
     EXPECT_TRUE(f.reported(EventCode::overrun));
 }
 
-TEST(StageClose, a_dry_cycle_is_recorded_as_one_and_leaves_no_trace) {
+TEST(StageClose, a_dry_cycle_is_recorded_as_dry_and_leaves_no_trace) {
     CycleFixture f;
     f.c.dry = true;
     servo::close(f.c, f.settings, f.io);
@@ -208,7 +208,7 @@ TEST(StageClose, a_dry_cycle_is_recorded_as_one_and_leaves_no_trace) {
     EXPECT_EQ(f.region->trace.pushed(), 0U);
 }
 
-TEST(Record, the_start_names_the_devices) {
+TEST(Record, the_start_record_names_the_devices) {
     CycleFixture f;
     const StartTopic t = servo::start_topic(f.settings, {&f.hand, 1}, true);
     EXPECT_EQ(t.hands, 1U);
@@ -217,7 +217,7 @@ TEST(Record, the_start_names_the_devices) {
     EXPECT_STREQ(t.device[0].name, "stub");
 }
 
-TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
+TEST(RateKeeping, a_loop_of_fixed_rate_does_all_its_work_without_rest) {
     CycleFixture f;
     EXPECT_EQ(servo::work_fraction(f.c, f.settings), 1.0);
     const Instant before = f.clock.now();
