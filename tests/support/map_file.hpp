@@ -1,4 +1,4 @@
-// A density grid as the bytes of a map file, so that tests and experiments can give tact-prep what a user gives it.
+// Writes a density grid as the bytes of a map file: input for tact-prep in tests and experiments.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tact {
 
-// Mode 2 (float), as MRC 2014 has it.
+// Mode 2 (float), according to MRC 2014.
 inline std::string map_file_bytes(const DensityGrid& grid) {
     std::array<std::int32_t, 256> header{};
     const auto put_float = [&header](std::size_t word, double value) {
@@ -20,7 +20,7 @@ inline std::string map_file_bytes(const DensityGrid& grid) {
     };
     for (std::size_t i = 0; i < 3; ++i) {
         header[i] = static_cast<std::int32_t>(grid.size[i]);
-        header[7 + i] = header[i];  // one voxel of the cell for each
+        header[7 + i] = header[i];  // one voxel of the cell per grid point
         put_float(10 + i, grid.spacing_m[static_cast<Eigen::Index>(i)] / kAngstromM * grid.size[i]);
         put_float(13 + i, 90.0);
         header[16 + i] = static_cast<std::int32_t>(i + 1);

@@ -198,7 +198,7 @@ TEST(PartialSums, another_density_and_other_points_are_summed_completely) {
     EXPECT_EQ(partial.step(map(), fewer, on_the_way(3), 0.125, Instant::max()).recomputed_fraction, 1.0F);
 }
 
-TEST(PartialSums, after_the_deadline_the_older_sums_stand_for_all_points_and_say_how_stale_they_are) {
+TEST(PartialSums, after_the_deadline_older_sums_are_used_and_their_staleness_is_reported) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     const PartialSums::Result late = partial.step(map(), points(), on_the_way(3), 0.5, Monotonic::now());
@@ -211,7 +211,7 @@ TEST(PartialSums, after_the_deadline_the_older_sums_stand_for_all_points_and_say
     expect_equal(step(partial, on_the_way(3), 1.0).sums, whole(on_the_way(3)));
 }
 
-TEST(PartialSums, without_an_older_sum_nearby_a_passed_deadline_leaves_the_step_incomplete) {
+TEST(PartialSums, without_older_sums_nearby_a_passed_deadline_leaves_the_step_incomplete) {
     PartialSums partial;
     EXPECT_FALSE(partial.step(map(), points(), on_the_way(0), 1.0, Monotonic::now()).complete);
     (void)step(partial, on_the_way(0), 1.0);

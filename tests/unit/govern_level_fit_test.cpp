@@ -1,4 +1,4 @@
-// The level of a haptic path: least error that fits, whole costs, misses, interrupts, and no hunting.
+// The level of a haptic path: smallest error that fits, complete costs, misses, interruptions, no oscillation.
 #include "rt/govern/level_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Rows = std::vector<LevelFit::Row>;
 
 constexpr double kUs = 1e-6;
 
-// Costs double from level to level, errors halve; the last is exact.
+// Costs double from level to level and errors halve; the last level is exact.
 Rows doubling(std::size_t count, double first_us) {
     Rows rows;
     for (std::size_t i = 0; i < count; ++i)
@@ -33,7 +33,7 @@ LevelFit with(const Rows& rows) {
     return fit;
 }
 
-// A loop whose steps cost what `cost_us` says of a row; a step ends at the deadline and has then done a part of its work.
+// A loop whose steps cost cost_us(row). The deadline cuts a longer step, which then has done part of its work.
 class Loop {
 public:
     Loop(LevelFit& fit, double period_us, double other_us = 10.0)
@@ -85,7 +85,7 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
                             .error = error(random)});
         LevelFit fit = with(rows);
         const float chosen = fit.choose({.period_s = 1e-3});
-        // Before any cycle the spread is its prior: the bin of 1.15 ends at 1.1582. A rise leaves a tenth of the limit free.
+        // Before any cycle the spread is its prior: the bin of 1.15 ends at 1.1582. A rise keeps a tenth of the limit free.
         const double most_s = 0.9 * 0.7e-3 / 1.1582;
         double best = 1e9;
         float wanted = -1.0F;
@@ -102,20 +102,20 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
     EXPECT_GT(compared, 300);
 }
 
-TEST(LevelFit, a_dearer_row_with_a_larger_error_is_never_chosen) {
+TEST(LevelFit, a_more_expensive_row_with_a_larger_error_is_never_chosen) {
     // A blend of two levels costs both and lies between their errors.
     LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {0.5F, 250 * kUs, 0.5}, {1.0F, 200 * kUs, 0.1}});
     EXPECT_EQ(fit.choose({.period_s = 1e-3}), 1.0F);
 }
 
-TEST(LevelFit, calibration_tries_each_row_and_measures_what_the_prediction_missed) {
+TEST(LevelFit, calibration_tries_each_row_and_replaces_wrong_predictions) {
     LevelFit fit = with(doubling(5, 1.0));
     float level = -1.0F;
     int tries = 0;
     while (fit.calibrating(level)) {
         const std::size_t row = static_cast<std::size_t>(std::lround(level * 4.0F));
         fit.calibrate(kUs * 100.0 * std::exp2(static_cast<double>(row)),
-                      5 * kUs);  // a hundred times the prediction
+                      5 * kUs);  // 100 times the prediction
         ++tries;
     }
     EXPECT_EQ(tries, 15);
@@ -135,12 +135,12 @@ TEST(LevelFit, the_tail_of_the_cycle_stays_within_seven_tenths_of_the_period_at_
         EXPECT_LE(loop.p999_us(10000), 0.7 * period_us * 1.02) << period_us;
         EXPECT_EQ(loop.misses, 0) << period_us;
         EXPECT_LE(loop.changes, 2) << period_us;
-        // And no lower than need be: the next row would not fit.
+        // The level is as high as possible: the next row would not fit.
         EXPECT_GT(2.0 * loop.p999_us(10000), 0.9 * 0.7 * period_us) << period_us;
     }
 }
 
-TEST(LevelFit, a_step_cut_by_its_deadline_counts_as_the_whole_one) {
+TEST(LevelFit, a_step_cut_by_its_deadline_counts_with_its_whole_cost) {
     // The true cost is four times the prediction: at the first level the deadline cuts every step.
     LevelFit fit = with(doubling(6, 20.0));
     Loop loop(fit, 1000.0);
@@ -149,10 +149,10 @@ TEST(LevelFit, a_step_cut_by_its_deadline_counts_as_the_whole_one) {
     EXPECT_LE(loop.p999_us(1000), 700.0);
     const int before = loop.misses;
     loop.run(20000, [](std::size_t row) { return 4.0 * 20.0 * std::exp2(static_cast<double>(row)); });
-    EXPECT_EQ(loop.misses, before);  // and it does not climb back into the deadline
+    EXPECT_EQ(loop.misses, before);  // the level does not rise back into the deadline
 }
 
-TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do) {
+TEST(LevelFit, one_interrupted_step_keeps_the_level_and_misses_close_together_lower_it) {
     LevelFit fit = with(doubling(6, 10.0));
     Loop loop(fit, 1000.0);
     const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
@@ -167,7 +167,7 @@ TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do)
     EXPECT_LT(fit.rows()[fit.row()].level, before);
 }
 
-TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_second_and_back) {
+TEST(LevelFit, the_level_follows_a_slower_processor_within_a_tenth_of_a_second_and_returns) {
     LevelFit fit = with(doubling(7, 10.0));
     Loop loop(fit, 1000.0);
     const auto at_speed = [](double factor) {
@@ -195,7 +195,7 @@ TEST(LevelFit, steps_in_free_space_do_not_raise_the_level_of_a_step_in_contact) 
     EXPECT_EQ(loop.misses, misses);
 }
 
-TEST(LevelFit, a_cost_at_the_edge_of_the_limit_does_not_make_the_level_hunt) {
+TEST(LevelFit, a_cost_at_the_limit_does_not_make_the_level_oscillate) {
     LevelFit fit = with(doubling(6, 20.0));
     Loop loop(fit, 1000.0);
     std::mt19937 random(5);
@@ -213,10 +213,10 @@ TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {
     const float whole = fit.choose({.period_s = 1e-3});
     EXPECT_LT(fit.choose({.period_s = 1e-3, .budget = 0.2}), whole);
     EXPECT_LE(fit.choose({.period_s = 1e-3, .level_max = 0.3F}), 0.3F);
-    EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // nothing fits: the floor
+    EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // no row fits: the floor
 }
 
-TEST(LevelFit, rows_that_are_no_rows_are_left_out) {
+TEST(LevelFit, invalid_rows_are_ignored) {
     LevelFit fit;
     EXPECT_FALSE(fit.set_rows({}));
     EXPECT_EQ(fit.add({.level = 0.4F}, {}).level, 0.4F);

@@ -1,4 +1,4 @@
-// The figures of the armed cycles, against sums made by hand.
+// Metrics of the armed cycles, against hand-calculated sums.
 #include "rt/servo/armed_metrics.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(ArmedMetrics, only_cycles_with_force_count) {
     EXPECT_NEAR(m.force_error_n_p50(), 0.5, 0.5 / 16.0);
 }
 
-TEST(ArmedMetrics, the_share_is_of_the_last_second_alone) {
+TEST(ArmedMetrics, the_miss_fraction_covers_only_the_last_second) {
     ArmedMetrics m;
     for (int i = 0; i < 1000; ++i) m.add({.armed = true, .deadline_missed = i < 250}, at_ms(i));
     m.second_over();
@@ -35,18 +35,18 @@ TEST(ArmedMetrics, the_share_is_of_the_last_second_alone) {
     EXPECT_EQ(m.deadline_misses(), 250U);
 }
 
-TEST(ArmedMetrics, the_largest_change_of_the_force_is_between_neighbouring_armed_cycles) {
+TEST(ArmedMetrics, the_largest_force_change_is_between_consecutive_armed_cycles) {
     ArmedMetrics m;
     m.add({.armed = true, .force_world_n = Vec3(0.0, 0.0, 1.0)}, at_ms(0));
     m.add({.armed = true, .force_world_n = Vec3(0.3, 0.4, 1.0)}, at_ms(1));
     EXPECT_NEAR(m.force_step_n_max(), 0.5, 1e-12);
     m.add({.armed = false}, at_ms(2));
     m.add({.armed = true, .force_world_n = Vec3(9.0, 0.0, 0.0)},
-          at_ms(3));  // armed anew: no change of a force
+          at_ms(3));  // newly armed: not a force change
     EXPECT_NEAR(m.force_step_n_max(), 0.5, 1e-12);
 }
 
-TEST(LevelHistory, a_level_has_settled_once_it_stays_within_five_percent_of_where_it_is) {
+TEST(LevelHistory, a_level_has_settled_when_it_stays_within_five_percent_of_its_value) {
     LevelHistory h;
     h.start(at_ms(0));
     for (int i = 0; i < 5000; ++i) {

@@ -1,4 +1,4 @@
-// The stages after the force, each called by itself: publish, govern, close; and how a freely running loop keeps its rate.
+// The stages after the force, each in isolation: publish, govern, close; and the rate keeping of a free-running loop.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -36,7 +36,7 @@ TEST(StagePublish, the_tool_is_published_each_cycle_and_health_ten_times_a_secon
     EXPECT_EQ(newest(f.region->devices).hand[0].samples, 1U);
 }
 
-// Counts what it is asked to publish.
+// Keeps the data that it gets to publish.
 class ShowingModel final : public ForceModel {
 public:
     std::uint64_t shown_at = 0;
@@ -119,7 +119,7 @@ TEST(StageGovern, steps_that_exceed_their_time_lower_the_level_at_once_with_the_
     EXPECT_EQ(f.c.governor.level(kDisplayPathIndex), 1.0F);
 }
 
-TEST(StageGovern, the_law_fixed_leaves_the_level_to_the_person) {
+TEST(StageGovern, the_fixed_law_keeps_the_level) {
     CycleFixture f;
     servo::make_level_rows(f.c);
     f.c.governor.set_law(Law::fixed);
@@ -142,7 +142,7 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_uses_the_b
     for (int i = 0; i < 200; ++i) {
         f.c.budget.fidelity = f.c.governor.level(kForcePathIndex);
         tried.insert(f.c.budget.fidelity);
-        // Five times the prediction of 300 us: 1.5 ms with all of it.
+        // Five times the prediction of 300 us: 1.5 ms at full level.
         f.c.model_cost = microseconds(static_cast<int>(1500.0F * f.c.budget.fidelity));
         servo::govern(f.c, f.settings, *f.region);
     }

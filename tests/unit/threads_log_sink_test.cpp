@@ -61,7 +61,7 @@ class LogSink : public testing::Test {};
 using Kinds = testing::Types<Pipe, Socket>;
 TYPED_TEST_SUITE(LogSink, Kinds);
 
-TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room) {
+TYPED_TEST(LogSink, drops_lines_that_do_not_fit_and_reports_their_number_later) {
     const TypeParam ends;
     spdlog::logger log("test", make_log_sink(ends.write));
     log.set_pattern("%l %v");
