@@ -110,7 +110,8 @@ TEST(PhantomPriority, a_refused_priority_is_reported_once_with_a_fix_and_the_dri
         EXPECT_NE(heard()[0].find("cannot use SCHED_FIFO at priority 1000 for the arm's USB"),
                   std::string::npos)
             << heard()[0];
-        EXPECT_NE(heard()[0].find("fix: tact doctor tells what is missing"), std::string::npos) << heard()[0];
+        EXPECT_NE(heard()[0].find("fix: run tact doctor to find the missing right"), std::string::npos)
+            << heard()[0];
     }
 }
 
