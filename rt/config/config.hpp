@@ -23,7 +23,7 @@
 
 namespace tact {
 
-// Of the period: the default deadline of the model's step, and the largest one that leaves time for the rest of a cycle.
+// Fractions of the period: default deadline of the model's step, and largest one that leaves time for the rest of a cycle.
 inline constexpr double kModelShare = 0.75, kModelShareMost = 0.9;
 
 struct RtConfig {

@@ -125,9 +125,10 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     const double model_us_most = kModelShareMost * config.servo.period_us;
     if (!config.servo.free_running && config.servo.model_us_max > model_us_most) {
         errors.emplace_back(where, "servo.model_us_max",
-                            number_text(config.servo.model_us_max) + " us do not fit the period of " +
+                            number_text(config.servo.model_us_max) +
+                                " us leave no time for the rest of the cycle in a period of " +
                                 number_text(config.servo.period_us) + " us",
-                            "at most " + number_text(model_us_most) + ", or 0 to follow the period");
+                            "choose at most " + number_text(model_us_most) + ", or 0 to follow the period");
     }
     check_pedals(config, where, errors);
     const auto drivers = device_drivers();

@@ -79,7 +79,7 @@ struct ModelOrder {
 
 // Period of a model's slow update.
 inline constexpr Duration kSlowUpdatePeriod = std::chrono::milliseconds(4);
-// Of that period, the longest that an update may take before the level falls.
+// Largest fraction of that period that an update may take before the level falls.
 inline constexpr double kSlowUpdateFraction = 0.9;
 
 // The servo cycle of which a model publishes.
@@ -97,7 +97,7 @@ public:
     [[nodiscard]] virtual KnobSpec knob() const noexcept TACT_RT = 0;
     // Number of points, blocks or vertices that a level evaluates; the governor publishes it.
     [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
-    // Cost (cost_predicted), error and items of a whole step at a level, for the body in the hand, before it is made.
+    // Predicts cost (cost_predicted), error and items of a full step at a level, for the body in the hand.
     // The cost may be off by a factor common to all levels: the governor measures that factor. Constant time.
     [[nodiscard]] virtual PathLoad predict(float /*fidelity*/) const noexcept TACT_RT { return {}; }
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are

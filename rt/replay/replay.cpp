@@ -23,7 +23,7 @@ public:
         std::string name = (std::filesystem::temp_directory_path() / "tact-replay-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
             throw StartupError("making a folder in '" + std::filesystem::temp_directory_path().string() + "'",
-                               last_error(), "make space there, or set TMPDIR");
+                               last_error(), "free disk space there, or set TMPDIR");
         folder_ = name;
     }
     ~RecordedFiles() {

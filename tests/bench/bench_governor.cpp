@@ -54,7 +54,7 @@ void run_program(const std::string& name, const std::vector<std::string>& argume
     ::close(s.output_fd);
     const auto& ending = child.wait(most);
     if (!ending)
-        throw StartupError("run " + name, "it did not end in time",
+        throw StartupError("run " + name, "the program did not end in time",
                            "run it by hand: " + name + " " + arguments.front());
 }
 
@@ -63,8 +63,8 @@ struct BenchScene {
     std::size_t atoms = 0;
     fs::path path;
     std::string knob;
-    std::vector<double> levels;          // of the sweep
-    std::vector<std::string> arguments;  // of its runs
+    std::vector<double> levels;          // levels of the sweep
+    std::vector<std::string> arguments;  // arguments of the runs
 };
 
 std::vector<double> equal_levels(std::size_t steps, double first = 0.0) {
@@ -74,7 +74,7 @@ std::vector<double> equal_levels(std::size_t steps, double first = 0.0) {
     return levels;
 }
 
-// The atoms of a baked structure, again and again, each copy a few angstrom from the others, as mmCIF.
+// Writes copies of the atoms of a baked structure, a few angstrom apart, as mmCIF.
 void write_copies(const Structure& s, std::size_t copies, const fs::path& file) {
     std::ofstream out(file);
     out << "data_copies\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n_atom_site."
@@ -83,7 +83,7 @@ void write_copies(const Structure& s, std::size_t copies, const fs::path& file) 
            "_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.occupancy\n";
     std::size_t id = 0;
     for (std::size_t c = 0; c < copies; ++c) {
-        // Along a spiral, so that no two copies coincide.
+        // Copies lie along a spiral, so that no two coincide.
         const double angle = 2.4 * static_cast<double>(c), r_a = 1.5 * std::sqrt(static_cast<double>(c));
         const Vec3 shift_a(r_a * std::cos(angle), r_a * std::sin(angle),
                            0.7 * std::sin(1.3 * static_cast<double>(c)));
@@ -99,17 +99,18 @@ void write_copies(const Structure& s, std::size_t copies, const fs::path& file) 
             out << line;
         }
     }
-    if (!out.flush()) throw StartupError("write " + file.string(), "the disk may be full", "free some space");
+    if (!out.flush())
+        throw StartupError("write " + file.string(), "the write failed", "free some disk space");
 }
 
-// The map of a baked scene, as a file.
+// Writes the map of a baked scene to a file.
 fs::path map_of(const Folder& folder, const SceneFile& scene) {
     const fs::path file = folder.path / "map.mrc";
     if (!fs::exists(file)) launch::write_whole(file, map_file_bytes(read_grid(scene)));
     return file;
 }
 
-// Bakes the structure as it is to read its atoms, then its copies.
+// Bakes the structure once to read its atoms, then bakes its copies.
 BenchScene docking_scene(const GovernorBenchSettings& settings, const Folder& folder, std::size_t atoms) {
     const fs::path one = folder.path / "one.tact",
                    many = folder.path / ("docking-" + std::to_string(atoms) + ".tact");
@@ -205,15 +206,15 @@ GovernorRun run(const Folder& folder, const BenchScene& scene, double rate_hz, d
     const json parsed = json::parse(launch::read_small(report), nullptr, false);
     if (parsed.is_discarded())
         throw StartupError("run " + scene.name,
-                           "it left no report: " + launch::read_small(folder.path / "run.log"),
-                           "run tact run on the scene by hand");
+                           "the run left no report: " + launch::read_small(folder.path / "run.log"),
+                           "start the scene by hand: tact run SCENE");
     return run_of(parsed);
 }
 
 std::vector<BenchScene> scenes_of(const GovernorBenchSettings& settings, const Folder& folder) {
     std::vector<BenchScene> scenes;
     for (const std::string& name : settings.scenes) {
-        std::fprintf(stderr, "baking the scenes of %s\n", name.c_str());
+        std::fprintf(stderr, "baking the %s scenes\n", name.c_str());
         if (name == "docking")
             for (const std::size_t atoms : settings.atoms)
                 scenes.push_back(docking_scene(settings, folder, atoms));

@@ -1,11 +1,11 @@
-// Whether the governor keeps its word: for `tact bench governor`.
+// Checks that the governor meets its goals: for `tact bench governor`.
 //
-// Runs      of the whole controller (tact run --no-gui), as a user starts it, each once, over its whole time: adaptive, and a
-//           sweep of fixed levels for comparison. Scenes are baked first, in a folder of their own that is removed.
-// Scenes    docking: structures of about 30 000, 160 000 and 500 000 atoms, shifted copies of one structure (of the demo, or a
+// Runs      the whole controller as a user starts it (tact run --no-gui), once per row, over its whole time: adaptive, and a
+//           sweep of fixed levels for comparison. It bakes the scenes first, in a temporary folder.
+// Scenes    docking: structures of about 30 000, 160 000 and 500 000 atoms, shifted copies of one structure (from the demo or a
 //           file); surface: a 6-DoF tool of 1000 points on two million triangles; drilling: a burr of 20 mm in voxels of 0.1 mm
-// Row       of a scene and a rate. A fixed level fits where fewer than kMissShareMost of its steps miss the deadline
-// Faults    timing faults latch, as on a real arm; a late wake-up of the host does not count, as no level changes it
+// Row       one scene at one rate. A fixed level fits if fewer than kMissShareMost of its steps miss the deadline
+// Faults    timing faults latch, as on a real arm; late wake-ups of the host do not count, because no level changes them
 // Takes     about half an hour. Progress on standard error. Throws StartupError.
 #pragma once
 
@@ -24,20 +24,20 @@ struct GovernorBenchSettings {
     std::vector<std::string> scenes{"docking", "surface", "drilling"};
     std::vector<std::size_t> atoms{30'000, 160'000, 500'000};
     std::vector<double> rates_hz{1000.0, 2000.0, 4000.0, 0.0};  // 0: free running
-    std::filesystem::path map, structure;                       // empty: those of the demo
+    std::filesystem::path map, structure;                       // empty: from the demo
     double seconds = 6.0, sweep_seconds = 3.0;
 };
 
-// Figures of one run, from its report.
+// Metrics of one run, from its report.
 struct GovernorRun {
     bool fault = false;
     double miss_share = 1.0, error_n = 0.0, step_n = 0.0, level = 0.0, settled_s = 0.0, rate_hz = 0.0;
 };
 
-// Compares an adaptive run with the fixed ones. Pure arithmetic.
+// Compares an adaptive run with the runs at fixed levels. Pure arithmetic.
 [[nodiscard]] nlohmann::json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& fixed);
 
-// "governor": one row for each scene and rate; "governor_passed": whether all rows passed.
+// "governor": one row per scene and rate; "governor_passed": true if all rows passed.
 [[nodiscard]] nlohmann::json bench_governor(const GovernorBenchSettings& settings);
 
 }  // namespace tact

@@ -92,7 +92,7 @@ json drilling_and_particles() {
     return all;
 }
 
-// Set by the command line.
+// Filled from the command line.
 GovernorBenchSettings& governor_settings() {
     static GovernorBenchSettings settings;
     return settings;
@@ -113,9 +113,8 @@ constexpr Measure kMeasures[] = {
      "two minutes",
      &drilling_and_particles, true},
     {"governor",
-     "deadline misses, error and force steps of adaptive runs beside fixed levels, at 1, 2 and 4 kHz and "
-     "free running; "
-     "takes half an hour",
+     "deadline misses, error and force steps of adaptive runs and of fixed levels, at 1, 2 and 4 kHz and "
+     "free running; takes half an hour",
      &governor, true},
     {"ipc", "time to publish and to read the state of a servo cycle", &ipc},
 };
@@ -190,25 +189,28 @@ void describe(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(0.1, 50.0))
         ->capture_default_str();
     GovernorBenchSettings& governed = governor_settings();
-    auto* const runs = command->add_option_group("Governor", "Runs of the measurement governor");
+    auto* const runs = command->add_option_group("Governor", "Settings of the measurement governor");
     auto* const map = runs->add_option("--map", governed.map,
-                                       "Density map of the docking scenes; default: that of the demo")
+                                       "Density map of the docking scenes; default: the map of the demo")
                           ->check(CLI::ExistingFile);
-    auto* const structure = runs->add_option("--structure", governed.structure,
-                                             "Structure whose copies are docked; default: that of the demo")
-                                ->check(CLI::ExistingFile)
-                                ->needs(map);
+    auto* const structure =
+        runs->add_option(
+                "--structure", governed.structure,
+                "Structure for the docking scenes, used in copies; default: the structure of the demo")
+            ->check(CLI::ExistingFile)
+            ->needs(map);
     map->needs(structure);
     runs->add_option("--scene", governed.scenes, "Scenes of the measurement governor")
         ->check(CLI::IsMember({"docking", "surface", "drilling"}))
         ->capture_default_str();
-    runs->add_option("--atoms", governed.atoms, "Numbers of atoms of the docking scenes")
+    runs->add_option("--atoms", governed.atoms, "Number of atoms of each docking scene")
         ->check(CLI::Range(1000, 2'000'000))
         ->capture_default_str();
-    runs->add_option("--rate", governed.rates_hz, "Rates of the measurement governor (Hz); 0: free running")
+    runs->add_option("--rate", governed.rates_hz,
+                     "Servo rates of the measurement governor (Hz); 0: free running")
         ->check(CLI::Range(0.0, 20'000.0))
         ->capture_default_str();
-    runs->add_option("--seconds", governed.seconds, "Length of an adaptive run (s)")
+    runs->add_option("--seconds", governed.seconds, "Duration of an adaptive run (s)")
         ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
     command->callback([=, &exit_code] {

@@ -134,7 +134,7 @@ TEST(GovernorScenario, a_low_force_rate_reduces_particles_to_their_floor_before_
     bool force_fell = false;
     for (int i = 0; i < 400 && !force_fell; ++i) {
         picture.frame();
-        for (int turn = 0; turn < 10; ++turn) {  // another program has the processor for most of the time
+        for (int turn = 0; turn < 10; ++turn) {  // another program uses the processor most of the time
             loop.cycles(1);
             loop.clock_.advance(milliseconds(3));
         }
@@ -219,8 +219,8 @@ TEST(GovernorScenario, free_running_steps_reduce_their_work_before_the_law_can_r
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_GE(loop.windows(0.25).first, 96U);
     EXPECT_GE(loop.windows(5.0).first, 96U);
-    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the level has
-    // Steps of 0.7 ms at most, less the tenth that a rise leaves free.
+    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the level has adapted
+    // Steps of 0.7 ms at most; a rise keeps a tenth of that free.
     EXPECT_LT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 / 1.5);
     EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
@@ -241,7 +241,7 @@ TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_if_the_displa
     loop.model_.cost = microseconds(400);
     while (picture.level() > 0.5F) {
         picture.frame();
-        for (int turn = 0; turn < 20; ++turn) {  // another program has the processor for most of the time
+        for (int turn = 0; turn < 20; ++turn) {  // another program uses the processor most of the time
             loop.cycles(1);
             loop.clock_.advance(milliseconds(2));
         }
@@ -277,7 +277,7 @@ TEST(GovernorScenario, hostile_reports_of_the_display_keep_the_levels_within_bou
     }
 }
 
-// A step costs up to 500 us by its level; nothing is displayed. Goal 4 kHz: steps of 175 us at most.
+// A step costs up to 500 us, proportional to the level; no display. Goal 4 kHz: steps of 175 us at most.
 TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
     ServoSettings s;
     s.free_running = true;
@@ -337,7 +337,7 @@ TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its
     loop.model_.cost = microseconds(300);
     for (int i = 0; i < 20; ++i) {
         loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
-        for (int turn = 0; turn < 100; ++turn) {  // other programs have the processor for most of the time
+        for (int turn = 0; turn < 100; ++turn) {  // other programs use the processor most of the time
             loop.cycles(1);
             loop.clock_.advance(milliseconds(2));
         }

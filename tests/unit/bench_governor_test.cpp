@@ -1,4 +1,4 @@
-// The judgement of the governor's bench, over made-up runs.
+// Pass and fail of the governor benchmark, for made-up runs.
 #include "tests/bench/bench_governor.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 const GovernorRun kGood{
     .miss_share = 0.0, .error_n = 0.11, .step_n = 0.004, .level = 0.8, .settled_s = 0.02, .rate_hz = 1000.0};
-// Levels 0.6, 0.8 and 1: the last misses a tenth of its deadlines.
+// Levels 0.6, 0.8 and 1; the last misses a tenth of its deadlines.
 const std::vector<GovernorRun> kSweep{{.miss_share = 0.0, .error_n = 0.3, .step_n = 0.003, .level = 0.6},
                                       {.miss_share = 5e-4, .error_n = 0.1, .step_n = 0.003, .level = 0.8},
                                       {.miss_share = 0.1, .error_n = 0.0, .step_n = 0.2, .level = 1.0}};
@@ -22,7 +22,7 @@ TEST(BenchGovernor, the_best_fixed_level_is_the_most_accurate_of_those_that_fit)
     EXPECT_TRUE(row["passed"].get<bool>());
 }
 
-TEST(BenchGovernor, each_promise_fails_by_itself) {
+TEST(BenchGovernor, each_violated_limit_fails_the_run) {
     const auto with = [](auto change) {
         GovernorRun run = kGood;
         change(run);
@@ -36,7 +36,7 @@ TEST(BenchGovernor, each_promise_fails_by_itself) {
     EXPECT_FALSE(passes(with([](auto& r) { r.settled_s = 0.11; })));
 }
 
-TEST(BenchGovernor, where_no_fixed_level_fits_there_is_nothing_to_compare_with) {
+TEST(BenchGovernor, without_a_fitting_fixed_level_nothing_is_compared) {
     const auto row = governor_row(kGood, {kSweep.back()});
     EXPECT_TRUE(row["best_fixed_level"].is_null());
     EXPECT_TRUE(row["passed"].get<bool>());

@@ -349,7 +349,7 @@ TEST(Config, the_deadline_of_the_model_follows_the_period) {
     config.servo.model_us_max = 40.0;
     EXPECT_EQ(settings_from(config, true).model_max, duration_us(40.0));
     config.servo.model_us_max = 0.0;
-    config.servo.free_running = true;  // no period: the goal stands for it
+    config.servo.free_running = true;  // no period: the goal replaces it
     config.governor.goal_hz = 4000.0;
     EXPECT_EQ(settings_from(config, true).model_max, duration_us(187.5));
 }

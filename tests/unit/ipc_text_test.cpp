@@ -13,7 +13,7 @@
 namespace tact {
 namespace {
 
-// Every value of an enum from 0 up to the last has words of its own, and those beyond it say so.
+// Each value of an enum up to `last` has its own text; values beyond give "unknown".
 template <class E, class Text>
 void expect_own_words(Text text, E last, bool zero_is_empty) {
     std::set<std::string> seen;
@@ -21,13 +21,13 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
         const std::string words = text(static_cast<E>(v));
         EXPECT_NE(words, "unknown") << v;
         EXPECT_EQ(words.empty(), zero_is_empty && v == 0) << v;
-        EXPECT_TRUE(seen.insert(words).second) << v << " has the words of another: " << words;
+        EXPECT_TRUE(seen.insert(words).second) << v << " has the same text as another value: " << words;
     }
     EXPECT_STREQ(text(static_cast<E>(static_cast<unsigned>(last) + 1)), "unknown");
     EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
 }
 
-TEST(LevelText, says_what_limits_a_level_since_when_and_at_which_error) {
+TEST(LevelText, gives_limit_duration_and_error) {
     PathLevel p{};
     p.haptic = 1;
     p.level = 0.5F;
@@ -44,13 +44,13 @@ TEST(LevelText, says_what_limits_a_level_since_when_and_at_which_error) {
     p.level = 0.3F;
     p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
     EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "limited by the frame rate for 30 min");
-    // Of another clock, or of no number: left out.
+    // A time from another clock and a non-finite error are omitted.
     p.haptic = 1;
     p.error = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(level_status_text(p, 0), "limited by the frame rate");
 }
 
-TEST(Text, every_code_has_words_of_its_own) {
+TEST(Text, every_code_has_its_own_text) {
     expect_own_words(run_state_text, RunState::fault, false);
     expect_own_words(run_reason_text, RunReason::supervisor, true);
     expect_own_words(event_code_text, EventCode::device_notice, true);
@@ -110,7 +110,7 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }
 
-TEST(Text, hostile_events_are_only_words) {
+TEST(Text, hostile_events_give_short_text) {
     for (const double bad :
          {std::nan(""), std::numeric_limits<double>::infinity(), -1e300, 1e300, -1.0, 256.0}) {
         for (unsigned code = 0; code < 300; ++code) {
@@ -123,7 +123,7 @@ TEST(Text, hostile_events_are_only_words) {
     }
 }
 
-TEST(Text, of_a_bus_only_what_was_wrong_is_said) {
+TEST(Text, only_bus_errors_are_listed) {
     EXPECT_EQ(bus_text({.packets = 5}), "");
     EXPECT_EQ(bus_text({.packets = 5, .checksum = 3, .lost = 12, .reconnects = 1}),
               "checksum 3, lost 12, connected again 1");

@@ -22,7 +22,7 @@ TEST(PosesFile, reads_what_a_run_writes_and_passes_over_the_rest) {
     EXPECT_EQ(bodies[0].T_model_body.q.z(), 1.0);
 }
 
-TEST(PosesFile, what_cannot_be_is_refused) {
+TEST(PosesFile, invalid_input_is_refused) {
     const auto refused = [](const std::string& text) {
         return !error_of([&] { read_poses(text, "x", 2); }).empty();
     };
