@@ -34,7 +34,7 @@ WindowState one_of_all() {
     return s;
 }
 
-TEST(WindowStateFile, a_written_mesh_reads_back_unchanged) {
+TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     const WindowState s = one_of_all(), again = read_window_state_text(window_state_text(s), "written");
     EXPECT_EQ(again.width_px, 1920);
     EXPECT_EQ(again.height_px, 1080);
