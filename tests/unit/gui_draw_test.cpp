@@ -347,7 +347,7 @@ TEST_F(GuiDrawScene, a_second_hand_is_drawn_with_its_force_and_the_wall_it_touch
     EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
 }
 
-TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
+TEST_F(GuiDrawScene, a_style_applies_to_one_body_and_a_limit_turns_spheres_into_tubes) {
     DrawnBody copy = home_;
     copy.id = 2;
     layer_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
