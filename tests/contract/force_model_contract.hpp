@@ -157,7 +157,7 @@ TEST_P(ForceModelContract, no_force_right_after_reset) {
     EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(), 1e-3);
 }
 
-TEST_P(ForceModelContract, force_comes_back_after_reset_without_a_step) {
+TEST_P(ForceModelContract, force_returns_after_reset_without_a_step) {
     StepResult before = settle(GetParam().touch);
     model_->reset(at(GetParam().touch));
     before.wrench_world = Wrench{};

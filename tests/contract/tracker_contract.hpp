@@ -104,7 +104,7 @@ TEST_P(TrackerContract, is_lost_before_it_is_opened_and_fresh_after) {
     EXPECT_TRUE(fresh_since(0));
 }
 
-TEST_P(TrackerContract, samples_rise_in_sequence_and_time_and_are_where_the_head_is) {
+TEST_P(TrackerContract, samples_increase_in_sequence_and_time_and_match_the_head) {
     open();
     for (const unsigned sensor : {0U, 1U}) {
         TrackerSample before;

@@ -100,7 +100,7 @@ class Process(unittest.TestCase):
             out, _ = child.communicate(timeout=PATIENCE_S)
             self.assertIn(child.returncode, (0, -signal.SIGTERM), out)
 
-    def test_a_second_controller_is_refused_and_the_first_goes_on(self):
+    def test_a_second_controller_is_refused_and_the_first_continues(self):
         first = self.start("--arm")
         self.lines_until(first, "armed to active")
         second = self.start("--arm")

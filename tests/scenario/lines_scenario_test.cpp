@@ -138,7 +138,7 @@ TEST(LinesScenarios, after_a_pedal_fault_reset_and_arm_suffice) {
     EXPECT_TRUE(loop.enabled());
 }
 
-TEST(LinesScenarios, a_stop_that_came_and_went_while_the_servo_was_stopped_is_latched) {
+TEST(LinesScenarios, a_brief_stop_while_the_servo_was_stopped_is_latched) {
     Loop loop;
     loop.active();
     // The pump continues while the servo is stopped.

@@ -64,7 +64,7 @@ TEST(RecordScenario, a_step_holds_the_device_sample_and_the_command_sent) {
     EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake-up, before and after the model, end
 }
 
-TEST(RecordScenario, orders_and_reports_belong_to_the_step_that_took_them) {
+TEST(RecordScenario, orders_and_reports_are_recorded_with_the_step_that_read_them) {
     Lockstep loop;
     loop.cycles(10);
     loop.order(CommandKind::set_goal_hz, 500.0);

@@ -82,7 +82,7 @@ TEST(Metrics, report_rate_lateness_levels_and_faults_by_cause) {
     EXPECT_NEAR(value_of(text, "tact_servo_lateness_seconds_sum{session=\"lab\"}"), 0.04, 0.003);
 }
 
-TEST(Metrics, a_controller_that_is_gone_is_down_and_has_no_metrics) {
+TEST(Metrics, an_exited_controller_is_down_and_has_no_metrics) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);

@@ -46,7 +46,7 @@ TEST(Orders, are_read_with_their_time_numbers_and_arm) {
     EXPECT_FALSE(parse_order("   # only a comment", "").has_value());
 }
 
-TEST(Orders, that_are_wrong_are_refused_with_where_why_and_the_mend) {
+TEST(Orders, are_refused_with_place_reason_and_fix) {
     const auto says = [](std::string_view line, const char* a, const char* b) {
         const std::string text = why_not(line);
         EXPECT_NE(text.find("here"), std::string::npos) << line;
