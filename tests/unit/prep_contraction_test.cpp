@@ -50,7 +50,7 @@ TriangleMesh balls(int n, double gap) {  // n³ spheres of radius 1
     return mesh;
 }
 
-// Thin, rough and tightly bent: contraction tends to fold it.
+// Thin, rough and tightly bent: easily folded by contraction.
 TriangleMesh crumpled() {
     return isosurface(sampled(41,
                               [](const Vec3& p) {

@@ -104,7 +104,8 @@ ClashResult clash_force(const ClashBody& active, std::span<const ClashBody> othe
 
 // Cycles through all pairs of structures, including a structure with its own copy. Each encounter has random rotations,
 // a random direction and a random depth. Its stiffness is the largest eigenvalue, by magnitude, of the force gradient
-// over half an angstrom, as in ipc/scene/density/docking_gain.cpp. K is scaled so that the largest meets the limit.
+// over half an angstrom, as in ipc/scene/density/docking_gain.cpp.
+// K is scaled so that kMargin times the largest meets the limit.
 ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_per_model) {
     ClashGains gains;
     if (fields.empty()) return gains;

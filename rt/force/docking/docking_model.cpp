@@ -192,7 +192,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     return result;
 }
 
-// Small steps of the knob blend two levels and need no offset.
+// Adds the offset of LevelGlide after a jump; small steps blend two levels and need none.
 void DockingModel::glide(float fidelity, StepResult& result) noexcept {
     const bool fell_back = result.load.items != blend().items(fidelity);
     const bool jumped = std::abs(fidelity - level_before_) > kLevelJump || fell_back != fell_back_;
@@ -301,7 +301,7 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
     bodies_ = before.bodies_;
     com_from_tool_world_m_ = before.com_from_tool_world_m_;
     q_tool_body_ = before.q_tool_body_;
-    clutched_ = before.clutched_;  // the same gesture goes on
+    clutched_ = before.clutched_;  // keeps the state of the clutch
     error_scale_ = before.error_scale_;
     fade(before.fade_);
     static_cast<void>(choose_density());
