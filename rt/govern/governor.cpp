@@ -194,7 +194,7 @@ bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
-        if (!p.present || p.knob.haptic != haptic) continue;
+        if (!p.present || p.knob.haptic != haptic || (p.fitted && !settings_.free_running)) continue;
         float& value = p.fitted ? p.budget : p.level;
         const double floor = p.fitted ? kBudgetLeast : static_cast<double>(p.knob.floor);
         const double before = static_cast<double>(value);
@@ -232,9 +232,9 @@ bool Governor::set_fitted_level(std::size_t path, float level, LevelReason reaso
     GovernedPath& p = paths_[path];
     p.fitted = true;
     p.reason = reason;
-    const bool changed = level != p.level;
+    const float before = p.level;
     p.level = std::max(level, p.knob.floor);
-    return changed;
+    return p.level != before;
 }
 
 bool Governor::visual_can_give() const noexcept {

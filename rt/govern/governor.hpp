@@ -32,6 +32,8 @@ struct GovernorSettings {
     double display_goal_hz = 0.0;  // 0: no goal for the display rate
     double gain = 0.5;             // gain s of the law "sensitus"
     double tolerance = 0.02;       // relative tolerance of the law "sensitus"
+    // A freely running loop shares its processor: its rate moves the budget of fitted paths. At a fixed rate it does not.
+    bool free_running = false;
 };
 
 struct GovernedPath {

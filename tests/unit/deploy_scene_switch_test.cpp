@@ -49,9 +49,11 @@ TEST_F(OtherScene, the_next_window_keeps_the_state_of_the_last_one) {
     const auto windows = lines("windows");
     ASSERT_EQ(windows.size(), 2U) << said_;
     const auto window_state_of = [](const std::string& words) {
-        const auto at = words.find("--window-state ");
-        return at == std::string::npos ? std::string()
-                                       : words.substr(at + 7, words.find(' ', at + 7) - at - 7);
+        const std::string option = "--window-state ";
+        const auto at = words.find(option);
+        if (at == std::string::npos) return std::string();
+        const auto from = at + option.size();
+        return words.substr(from, words.find(' ', from) - from);
     };
     EXPECT_NE(windows[0].find("--size 1280x800"), std::string::npos) << windows[0];
     EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];

@@ -309,6 +309,39 @@ TEST(Governor, a_change_to_the_fixed_law_keeps_the_present_levels) {
     EXPECT_FLOAT_EQ(governor.level(0), level);
 }
 
+TEST(Governor, the_rate_moves_the_budget_of_a_fitted_path_only_in_a_freely_running_loop) {
+    for (const bool free_running : {false, true}) {
+        Governor governor =
+            with({.law = Law::sensitus, .goal_hz = 1000.0, .free_running = free_running}, {kMesh, kForce});
+        EXPECT_TRUE(governor.set_fitted_level(1, 0.6F, LevelReason::start));
+        governor.set_present(0, false);
+        for (int i = 0; i < 50; ++i) static_cast<void>(governor.step(500.0, kStep));
+        EXPECT_FLOAT_EQ(governor.level(1), 0.6F);
+        EXPECT_EQ(governor.paths()[1].budget < 0.5F, free_running);
+        EXPECT_GE(governor.paths()[1].budget, 0.05F);
+        // A display that comes back is not delayed by a budget that nobody uses.
+        governor.set_present(0, true);
+        static_cast<void>(governor.step(100.0, kStep));
+        const float display = governor.level(0);
+        EXPECT_LT(display, 1.0F);
+        EXPECT_TRUE(governor.step(5000.0, kStep));
+        if (!free_running) {
+            EXPECT_GT(governor.level(0), display);
+        }
+    }
+}
+
+TEST(Governor, a_fitted_level_stays_at_or_above_the_floor_and_is_not_set_under_the_law_fixed) {
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
+    EXPECT_TRUE(governor.set_fitted_level(1, 0.0F, LevelReason::cost_high));
+    EXPECT_FLOAT_EQ(governor.level(1), kForce.floor);
+    EXPECT_FALSE(governor.set_fitted_level(1, 0.0F, LevelReason::cost_high));  // no change
+    EXPECT_FALSE(
+        governor.set_fitted_level(1, std::numeric_limits<float>::quiet_NaN(), LevelReason::cost_high));
+    governor.set_law(Law::fixed);
+    EXPECT_FALSE(governor.set_fitted_level(1, 1.0F, LevelReason::cost_low));
+}
+
 TEST(Governor, refuses_impossible_knobs_and_goals) {
     Governor governor{GovernorSettings{}};
     EXPECT_EQ(governor.add({.path = "a", .floor = 0.5F, .start = 0.2F}), Governor::kPathsMax);
