@@ -161,9 +161,13 @@ TEST(BodiesScenario, another_structure_starts_at_a_fitting_level_and_a_copy_keep
     EXPECT_EQ(loop.order(CommandKind::select_body, 0.0, 3), CommandResult::done);
     EXPECT_FLOAT_EQ(loop.level(), grown);
     EXPECT_EQ(loop.order(CommandKind::select_body, 0.0, 2), CommandResult::done);
-    EXPECT_FLOAT_EQ(loop.level(), loop.servo_->state().hand[0].model->knob().start);
-    EXPECT_LT(loop.level(), grown);
-    EXPECT_LE(loop.servo_->state().hand[0].step.load.items, 240U);
+    // Ten times as many atoms: the level is chosen anew, among those that fit.
+    const ForceModel& model = *loop.servo_->state().hand[0].model;
+    const LevelFit& fit = loop.servo_->state().govern.fit;
+    EXPECT_EQ(fit.rows().size(), model.knob().steps + 1);
+    EXPECT_FLOAT_EQ(loop.level(), fit.rows()[fit.row()].level);
+    EXPECT_LE(to_s(model.predict(loop.level()).cost_predicted), 0.7e-3);
+    EXPECT_EQ(loop.servo_->state().hand[0].step.load.items, model.items(loop.level()));
 }
 
 TEST(BodiesScenario, bodies_keep_their_ids_and_ids_are_never_reused) {

@@ -12,6 +12,7 @@ using std::chrono::milliseconds;
 
 ServoSettings strict() {
     ServoSettings s;
+    s.governor.law = Law::fixed;  // or the level would fall before the fifth overrun
     s.watchdogs.timing_latches = true;
     s.watchdogs.device_watchdog_latches = true;
     return s;

@@ -65,7 +65,7 @@ class Setup(Case):
 
     def test_a_dry_run_prints_all_and_changes_nothing(self):
         out, _ = self.tact("station", "setup", "--root", self.tree, "--dry-run", "--user", "ann")
-        for text in ("core 3 for the servo, cores 0-2 for all else", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
+        for text in ("core 3 for the servo, cores 0-2 for all other work", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
                       "apt-get install", "usermod -aG tact ann"):
             self.assertIn(text, out)
         self.assertEqual(snapshot(self.tree), self.before)

@@ -141,11 +141,11 @@ TEST_F(FalconBoot, a_missing_empty_or_too_large_file_is_an_error_before_bus_acce
          {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "the file is empty"},
           std::pair{"large.bin", "more than 131072 bytes"}}) {
         LockstepFalcon arm(path(name));
-        EXPECT_TRUE(says(opening(arm), {name, why, "fix: device.firmware"})) << name;
+        EXPECT_TRUE(says(opening(arm), {name, why, "fix: set device.firmware"})) << name;
         EXPECT_EQ(arm.board().opens, 0U);
     }
     LockstepFalcon folder(folder_.string());
-    EXPECT_TRUE(says(opening(folder), {"fix: device.firmware"}));
+    EXPECT_TRUE(says(opening(folder), {"fix: set device.firmware"}));
     write("largest.bin", std::vector<std::byte>(falcon::kFirmwareBytesMax));
     EXPECT_EQ(falcon::read_firmware(path("largest.bin")).size(), falcon::kFirmwareBytesMax);
 }

@@ -464,7 +464,7 @@ TEST(PhantomOpen, a_missing_answer_is_reported_with_the_packets_received) {
         arm.device().open();
         ADD_FAILURE() << "the board was opened";
     } catch (const StartupError& e) {
-        EXPECT_NE(std::string(e.what()).find("answered 0"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("answers 0"), std::string::npos) << e.what();
         EXPECT_NE(std::string(e.what()).find("7 size"), std::string::npos) << e.what();
     }
 }
