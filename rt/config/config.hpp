@@ -24,7 +24,7 @@
 namespace tact {
 
 // Fractions of the period: default deadline of the model's step, and largest one that leaves time for the rest of a cycle.
-inline constexpr double kModelShare = 0.75, kModelShareMost = 0.9;
+inline constexpr double kModelShare = 0.7, kModelShareMost = 0.9;
 
 struct RtConfig {
     struct Servo {

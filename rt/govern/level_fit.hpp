@@ -32,7 +32,7 @@ namespace tact {
 class LevelFit {
 public:
     static constexpr std::size_t kRowsMax = 33;
-    static constexpr double kUse = 0.7, kRise = 0.9;
+    static constexpr double kUse = 0.7, kRise = 0.95;
     static constexpr double kInterruptShare = 0.3;
     static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
     // Lower bound of the speed: steps in free space are cheaper than steps in contact.

@@ -54,11 +54,20 @@ void make_level_rows(CycleState& c) noexcept {
         static_cast<void>(c.governor.set_fitted_level(kForcePathIndex, first, LevelReason::start));
 }
 
-void calibrate_level(CycleState& c) noexcept {
+void calibrate_level(CycleState& c, const ServoSettings& settings) noexcept {
     if (c.governor.settings().law == Law::fixed) return;
-    c.govern.fit.calibrate(to_s(c.model_cost), c.govern.other_s);
-    if (float next = 0.0F; c.govern.fit.calibrating(next))
-        static_cast<void>(c.governor.set_fitted_level(kForcePathIndex, next, LevelReason::start));
+    LevelFit& fit = c.govern.fit;
+    float level = 0.0F;
+    if (fit.calibrating(level)) {
+        fit.calibrate(to_s(c.model_cost), c.govern.other_s);
+    } else {
+        static_cast<void>(fit.learn(sample_of(c)));
+    }
+    if (fit.calibrating(level)) {
+        static_cast<void>(c.governor.set_fitted_level(kForcePathIndex, level, LevelReason::start));
+    } else {
+        choose_level(c, settings);
+    }
 }
 
 void choose_level(CycleState& c, const ServoSettings& settings) noexcept {

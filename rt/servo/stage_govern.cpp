@@ -104,7 +104,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     ++g.cycles;
     g.model_cost += c.model_cost;
     g.recomputed += c.recomputed_fraction;
-    if (c.dry) return calibrate_level(c);
+    if (c.dry) return calibrate_level(c, settings);
     Levels before = levels_of(c.governor);
     if (fit_level(c, settings)) {
         report_levels(c, settings, region, before, true);

@@ -344,14 +344,14 @@ TEST(Config, the_deadline_of_the_model_follows_the_period) {
     RtConfig config;
     for (const double period_us : {2000.0, 1000.0, 500.0, 125.0}) {
         config.servo.period_us = period_us;
-        EXPECT_EQ(settings_from(config, true).model_max, duration_us(0.75 * period_us));
+        EXPECT_EQ(settings_from(config, true).model_max, duration_us(0.7 * period_us));
     }
     config.servo.model_us_max = 40.0;
     EXPECT_EQ(settings_from(config, true).model_max, duration_us(40.0));
     config.servo.model_us_max = 0.0;
     config.servo.free_running = true;  // no period: the goal replaces it
     config.governor.goal_hz = 4000.0;
-    EXPECT_EQ(settings_from(config, true).model_max, duration_us(187.5));
+    EXPECT_EQ(settings_from(config, true).model_max, duration_us(175.0));
 }
 
 TEST(Config, a_deadline_that_leaves_no_time_for_the_rest_of_the_cycle_is_refused) {
