@@ -3,7 +3,7 @@
 // Speed       streaming median of measured / predicted cost: each sample moves it by kStep towards itself
 // Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %. It starts with kPrior samples of at
 //             most kPriorSpread, so one early outlier does not define the tail
-// Interrupts  decaying histogram of the excess cost in octaves from 1 us. kChangedRun interrupted samples in a row
+// Interrupts  decaying histogram of the excess cost in bins of 25 % from 1 us. kChangedRun interrupted samples in a row
 //             count as a change of cost instead: the speed becomes their smallest ratio at once
 // Thread      servo; constant time
 #pragma once
@@ -39,7 +39,7 @@ public:
         if (total_ >= kMemory) decay();
         if (interrupted) {
             run_least_ = run_ == 0 ? ratio : std::min(run_least_, ratio);
-            run_excess_[run_++] = octave(cost_s - usual_s);
+            run_excess_[run_++] = excess_bin(cost_s - usual_s);
             if (run_ < kChangedRun) return Kind::interrupted;
             run_ = 0;
             speed_ = run_least_;
@@ -66,9 +66,9 @@ public:
     // Excess (s) that a fraction kTail of the steps exceeds; 0 where fewer steps are interrupted.
     [[nodiscard]] double interrupt_s() const noexcept TACT_RT {
         double above = 0.0;
-        for (std::size_t i = kOctaves; i-- > 0;) {
+        for (std::size_t i = kExcessBins; i-- > 0;) {
             above += interrupt_[i];
-            if (above > kTail * total_) return 1e-6 * std::exp2(static_cast<double>(i) + 1.0);
+            if (above > kTail * total_) return 1e-6 * std::exp(kExcessWidth * (static_cast<double>(i) + 1.0));
         }
         return 0.0;
     }
@@ -76,7 +76,8 @@ public:
 private:
     static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kMemory = 16000.0;
     static constexpr double kLeast = 0.5, kWidth = 0.02;  // smallest ratio; bin width in ln
-    static constexpr std::size_t kBins = 72, kOctaves = 16;
+    static constexpr double kExcessWidth = 0.2231;        // ln 1.25
+    static constexpr std::size_t kBins = 72, kExcessBins = 48;
 
     static std::size_t bin(double ratio) noexcept TACT_RT {
         const double place = std::log(std::max(ratio, kLeast) / kLeast) / kWidth;
@@ -85,8 +86,9 @@ private:
     static double upper(std::size_t bin) noexcept TACT_RT {
         return kLeast * std::exp(kWidth * static_cast<double>(bin + 1));
     }
-    static std::size_t octave(double excess_s) noexcept TACT_RT {
-        return std::min(static_cast<std::size_t>(std::max(std::log2(1e6 * excess_s), 0.0)), kOctaves - 1);
+    static std::size_t excess_bin(double excess_s) noexcept TACT_RT {
+        return std::min(static_cast<std::size_t>(std::max(std::log(1e6 * excess_s) / kExcessWidth, 0.0)),
+                        kExcessBins - 1);
     }
     void decay() noexcept TACT_RT {
         for (double& n : ratio_) n *= 0.5;
@@ -99,7 +101,7 @@ private:
     double run_least_ = 0.0;
     std::array<std::size_t, kChangedRun> run_excess_{};
     std::array<double, kBins> ratio_{};
-    std::array<double, kOctaves> interrupt_{};
+    std::array<double, kExcessBins> interrupt_{};
 };
 
 }  // namespace tact

@@ -10,8 +10,10 @@ namespace {
 constexpr double kRestQuantile = 0.99, kRestStep = 0.02, kRestLeast_s = 1e-7;
 constexpr std::uint32_t kEvery = 16;  // cycles between choices
 constexpr double kSameError = 1e-12;
-constexpr double kPartLeast = 0.02;                       // limits the scaling of a partial cost to the whole
-constexpr double kMissMemory = 0.95, kMissesClose = 2.5;  // three misses within about twenty cycles
+constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to the whole
+// One miss in a thousand cycles is what the quantile permits; the second within about as many lowers the level. An interrupted
+// step counts less, since no level would have met the deadline.
+constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 1.25;
 
 }  // namespace
 
@@ -92,7 +94,8 @@ CostSpread::Kind LevelFit::learn(const Sample& s) noexcept {
     const CostSpread::Kind kind = spread_.add(s.model_s / part, cost_at(s.level), kSpeedLeast);
     follow_rest(s.rest_s);
     since_fall_s_ += s.dt_s;
-    misses_ = kMissMemory * misses_ + (s.deadline_missed ? 1.0 : 0.0);
+    misses_ *= kMissKept;
+    if (s.deadline_missed) misses_ += kind == CostSpread::Kind::interrupted ? kInterruptedMiss : 1.0;
     ++cycle_;
     return kind;
 }
@@ -106,10 +109,9 @@ void LevelFit::follow_rest(double rest_s) noexcept {
 LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     if (count_ == 0) return {.level = s.level};
     const CostSpread::Kind kind = learn(s);
-    const bool interrupted = kind == CostSpread::Kind::interrupted;
     const std::size_t before = row_;
     LevelReason reason = LevelReason::hold;
-    if (s.deadline_missed && row_ > 0 && (!interrupted || misses_ > kMissesClose)) {
+    if (s.deadline_missed && row_ > 0 && misses_ > kMissesMost) {
         row_ = best(limits, 1.0, kMissRetreat * rows_[row_].cost_s);
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;

@@ -11,8 +11,9 @@
 //                          takes at most kInterruptShare of the budget
 // Fits        speed x spread x predicted + interrupts + rest of the cycle <= kUse x period. The present row may
 //             use all of that; a newly chosen row only kRise of it, so the level does not hunt.
-// Deadline    a miss lowers the level at once, to at most kMissRetreat of the present cost. An interrupted step lowers
-//             it only when misses cluster: a single interrupt would have missed at any level
+// Deadline    one miss in a thousand cycles is what the quantile permits; the second miss within about a thousand
+//             cycles lowers the level at once, to at most kMissRetreat of the present cost. An interrupted step counts
+//             less, since it would have missed at any level
 // Holds       the level rises kHold_s after a fall at the earliest; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation

@@ -163,8 +163,26 @@ TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do)
         loop.run(1, interrupted);
         EXPECT_EQ(fit.rows()[fit.row()].level, before);
     }
-    loop.run(3, interrupted);
+    loop.run(4, interrupted);
     EXPECT_LT(fit.rows()[fit.row()].level, before);
+}
+
+TEST(LevelFit, the_second_miss_within_a_thousand_cycles_lowers_the_level_at_once) {
+    LevelFit fit = with(doubling(6, 10.0));
+    Loop loop(fit, 500.0);
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+    const auto missed = [&](std::size_t row) { return 1.5 * usual(row); };  // no interrupt
+    loop.run(2500, usual);
+    const std::size_t before = fit.row();
+    ASSERT_GT(1.5 * usual(before), 350.0);
+    loop.run(1, missed);
+    EXPECT_EQ(fit.row(), before);
+    loop.run(3000, usual);
+    loop.run(1, missed);
+    EXPECT_EQ(fit.row(), before);
+    loop.run(200, usual);
+    loop.run(1, missed);
+    EXPECT_LT(fit.row(), before);
 }
 
 TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_second_and_back) {
