@@ -1,6 +1,7 @@
 // Distribution of measured step costs about their predictions: speed, spread and interrupts (level_fit.hpp).
 //
-// Speed       streaming median of measured / predicted cost: each sample moves it by kStep towards itself
+// Speed       streaming median of measured / predicted cost: each sample moves it by kStep towards itself. kLeapRun
+//             samples in a row above kLeap times the speed set it to their least: the processor became slower
 // Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %. It starts with kPrior samples of at
 //             most kPriorSpread, so one early outlier does not define the tail
 // Interrupts  decaying histogram of the excess cost in bins of 25 % from 1 us. kChangedRun interrupted samples in a row
@@ -31,6 +32,8 @@ public:
     }
     enum class Kind { usual, interrupted, changed };
     static constexpr std::size_t kChangedRun = 4;
+    static constexpr std::size_t kLeapRun = 16;  // samples in a row above kLeap: the processor became slower
+    static constexpr double kLeap = 1.1;
 
     Kind add(double cost_s, double predicted_s, double speed_least) noexcept TACT_RT {
         if (!(predicted_s > 0.0) || !(cost_s >= 0.0)) return Kind::usual;
@@ -49,9 +52,17 @@ public:
             interrupt_[run_excess_[run_ - 1]] += 1.0;
             total_ += 1.0;
         }
+        if (ratio > kLeap * speed_) {
+            leap_least_ = leap_ == 0 ? ratio : std::min(leap_least_, ratio);
+            leap_bin_[leap_++] = bin(ratio / speed_);
+            if (leap_ < kLeapRun) return Kind::usual;
+            leap_ = 0;
+            speed_ = leap_least_;
+            return Kind::changed;
+        }
+        for (; leap_ > 0; --leap_) count(leap_bin_[leap_ - 1]);
         speed_ = std::max(speed_ * (ratio > speed_ ? 1.0 + kStep : 1.0 - kStep), speed_least);
-        ratio_[bin(ratio / speed_)] += 1.0;
-        total_ += 1.0;
+        count(bin(ratio / speed_));
         return Kind::usual;
     }
     [[nodiscard]] double speed() const noexcept TACT_RT { return speed_; }
@@ -79,6 +90,10 @@ private:
     static constexpr double kExcessWidth = 0.2231;        // ln 1.25
     static constexpr std::size_t kBins = 72, kExcessBins = 48;
 
+    void count(std::size_t bin) noexcept TACT_RT {
+        ratio_[bin] += 1.0;
+        total_ += 1.0;
+    }
     static std::size_t bin(double ratio) noexcept TACT_RT {
         const double place = std::log(std::max(ratio, kLeast) / kLeast) / kWidth;
         return std::min(static_cast<std::size_t>(place), kBins - 1);
@@ -100,6 +115,9 @@ private:
     std::size_t run_ = 0;  // interrupted samples in a row, not yet in a histogram
     double run_least_ = 0.0;
     std::array<std::size_t, kChangedRun> run_excess_{};
+    std::size_t leap_ = 0;  // samples above kLeap in a row, not yet in a histogram
+    double leap_least_ = 0.0;
+    std::array<std::size_t, kLeapRun> leap_bin_{};
     std::array<double, kBins> ratio_{};
     std::array<double, kExcessBins> interrupt_{};
 };

@@ -11,9 +11,9 @@ constexpr double kRestQuantile = 0.99, kRestStep = 0.02, kRestLeast_s = 1e-7;
 constexpr std::uint32_t kEvery = 16;  // cycles between choices
 constexpr double kSameError = 1e-12;
 constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to the whole
-// One miss in a thousand cycles is what the quantile permits; the second within about as many lowers the level. An interrupted
-// step counts less, since no level would have met the deadline.
-constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 1.25;
+// About one miss in a thousand cycles is what the quantile permits; the third within as many lowers the level. An
+// interrupted step counts less, since no level would have met the deadline.
+constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 2.2;
 
 }  // namespace
 
@@ -110,13 +110,16 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     if (count_ == 0) return {.level = s.level};
     const CostSpread::Kind kind = learn(s);
     const std::size_t before = row_;
+    const bool changed_cost = kind == CostSpread::Kind::changed, due = cycle_ % kEvery == 0 || changed_cost;
     LevelReason reason = LevelReason::hold;
+    if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
     if (s.deadline_missed && row_ > 0 && misses_ > kMissesMost) {
         row_ = best(limits, 1.0, kMissRetreat * rows_[row_].cost_s);
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;
-    } else if (cycle_ % kEvery == 0 || kind == CostSpread::Kind::changed) {
-        if (!fits(row_, limits, 1.0) || rows_[row_].level > limits.level_max) {
+    } else if (due) {
+        const bool over = over_s_ > kOver_s || (changed_cost && over_s_ > 0.0);
+        if (over || rows_[row_].level > limits.level_max) {
             row_ = best(limits, kRise, 1e9);
             reason = LevelReason::cost_high;
         } else if (since_fall_s_ > hold_s_) {
@@ -129,6 +132,7 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
             }
         }
     }
+    if (row_ != before) over_s_ = 0.0;
     if (row_ < before) {
         if (since_fall_s_ > kHoldForgotten_s)
             hold_s_ = kHold_s;

@@ -10,10 +10,11 @@
 //                          does not change the length of an interrupt, so the excess is added, not multiplied, and
 //                          takes at most kInterruptShare of the budget
 // Fits        speed x spread x predicted + interrupts + rest of the cycle <= kUse x period. The present row may
-//             use all of that; a newly chosen row only kRise of it, so the level does not hunt.
-// Deadline    one miss in a thousand cycles is what the quantile permits; the second miss within about a thousand
-//             cycles lowers the level at once, to at most kMissRetreat of the present cost. An interrupted step counts
-//             less, since it would have missed at any level
+//             use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may use only kRise of
+//             it, so the level does not hunt
+// Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
+//             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
+//             would have missed at any level
 // Holds       the level rises kHold_s after a fall at the earliest; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation
@@ -33,12 +34,13 @@ namespace tact {
 class LevelFit {
 public:
     static constexpr std::size_t kRowsMax = 33;
-    static constexpr double kUse = 0.7, kRise = 0.95;
+    static constexpr double kUse = 0.7, kRise = 0.88;
     static constexpr double kInterruptShare = 0.3;
     static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
     // Lower bound of the speed: steps in free space are cheaper than steps in contact.
     static constexpr double kSpeedLeast = 0.7;
-    static constexpr std::uint32_t kTries = 3;    // dry steps per row
+    static constexpr std::uint32_t kTries = 3;  // dry steps per row
+    static constexpr double kOver_s = 0.1;
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
 
     struct Row {
@@ -98,6 +100,7 @@ private:
     double rest_s_ = 0.0;  // p99 cost of the rest of a cycle
     double since_fall_s_ = 1e9, hold_s_ = kHold_s;
     bool rose_ = false;    // the level rose since the last fall
+    double over_s_ = 0.0;  // time for which the present row has not fitted
     double misses_ = 0.0;  // decaying count
     std::uint32_t cycle_ = 0;
 };

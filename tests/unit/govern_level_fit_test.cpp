@@ -86,7 +86,7 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
         LevelFit fit = with(rows);
         const float chosen = fit.choose({.period_s = 1e-3});
         // The spread starts at its prior, whose bin of 1.15 ends at 1.1582. A new row uses at most 90 % of the limit.
-        const double most_s = 0.95 * 0.7e-3 / 1.1582;
+        const double most_s = 0.88 * 0.7e-3 / 1.1582;
         double best = 1e9;
         float wanted = -1.0F;
         bool at_the_edge = false;
@@ -136,7 +136,7 @@ TEST(LevelFit, the_tail_of_the_cycle_stays_within_seven_tenths_of_the_period_at_
         EXPECT_EQ(loop.misses, 0) << period_us;
         EXPECT_LE(loop.changes, 2) << period_us;
         // No lower than necessary: the next row would not fit.
-        EXPECT_GT(2.0 * loop.p999_us(10000), 0.95 * 0.7 * period_us) << period_us;
+        EXPECT_GT(2.0 * loop.p999_us(10000), 0.88 * 0.7 * period_us) << period_us;
     }
 }
 
@@ -167,21 +167,24 @@ TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do)
     EXPECT_LT(fit.rows()[fit.row()].level, before);
 }
 
-TEST(LevelFit, the_second_miss_within_a_thousand_cycles_lowers_the_level_at_once) {
+TEST(LevelFit, the_third_miss_within_a_thousand_cycles_lowers_the_level_at_once) {
     LevelFit fit = with(doubling(6, 10.0));
-    Loop loop(fit, 500.0);
+    Loop loop(fit, 321.0);
     const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
     const auto missed = [&](std::size_t row) { return 1.5 * usual(row); };  // no interrupt
     loop.run(2500, usual);
     const std::size_t before = fit.row();
-    ASSERT_GT(1.5 * usual(before), 350.0);
-    loop.run(1, missed);
-    EXPECT_EQ(fit.row(), before);
-    loop.run(3000, usual);
-    loop.run(1, missed);
-    EXPECT_EQ(fit.row(), before);
-    loop.run(200, usual);
-    loop.run(1, missed);
+    ASSERT_GT(1.5 * usual(before), 0.7 * 321.0);
+    for (int i = 0; i < 3; ++i) {
+        loop.run(1, missed);
+        loop.run(3000, usual);
+        EXPECT_EQ(fit.row(), before);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(fit.row(), before);
+        loop.run(100, usual);
+        loop.run(1, missed);
+    }
     EXPECT_LT(fit.row(), before);
 }
 
