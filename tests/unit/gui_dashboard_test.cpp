@@ -61,6 +61,17 @@ TEST(LatenessWindow, a_most_late_cycle_within_the_minute_is_said_to_the_nanoseco
     EXPECT_EQ(window.recent_metrics().max_ns, 123'457);
 }
 
+TEST(LatenessWindow, the_longest_of_a_minute_is_not_understated_beyond_the_range_of_the_histogram) {
+    Late late;
+    LatenessWindow window;
+    late.second(60'000'000'000, 1);  // longest of the run, before the first record
+    window.add(late.topic());
+    late.second(30'000'000'000, 2);
+    window.add(late.topic());
+    EXPECT_GE(window.recent_metrics().max_ns, 30'000'000'000);
+    EXPECT_GE(window.recent_metrics().p50_ns, 30'000'000'000);
+}
+
 TEST(LatenessWindow, another_run_begins_anew_and_nothing_grows) {
     Late late;
     LatenessWindow window;
