@@ -24,7 +24,7 @@ enum ScheduleFlag : std::uint32_t {
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 6, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 7, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -65,9 +65,10 @@ struct alignas(64) HealthTopic {
     std::uint8_t lines_reason;      // RunReason: what they stop for, or stopped last
     std::uint8_t device_notice[2];  // DeviceNotice of each hand
     BusCounts device_bus[2];        // of each hand
-    std::uint8_t reserved[4];       // zero
+    std::uint16_t state_result;     // CommandResult of state_sequence
+    std::uint8_t reserved[2];       // zero
     std::int64_t overrun_at_ns;     // the last one; 0: none
-    std::uint8_t more_reserved[8];  // zero
+    std::uint64_t state_sequence;   // last arm or disarm handled: they overtake other commands
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 320);
 static_assert(offsetof(HealthTopic, overrun_at_ns) == 304 && offsetof(HealthTopic, device_bus) == 220 &&

@@ -1,6 +1,7 @@
 // Stage 2: the mailbox. Orders of a person, and what the visual process reports.
 //
-// Orders    at most four a cycle, and none behind one that concerns the state; the state machine answers that one.
+// Orders    arm and disarm first, past all others; disarm wins. Then at most four of the others a cycle, and none behind one
+//           that concerns the state; the state machine answers that one.
 // Silence   of a visual process that ever reported, whether it left or hangs.
 // Thread    servo; TACT_RT
 #pragma once
