@@ -48,13 +48,10 @@ void LatenessWindow::add(const LatenessTopic& topic) {
     whole_metrics_ = lateness_metrics(r.counts, r.total, r.max_ns);
     if (kept_ == 1) return;
     const Record& first = record(kept_ - 1);
-    std::uint64_t last_ns = 0;
-    for (std::size_t i = 0; i < recent_.size(); ++i) {
-        recent_[i] = r.counts[i] - first.counts[i];
-        if (recent_[i] > 0) last_ns = DurationHistogram::upper_ns(i);
-    }
+    for (std::size_t i = 0; i < recent_.size(); ++i) recent_[i] = r.counts[i] - first.counts[i];
     recent_s_ = 1e-9 * static_cast<double>(r.taken_at_ns - first.taken_at_ns);
-    const std::uint64_t most = r.max_ns > first.max_ns ? r.max_ns : std::min(last_ns, r.max_ns);
+    const std::uint64_t most =
+        r.max_ns > first.max_ns ? r.max_ns : DurationHistogram::longest_ns(recent_.data(), r.max_ns);
     recent_metrics_ = lateness_metrics(recent_, r.total - first.total, most);
 }
 

@@ -65,7 +65,8 @@ struct alignas(64) HealthTopic {
     std::uint8_t lines_reason;      // RunReason of the present or last stop
     std::uint8_t device_notice[2];  // DeviceNotice of each hand
     BusCounts device_bus[2];        // of each hand
-    std::uint8_t reserved[4];       // zero
+    std::uint16_t state_result;     // CommandResult of state_sequence
+    std::uint8_t reserved[2];       // zero
     std::int64_t overrun_at_ns;     // the last one; 0: none
     // Of the cycles with force since the loop started (rt/servo/armed_metrics.hpp).
     std::uint64_t armed_cycles;
@@ -76,7 +77,8 @@ struct alignas(64) HealthTopic {
     float force_step_n_max;              // largest change of the force from one cycle to the next
     float level_settled_s;      // after arming the level stays within 5 % from then on; negative: not armed
     std::int64_t model_ns_max;  // deadline of the model's step; 0: none
-    std::uint8_t more_reserved[24];  // zero
+    std::uint64_t state_sequence;    // last arm or disarm handled: they overtake other commands
+    std::uint8_t more_reserved[16];  // zero
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 384);
 static_assert(offsetof(HealthTopic, overrun_at_ns) == 304 && offsetof(HealthTopic, device_bus) == 220 &&

@@ -66,6 +66,7 @@ struct LinesCycle {
 // Orders and models from the mailbox.
 struct MailboxCycle {
     RingCursor orders;
+    ServoOrder refused_arm{};  // in this cycle, in favour of a disarm; kind none: there was none
     std::uint64_t reports_seen = 0;
     std::uint64_t gui_generation = 0;
     bool gui_attached = false, gui_silent = false;
@@ -78,6 +79,8 @@ struct ReportCycle {
     std::uint64_t events = 0;  // published so far
     CommandResult last_result = CommandResult::none;
     std::uint64_t last_sequence = 0;
+    CommandResult state_result = CommandResult::none;  // of the last arm or disarm
+    std::uint64_t state_sequence = 0;
     bool health_due = false;
     Instant health_at{}, overrun_reported_at{};
     std::int64_t overrun_at_ns = 0;  // last overrun

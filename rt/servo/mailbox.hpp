@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "ipc/shm/latest.hpp"
-#include "ipc/shm/ring.hpp"
 #include "ipc/topics/record.hpp"
 #include "rt/force/force_model.hpp"
+#include "rt/servo/servo_orders.hpp"
 #include "rt/servo/servo_pulse.hpp"
 
 namespace tact {
@@ -105,7 +105,7 @@ private:
 };
 
 struct ServoMailbox {
-    Ring<ServoOrder, 64> orders{};
+    ServoOrders orders;
     Latest<HousekeepingReport> housekeeping{};
     Latest<FaultSnapshot> fault{};
     ModelHandover model;

@@ -40,6 +40,8 @@ void publish_health(CycleState& c, const ServoSettings& settings, Latest<HealthT
     t.events = c.report.events;
     t.command_sequence = c.report.last_sequence;
     t.command_result = static_cast<std::uint32_t>(c.report.last_result);
+    t.state_sequence = c.report.state_sequence;
+    t.state_result = static_cast<std::uint16_t>(c.report.state_result);
     t.schedule_flags = c.report.schedule_flags;
     t.gui_heartbeat_age_ns = c.housekeeping.gui_heartbeat_ns < 0
                                  ? -1

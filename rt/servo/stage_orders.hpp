@@ -1,6 +1,7 @@
 // Stage 2: takes orders and the reports of the visual process from the mailbox.
 //
-// Orders    at most four per cycle; an order to the state machine is the last of its cycle and is answered by it.
+// Orders    arm and disarm first, before all others; disarm wins. Then at most four others per cycle, and none after an
+//           order to the state machine, which answers it.
 // Silence   reported for a visual process that has reported before, whether it ended or hangs.
 // Thread    servo; TACT_RT
 #pragma once

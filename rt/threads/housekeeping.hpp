@@ -18,18 +18,12 @@
 #include "ipc/shm/region.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/servo/mailbox.hpp"
+#include "rt/threads/command_feed.hpp"
 #include "rt/threads/model_builder.hpp"
 #include "rt/threads/service_notify.hpp"
 
 namespace tact {
 
-// A command converted to an order, or the reason for its refusal. path_names: in the order of the governor's paths.
-struct CheckedCommand {
-    ServoOrder order{};
-    CommandResult result = CommandResult::none;  // none: valid
-};
-[[nodiscard]] CheckedCommand check_command(const CommandTopic& command,
-                                           std::span<const std::string> path_names);
 // False: some field has an impossible value.
 [[nodiscard]] bool plausible(const LoadTopic& load);
 
@@ -68,7 +62,7 @@ private:
     LinkServer& link_;
     ModelBuilder builder_;
     MappedRegion<GuiRegion> gui_;
-    RingCursor commands_;
+    CommandFeed commands_;
     RingCursor events_;
     std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
     LinkServer::Recorders recorders_;

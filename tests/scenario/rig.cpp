@@ -231,9 +231,10 @@ CommandResult command(Visual& visual, Watch& watch, CommandKind kind, double val
     const bool answered = until([&] {
         visual.frame();
         h = watch.health();
-        return h.command_sequence == number;
+        return h.command_sequence == number || h.state_sequence == number;
     });
-    return answered ? static_cast<CommandResult>(h.command_result) : CommandResult::none;
+    if (!answered) return CommandResult::none;
+    return static_cast<CommandResult>(h.state_sequence == number ? h.state_result : h.command_result);
 }
 
 bool bring_to_force(Visual& visual, Watch& watch) {

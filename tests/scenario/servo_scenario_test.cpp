@@ -141,6 +141,7 @@ TEST(ServoScenario, devices_report_samples_their_age_and_motor_heat) {
 TEST(ServoScenario, commands_are_applied_and_answered_in_order) {
     Lockstep loop;
     loop.order(CommandKind::disarm);
+    loop.cycles(1);
     loop.order(CommandKind::arm);
     loop.cycles(3);
     EXPECT_EQ(loop.health().command_sequence, 2U);
@@ -166,7 +167,24 @@ TEST(ServoScenario, commands_are_applied_and_answered_in_order) {
     EXPECT_STREQ(loop.levels().law, "elastic");
     EXPECT_EQ(loop.state(), RunState::ready);
     EXPECT_EQ(loop.shown_n(), 0.0);
-    EXPECT_EQ(loop.health().command_sequence, 8U);
+    EXPECT_EQ(loop.health().state_sequence, 8U);
+    EXPECT_EQ(loop.health().command_sequence, 7U);  // overtaken
+}
+
+TEST(ServoScenario, no_flood_of_orders_holds_up_a_disarm_or_hides_its_answer) {
+    for (const int flood : {70, 10'000}) {
+        Lockstep loop;
+        loop.active();
+        ASSERT_EQ(loop.state(), RunState::active);
+        for (int i = 0; i < flood; ++i) loop.order(CommandKind::set_goal_hz, 750.0);
+        loop.order(CommandKind::disarm);
+        for (int i = 0; i < flood; ++i) loop.order(CommandKind::mark);
+        loop.cycles(1);
+        EXPECT_EQ(loop.state(), RunState::ready);
+        loop.cycles(20);
+        EXPECT_EQ(loop.health().state_sequence, 2U + static_cast<std::uint64_t>(flood));
+        EXPECT_EQ(loop.health().state_result, static_cast<std::uint16_t>(CommandResult::done));
+    }
 }
 
 TEST(ServoScenario, a_refused_command_is_answered_without_effect) {

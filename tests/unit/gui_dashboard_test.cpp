@@ -61,6 +61,17 @@ TEST(LatenessWindow, the_latest_cycle_of_the_minute_is_exact_to_the_nanosecond) 
     EXPECT_EQ(window.recent_metrics().max_ns, 123'457);
 }
 
+TEST(LatenessWindow, the_longest_of_a_minute_is_not_understated_beyond_the_range_of_the_histogram) {
+    Late late;
+    LatenessWindow window;
+    late.second(60'000'000'000, 1);  // longest of the run, before the first record
+    window.add(late.topic());
+    late.second(30'000'000'000, 2);
+    window.add(late.topic());
+    EXPECT_GE(window.recent_metrics().max_ns, 30'000'000'000);
+    EXPECT_GE(window.recent_metrics().p50_ns, 30'000'000'000);
+}
+
 TEST(LatenessWindow, another_run_starts_over_and_memory_does_not_grow) {
     Late late;
     LatenessWindow window;

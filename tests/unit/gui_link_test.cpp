@@ -303,8 +303,18 @@ TEST(CommandSender, numbers_commands_and_reports_their_results) {
     health.command_result = static_cast<std::uint32_t>(CommandResult::refused_value);
     sender.update(health, 400);
     EXPECT_EQ(sender.stage(), Stage::refused);
+    // A disarm overtakes what was sent before it; the answers to that come later.
+    ASSERT_TRUE(sender.send({.kind = CommandKind::disarm}, 500));
+    health.state_sequence = 3;
+    health.state_result = static_cast<std::uint16_t>(CommandResult::done);
+    sender.update(health, 600);
+    EXPECT_EQ(sender.stage(), Stage::done);
+    ASSERT_TRUE(sender.send({.kind = CommandKind::mark}, 700));
+    health.state_sequence = 4;  // of the window before this one
+    sender.update(health, 800);
+    EXPECT_EQ(sender.stage(), Stage::sent);
     EXPECT_FALSE(sender.send({.kind = CommandKind::set_law, .text = std::string(32, 'x')}, 500));
-    EXPECT_EQ(sender.sequence(), 2U);
+    EXPECT_EQ(sender.sequence(), 4U);
 }
 
 TEST(StatusText, grades_the_rate_against_its_goal) {

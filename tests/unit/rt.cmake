@@ -24,6 +24,7 @@ tact_test(unit/threads_head_feed_test.cpp USES base hal topics servo threads con
 tact_test(unit/threads_supervisor_test.cpp USES base servo threads config LABELS tsan)
 tact_test(unit/config_arm_test.cpp USES base arm hal servo threads config)
 tact_test(unit/threads_housekeeping_test.cpp USES base topics servo threads config)
+tact_test(unit/threads_command_feed_test.cpp USES base topics servo threads)
 tact_test(unit/threads_log_sink_test.cpp USES servo threads config SYSTEM spdlog::spdlog)
 tact_test(unit/config_problems_test.cpp USES base hal servo threads config start)
 tact_test(unit/threads_service_notify_test.cpp USES base servo threads config SYSTEM spdlog::spdlog)
@@ -33,6 +34,7 @@ tact_test(unit/start_systems_test.cpp USES base shm topics scene hal force servo
 tact_test(unit/start_drill_test.cpp USES base shm topics scene hal force servo threads config start)
 
 # The stages of a cycle, without a Servo.
+tact_test(unit/servo_orders_test.cpp USES base shm topics servo LABELS tsan)
 tact_test(unit/servo_input_stages_test.cpp USES base topics hal_api force servo)
 tact_test(unit/servo_force_stages_test.cpp USES base topics hal_api force servo)
 tact_test(unit/servo_armed_metrics_test.cpp USES base servo)

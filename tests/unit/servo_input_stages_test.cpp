@@ -1,6 +1,9 @@
 // Stages before the model, each tested alone: wake, orders, lines, sense, pose.
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "rt/servo/stage_lines.hpp"
 #include "rt/servo/stage_orders.hpp"
 #include "rt/servo/stage_pose.hpp"
@@ -55,18 +58,84 @@ TEST(StageOrders, a_level_is_set_answered_and_recorded) {
     EXPECT_EQ(recorded.order.value, 0.5);
 }
 
-TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_for_the_orders_behind_it) {
+TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_the_others_wait_for_it) {
     CycleFixture f;
+    f.order(CommandKind::mark);
     f.order(CommandKind::arm);
-    f.order(CommandKind::disarm);
     servo::take_orders(f.c, f.settings, f.io);
     EXPECT_TRUE(f.c.events.arm);
-    EXPECT_FALSE(f.c.events.disarm);  // in the next cycle
     EXPECT_EQ(f.c.report.last_sequence, 0U);
     f.c.run.state = RunState::armed;
     servo::answer_state_order(f.c, RunState::ready, *f.region);
-    EXPECT_EQ(f.c.report.last_sequence, 1U);
+    EXPECT_EQ(f.c.report.last_sequence, 2U);
     EXPECT_EQ(f.c.report.last_result, CommandResult::done);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_FALSE(f.c.events.arm);
+    EXPECT_EQ(f.c.report.last_sequence, 1U);
+    EXPECT_EQ(f.c.report.state_sequence, 2U);  // still to be read by who armed
+    EXPECT_EQ(f.c.report.state_result, CommandResult::done);
+}
+
+TEST(StageOrders, a_disarm_behind_a_flood_of_others_is_taken_in_the_next_cycle) {
+    for (const int flood : {70, 10'000}) {
+        CycleFixture f;
+        for (int i = 0; i < flood; ++i) f.order(CommandKind::set_level, 0.5, kForcePathIndex);
+        const ServoOrder disarm = f.order(CommandKind::disarm);
+        for (int i = 0; i < flood; ++i) f.order(CommandKind::mark);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_TRUE(f.c.events.disarm) << flood;
+        EXPECT_EQ(f.c.order.sequence, disarm.sequence) << flood;
+        servo::answer_state_order(f.c, RunState::armed, *f.region);
+        EXPECT_EQ(f.c.report.state_sequence, disarm.sequence) << flood;
+        EXPECT_EQ(f.c.report.state_result, CommandResult::done) << flood;
+        MailboxTopic recorded{};
+        RingCursor cursor;
+        ASSERT_TRUE(f.region->mailbox.next(cursor, recorded));
+        EXPECT_EQ(recorded.order.kind, static_cast<std::uint32_t>(CommandKind::disarm));
+        EXPECT_EQ(recorded.order.sequence, disarm.sequence);
+    }
+}
+
+TEST(StageOrders, a_disarm_wins_over_an_arm_that_is_pending_with_it_and_both_are_answered) {
+    for (const bool arm_first : {true, false}) {
+        CycleFixture f;
+        f.c.run.state = RunState::active;
+        f.order(arm_first ? CommandKind::arm : CommandKind::disarm);
+        f.order(arm_first ? CommandKind::disarm : CommandKind::arm);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_TRUE(f.c.events.disarm);
+        EXPECT_FALSE(f.c.events.arm);
+        f.c.run.state = RunState::ready;
+        servo::answer_state_order(f.c, RunState::active, *f.region);
+        std::vector<std::pair<CommandKind, CommandResult>> answers;
+        for (const EventTopic& e : f.events())
+            if (e.code == static_cast<std::uint16_t>(EventCode::command_done))
+                answers.emplace_back(static_cast<CommandKind>(e.a), static_cast<CommandResult>(e.b));
+        using Answer = std::pair<CommandKind, CommandResult>;
+        const Answer arm{CommandKind::arm, CommandResult::refused_state},
+            disarm{CommandKind::disarm, CommandResult::done};
+        EXPECT_EQ(answers, (arm_first ? std::vector{arm, disarm} : std::vector{disarm, arm}));
+        EXPECT_EQ(f.c.report.state_sequence, 2U);  // the newest
+        // A replay needs both.
+        MailboxTopic recorded{};
+        RingCursor cursor;
+        int rows = 0;
+        while (f.region->mailbox.next(cursor, recorded)) ++rows;
+        EXPECT_EQ(rows, 2);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_FALSE(f.c.events.arm || f.c.events.disarm);
+        servo::answer_state_order(f.c, RunState::ready, *f.region);
+        EXPECT_EQ(f.events().size(), 2U);
+    }
+}
+
+TEST(StageOrders, an_arm_that_is_replaced_by_a_newer_one_is_taken_once) {
+    CycleFixture f;
+    for (int i = 0; i < 3; ++i) f.order(CommandKind::arm);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.order.sequence, 3U);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.order.kind, 0U);
 }
 
 TEST(StageOrders, a_model_without_such_a_setting_refuses_it_and_an_unknown_command_is_answered) {

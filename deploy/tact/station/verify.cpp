@@ -58,13 +58,12 @@ std::string trimmed(const std::string& text) { return text.substr(0, text.find('
 // The cycles between two samples of a cumulative histogram.
 void lateness_between(const LatenessTopic& before, const LatenessTopic& after, VerifyMetrics& f) {
     std::array<std::uint64_t, DurationHistogram::kBuckets> counts{};
-    std::uint64_t total = 0, most_ns = 0;
+    std::uint64_t total = 0;
     for (std::size_t b = 0; b < counts.size(); ++b) {
         counts[b] = after.counts[b] - std::min(before.counts[b], after.counts[b]);
         total += counts[b];
-        if (counts[b] > 0) most_ns = DurationHistogram::upper_ns(b);
     }
-    most_ns = std::min(most_ns, static_cast<std::uint64_t>(after.max_ns));
+    const std::uint64_t most_ns = DurationHistogram::longest_ns(counts.data(), after.max_ns);
     const auto us = [&](double p) {
         return static_cast<double>(DurationHistogram::percentile_ns(counts.data(), total, most_ns, p)) * 1e-3;
     };
