@@ -54,7 +54,8 @@ TEST_F(TestDashboard, invalid_recent_lists_are_refused_with_a_fix) {
                   std::string::npos)
             << bad;
     std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
-    EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("too large"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("too large"),
+              std::string::npos);
     EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("not a regular file"), std::string::npos);
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
