@@ -125,7 +125,7 @@ void timing(const Theme& theme, const DashboardState& state) {
     row(theme, "Lateness p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)),
         lateness_status(h.lateness_p99_ns, h.period_ns));
     row(theme, "Overruns", grouped(h.overruns), overrun_status(h, state.now_ns));
-    row(theme, "Deadline misses", grouped(h.deadline_misses), deadline_status(h, state.now_ns));
+    row(theme, "Deadlines", grouped(h.deadline_misses) + " missed", deadline_status(h, state.now_ns));
 }
 
 // A loop without a period is never late. Besides its rate, the recomputed fraction of each step's work shows its

@@ -81,7 +81,7 @@ StatusText overrun_status(const HealthTopic& h, std::int64_t now_ns) {
 }
 
 StatusText deadline_status(const HealthTopic& h, std::int64_t now_ns) {
-    if (h.deadline_misses == 0) return {Grade::good, "none"};
+    if (h.deadline_misses == 0) return {Grade::good, "all met"};
     if (h.deadline_miss_share > 0.0F) {
         char text[64];
         std::snprintf(text, sizeof text, "%.2g %% in the last second",

@@ -17,18 +17,18 @@ std::string limit_text(const PathLevel& p) {
     switch (reason) {
         case LevelReason::cost_low:
         case LevelReason::cost_high:
-            return "limited by step cost";
+            return "step cost limit";
         case LevelReason::start:
         case LevelReason::hold:
-            return p.haptic != 0 ? "limited by step cost" : level_reason_text(reason);
+            return p.haptic != 0 ? "step cost limit" : level_reason_text(reason);
         case LevelReason::deadline_missed:
-            return "lowered after a deadline miss";
+            return "deadline missed";
         case LevelReason::rate_low:
         case LevelReason::rate_high:
-            return "limited by the force rate";
+            return "force rate limit";
         case LevelReason::picture_low:
         case LevelReason::picture_high:
-            return "limited by the frame rate";
+            return "frame rate limit";
         default:
             return level_reason_text(reason);
     }
@@ -50,10 +50,10 @@ std::string duration_text(double s) {
 std::string level_status_text(const PathLevel& p, std::int64_t now_ns) {
     std::string text = p.level >= kFull ? "full detail" : limit_text(p);
     const double since_s = 1e-9 * static_cast<double>(now_ns - p.changed_at_ns);
-    if (p.level < kFull && p.changed_at_ns > 0 && since_s >= 0.0) text += " for " + duration_text(since_s);
+    if (p.level < kFull && p.changed_at_ns > 0 && since_s >= 0.0) text += ", " + duration_text(since_s);
     if (p.haptic != 0 && p.error > 0.0 && std::isfinite(p.error) && p.error < 1e3) {
         std::array<char, 48> error{};
-        std::snprintf(error.data(), error.size(), ", error %.3f N", p.error);
+        std::snprintf(error.data(), error.size(), ", ±%.2g N", p.error);
         text += error.data();
     }
     return text;

@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// "full detail", "limited by step cost for 12 s, error 0.013 N". now_ns: of the clock of changed_at_ns.
+// "full detail", "step cost limit, 12 s, ±0.013 N". now_ns: of the clock of changed_at_ns.
 // Any values may come in; what is not plausible is left out.
 [[nodiscard]] std::string level_status_text(const PathLevel& level, std::int64_t now_ns);
 

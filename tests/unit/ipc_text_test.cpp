@@ -34,20 +34,20 @@ TEST(LevelText, gives_limit_duration_and_error) {
     p.error = 0.0131;
     p.changed_at_ns = 1'000'000'000;
     p.reason = static_cast<std::uint8_t>(LevelReason::cost_low);
-    EXPECT_EQ(level_status_text(p, 13'000'000'000), "limited by step cost for 12 s, error 0.013 N");
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "step cost limit, 12 s, ±0.013 N");
     p.reason = static_cast<std::uint8_t>(LevelReason::deadline_missed);
-    EXPECT_EQ(level_status_text(p, 3'500'000'000), "lowered after a deadline miss for 2.5 s, error 0.013 N");
+    EXPECT_EQ(level_status_text(p, 3'500'000'000), "deadline missed, 2.5 s, ±0.013 N");
     p.level = 1.0F;
     p.error = 0.0;
     EXPECT_EQ(level_status_text(p, 13'000'000'000), "full detail");
     p.haptic = 0;
     p.level = 0.3F;
     p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
-    EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "limited by the frame rate for 30 min");
+    EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "frame rate limit, 30 min");
     // A time from another clock and a non-finite error are omitted.
     p.haptic = 1;
     p.error = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(level_status_text(p, 0), "limited by the frame rate");
+    EXPECT_EQ(level_status_text(p, 0), "frame rate limit");
 }
 
 TEST(Text, every_code_has_its_own_text) {
