@@ -108,8 +108,8 @@ public:
     virtual void slow_update(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
     [[nodiscard]] virtual double slow_update_s() const noexcept TACT_RT { return 0.0; }
-    // Before each step.
-    virtual void drive(const ToolDrive& /*drive*/) noexcept TACT_RT {}
+    // Before each step. A model that overrides it calls this one too.
+    virtual void drive(const ToolDrive& drive) noexcept TACT_RT { step_s_ = drive.step_s; }
     // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
@@ -132,6 +132,13 @@ public:
     virtual bool adopt(const ForceModel& /*old*/) noexcept TACT_RT { return false; }
     // rebuild() failed: takes back what was ordered, so that it is not asked for again.
     virtual void give_up() noexcept TACT_RT {}
+
+protected:
+    // Length of the step that is made, as drive() was told; what moves with time takes it from here.
+    [[nodiscard]] double step_s() const noexcept TACT_RT { return step_s_; }
+
+private:
+    double step_s_ = ToolDrive{}.step_s;
 };
 
 }  // namespace tact

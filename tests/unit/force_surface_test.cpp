@@ -128,7 +128,7 @@ struct Hand {
     Hand(const Scene& s, const SurfaceSettings& settings, const Vec3& start)
         : model(s.model(settings)), place(start) {
         model->reset(at(start));
-        for (int i = 0; i < ForceFade::kRampSteps; ++i) (void)model->step(at(start), {});
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3); ++i) (void)model->step(at(start), {});
     }
     // In a straight line by steps of a tenth of a millimetre, then at rest.
     Vec3 lead(const Vec3& to) {

@@ -143,7 +143,7 @@ StepResult DockingModel::step(const ToolState& tool, const Budget& budget) noexc
         result.status = StepStatus::out_of_range;
         return result;
     }
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     StepResult result = feel(tool, budget);
     result.wrench_world = fade_.show(result.wrench_world);
     return result;

@@ -76,8 +76,6 @@ public:
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
-    // Steps over which the force fades in after a grip, and out when the clutch is pressed.
-    static constexpr int kRampSteps = ForceFade::kRampSteps;
 
 private:
     DockingModel(const DockingModel& like, const ModelBodies& bodies);  // rebuilt
