@@ -110,8 +110,8 @@ public:
     virtual void slow_update(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
     // Recent duration of a slow update, s; 0: none. If it exceeds its period, the level is too high.
     [[nodiscard]] virtual double slow_update_s() const noexcept TACT_RT { return 0.0; }
-    // Before each step.
-    virtual void drive(const ToolDrive& /*drive*/) noexcept TACT_RT {}
+    // Before each step. An override calls this one too.
+    virtual void drive(const ToolDrive& drive) noexcept TACT_RT { step_s_ = drive.step_s; }
     // Runs every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
@@ -134,6 +134,13 @@ public:
     virtual bool adopt(const ForceModel& /*old*/) noexcept TACT_RT { return false; }
     // rebuild() failed: reverts the order, so that stale() becomes false.
     virtual void give_up() noexcept TACT_RT {}
+
+protected:
+    // Length of the present step (s), as given to drive().
+    [[nodiscard]] double step_s() const noexcept TACT_RT { return step_s_; }
+
+private:
+    double step_s_ = ToolDrive{}.step_s;
 };
 
 }  // namespace tact

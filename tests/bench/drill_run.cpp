@@ -147,7 +147,7 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
         if (!path_m.empty()) tool.T_world_tool.p_m = path_m.front();
         model.reset(tool);
         model.turn_burr({.burr_rad_s = 0.0, .step_s = way.step_s});
-        for (int i = 0; i < ForceFade::kRampSteps; ++i)
+        for (int i = 0; i < ForceFade::ramp_steps(way.step_s); ++i)
             static_cast<void>(model.step(tool, {.fidelity = way.fidelity}));
         std::uint64_t removed = model.removed_levels();
         SolidVoxels solid(bone, revision);

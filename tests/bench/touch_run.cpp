@@ -47,7 +47,7 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
         ToolState tool;
         tool.T_world_tool.p_m = world_per_model * path_model_m.front();
         model.reset(tool);
-        for (int i = 0; i < ForceFade::kRampSteps; ++i) {
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3); ++i) {
             (void)model.step(tool, {});
             if (model.has_slow_update()) model.slow_update(tool, {});
         }

@@ -53,7 +53,8 @@ std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchT
         ToolState hand;
         hand.T_world_tool = path.front();
         model.reset(hand);
-        for (int seated = 0; seated < ForceFade::kRampSteps; seated += model.contact().seating() ? 0 : 1) {
+        for (int seated = 0; seated < ForceFade::ramp_steps(1e-3);
+             seated += model.contact().seating() ? 0 : 1) {
             (void)model.step(hand, {});
             model.slow_update(hand, {});
         }

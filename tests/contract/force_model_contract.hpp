@@ -169,6 +169,34 @@ TEST_P(ForceModelContract, force_returns_after_reset_without_a_step) {
     EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
+// From a tenth of the force to nine tenths of it, and back with the clutch: 0.61 of the 0.256 s of a fade.
+TEST_P(ForceModelContract, the_force_fades_in_and_out_over_the_same_time_at_any_rate) {
+    model_->reset(at(GetParam().touch));
+    double full_n = 0.0;
+    for (int i = 0; i < kSettle; ++i)
+        full_n = model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm();
+    for (const double step_s : {1e-2, 1e-3, 5e-5}) {
+        const auto step_n = [&](std::uint32_t buttons) {
+            model_->drive({.step_s = step_s});
+            return model_->step(at(GetParam().touch, buttons), budget(1.0F)).wrench_world.force_n.norm();
+        };
+        const int most = static_cast<int>(3.0 / step_s);
+        const auto steps_until = [&](std::uint32_t buttons, const std::function<bool(double)>& reached) {
+            int steps = 0;
+            while (steps < most && !reached(step_n(buttons))) ++steps;
+            return steps;
+        };
+        model_->reset(at(GetParam().touch));
+        (void)steps_until(0, [&](double n) { return n > 0.1 * full_n; });
+        const double in_s = step_s * steps_until(0, [&](double n) { return n > 0.9 * full_n; });
+        EXPECT_NEAR(in_s, 0.1557, 2.0 * step_s + 2e-3) << "at " << 1.0 / step_s << " Hz";
+        (void)steps_until(0, [&](double n) { return n > 0.9999 * full_n; });
+        (void)steps_until(1, [&](double n) { return n < 0.9 * full_n; });
+        const double out_s = step_s * steps_until(1, [&](double n) { return n < 0.1 * full_n; });
+        EXPECT_NEAR(out_s, 0.1557, 2.0 * step_s + 2e-3) << "at " << 1.0 / step_s << " Hz";
+    }
+}
+
 TEST_P(ForceModelContract, invalid_poses_give_no_force_and_leave_no_trace) {
     (void)settle(GetParam().touch);
     const double nan = std::numeric_limits<double>::quiet_NaN(),

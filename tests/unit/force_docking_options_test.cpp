@@ -221,7 +221,7 @@ TEST(DockingOptions, an_order_between_adopt_and_step_does_not_interrupt_the_forc
     ToolState tool;
     model->reset(tool);
     StepResult before;
-    for (int i = 0; i < 2 * DockingModel::kRampSteps; ++i) before = model->step(tool, Budget{});
+    for (int i = 0; i < 2 * ForceFade::ramp_steps(1e-3); ++i) before = model->step(tool, Budget{});
     ASSERT_GT(before.wrench_world.force_n.norm(), 0.1);
     ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto next = rebuilt(*model);

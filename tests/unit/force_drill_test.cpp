@@ -374,6 +374,7 @@ public:
     KnobSpec knob() const noexcept override { return bench_.model->knob(); }
     std::uint32_t items(float f) const noexcept override { return bench_.model->items(f); }
     void reset(const ToolState& t) noexcept override { bench_.model->reset(t); }
+    void drive(const ToolDrive& d) noexcept override { bench_.model->drive(d); }
     StepResult step(const ToolState& t, const Budget& b) noexcept override {
         return bench_.model->step(t, b);
     }

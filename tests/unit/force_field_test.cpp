@@ -47,7 +47,8 @@ Budget budget_of(float fidelity) {
 // Settled force at one position.
 Vec3 force_at(FieldModel& model, const Vec3& world_m, float fidelity = 1.0F) {
     StepResult r;
-    for (int i = 0; i <= ForceFade::kRampSteps; ++i) r = model.step(tool_at(world_m), budget_of(fidelity));
+    for (int i = 0; i <= ForceFade::ramp_steps(1e-3); ++i)
+        r = model.step(tool_at(world_m), budget_of(fidelity));
     return r.wrench_world.force_n;
 }
 

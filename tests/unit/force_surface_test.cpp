@@ -128,7 +128,7 @@ struct Hand {
     Hand(const Scene& s, const SurfaceSettings& settings, const Vec3& start)
         : model(s.model(settings)), place(start) {
         model->reset(at(start));
-        for (int i = 0; i < ForceFade::kRampSteps; ++i) (void)model->step(at(start), {});
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3); ++i) (void)model->step(at(start), {});
     }
     // Moves in a straight line in steps of 0.1 mm, then rests.
     Vec3 lead(const Vec3& to) {

@@ -129,7 +129,7 @@ struct Hand {
     Hand(const World& w, const SurfaceSettings& settings, const Pose& start)
         : model(w.model(settings)), place(start) {
         model->reset(at(start.p_m, start.q));
-        for (int i = 0; i < ForceFade::kRampSteps + 8; ++i) (void)step(start);
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3) + 8; ++i) (void)step(start);
     }
     const Wrench& step(const Pose& pose) {
         place = pose;

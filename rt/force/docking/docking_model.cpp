@@ -152,7 +152,7 @@ StepResult DockingModel::step(const ToolState& tool, const Budget& budget) noexc
         result.status = StepStatus::out_of_range;
         return result;
     }
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     StepResult result = feel(tool, budget);
     result.wrench_world = fade_.show(result.wrench_world);
     return result;
@@ -196,7 +196,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
 void DockingModel::glide(float fidelity, StepResult& result) noexcept {
     const bool fell_back = result.load.items != blend().items(fidelity);
     const bool jumped = std::abs(fidelity - level_before_) > kLevelJump || fell_back != fell_back_;
-    glide_.apply(jumped, step_s_, result.wrench_world, result.load.error);
+    glide_.apply(jumped, step_s(), result.wrench_world, result.load.error);
     level_before_ = fidelity;
     fell_back_ = fell_back;
 }

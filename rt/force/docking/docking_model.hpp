@@ -54,7 +54,6 @@ public:
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     // Limit used for the scene's gain (ipc/scene/density/docking_gain.hpp), plus that of the clash force.
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
-    void drive(const ToolDrive& drive) noexcept TACT_RT override { step_s_ = drive.step_s; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_.list(); }
@@ -77,8 +76,6 @@ public:
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
-    // Number of steps over which the force fades in after a grip, and out when the clutch is pressed.
-    static constexpr int kRampSteps = ForceFade::kRampSteps;
 
 private:
     DockingModel(const DockingModel& like, const ModelBodies& bodies);  // rebuilt
@@ -114,7 +111,6 @@ private:
     LevelGlide glide_;
     float level_before_ = 0.0F;
     bool fell_back_ = false;  // the last step used a smaller level than the budget's
-    double step_s_ = 1e-3;
     ErrorAudit audit_;
     std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
 };

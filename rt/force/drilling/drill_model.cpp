@@ -77,6 +77,7 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
 }
 
 void DrillModel::drive(const ToolDrive& drive) noexcept {
+    ForceModel::drive(drive);
     driven_ = drive;
     turn_burr({.burr_rad_s = drive.on ? settings_.burr_rad_s : 0.0, .step_s = drive.step_s});
 }
@@ -223,7 +224,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     const Instant begin = Monotonic::now();
     StepResult result;
     result.load.items = items(budget.fidelity);
-    fade_.begin_step();
+    fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
     if (!hand_is_there(tool.T_world_tool)) {
         fade_.cut();

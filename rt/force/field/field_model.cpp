@@ -106,7 +106,7 @@ double FieldModel::inside(const Vec3& at_model_m) const noexcept {
 StepResult FieldModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     if (!tool.T_world_tool.finite() || tool.T_world_tool.p_m.cwiseAbs().maxCoeff() > kReachM ||
         tool.T_world_tool.q.norm() < 0.5) {
         fade_.cut();

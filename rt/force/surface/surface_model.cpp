@@ -156,7 +156,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
     const Instant begin = Monotonic::now();
     StepResult result;
     result.load.items = items(budget.fidelity);
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     const bool valid = tool_is_there(tool.T_world_tool);
     const bool clutch = (tool.buttons & 1U) != 0;
     if (!valid) {

@@ -166,7 +166,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
     const Instant begin = Monotonic::now();
     StepResult result;
     result.load = predict(budget.fidelity);
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     const bool clutch = (tool.buttons & 1U) != 0;
     if (!holds_tool(tool.T_world_tool)) {
         fade_.cut();
