@@ -6,7 +6,8 @@
 // Keys     particle_ns_each_N: of one move, from the steps' time over their moves; particle_moves_N: a step
 //          particle_budget_error_N, _p99_N: | time of a step / its budget - 1 |, mean and 99th of a hundred, of steps
 //          that had more to do than their budget; absent where none had
-//          particle_ns_each, particle_budget_error: of the 100 000
+//          particle_step_us_p50_N, _p99_N, _p999_N, _max_N: of a step
+//          those without a number: of the 100 000
 // No window, no display; half a minute at most
 #pragma once
 

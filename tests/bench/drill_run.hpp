@@ -1,8 +1,8 @@
 // A stroke of the burr through bone, step by step, for measurements: forces, times and what was taken away.
 //
-// Method   whole steps of the servo's model, force and erosion together, on one core and without a servo. A stroke is
-//          gone along `passes` times, each time through fresh bone: the same steps, bit by bit. Of each step the least
-//          time counts: what other users of the machine take is not the model's.
+// Method   whole steps of the servo's model, force and erosion together, without a servo. A stroke is gone along `passes`
+//          times, each time through fresh bone: the same steps, bit by bit. The first pass is timed as a loop would see
+//          it, paced in a thread like the servo's where asked for; best_us is the least time of a step in all passes.
 // Bone     a block made in code, or any raw volume. Bone up to 78 % of its height, under a wavy surface: a dense shell, and
 //          air cells deeper.
 // Frame    model metres, as large as in the hand's space; voxel (0, 0, 0) is centred on half a voxel
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "rt/force/drilling/drill_model.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace tact::launch {
 
@@ -37,7 +38,8 @@ struct BoneSample {
 
 struct DrillStep {
     Vec3 force_n = Vec3::Zero();
-    double us = 1e300;
+    double us = 0.0;         // in the first pass
+    double best_us = 1e300;  // least of all passes
     std::uint64_t removed_levels = 0;
     std::uint64_t removed_voxels = 0;  // that were bone and are none
 };
@@ -52,6 +54,7 @@ struct DrillWay {
     double step_s = kDrillStepS;
     double burr_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     int passes = 1;
+    bool paced = false;         // the first pass: see loop_thread.hpp; else steps follow each other at once
     bool count_voxels = false;  // takes longer than the steps; not in their time
 };
 
@@ -59,6 +62,7 @@ struct DrillWay {
 [[nodiscard]] std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& path_m,
                                                  const DrillWay& way);
 
-[[nodiscard]] double percentile_us(const std::vector<DrillStep>& steps, double share);
+[[nodiscard]] Percentiles times_us(const std::vector<DrillStep>& steps);       // of the first pass
+[[nodiscard]] Percentiles best_times_us(const std::vector<DrillStep>& steps);  // of the best of all passes
 
 }  // namespace tact::launch

@@ -275,8 +275,8 @@ TEST(Meshes, the_picture_shows_front_and_back_and_paper_where_there_is_nothing) 
 }
 
 std::vector<TouchStep> steps_of(std::size_t count, double us, std::size_t slow, double slow_us) {
-    std::vector<TouchStep> steps(count, {.force_n = Vec3::UnitX(), .us = us});
-    for (std::size_t i = 0; i < slow; ++i) steps[i].us = slow_us;
+    std::vector<TouchStep> steps(count, {.force_n = Vec3::UnitX(), .us = 2.0 * us, .best_us = us});
+    for (std::size_t i = 0; i < slow; ++i) steps[i].best_us = slow_us;
     return steps;
 }
 
