@@ -1,7 +1,5 @@
 #include "tests/bench/bench_mesh.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/random.hpp"
 #include "ipc/scene/mesh/mesh_cut.hpp"
 
@@ -124,23 +123,17 @@ ProgressiveMeshData torus() {
     return data;
 }
 
-double processor_ms() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
+// The times of so many runs; parts_per_ms: 1 for milliseconds.
 template <class Prepare, class Timed>
-double median_ms(int runs, Prepare&& prepare, Timed&& timed) {
-    std::vector<double> times_ms;
+Percentiles times(int runs, double parts_per_ms, Prepare&& prepare, Timed&& timed) {
+    std::vector<double> all;
     for (int i = 0; i < runs; ++i) {
         prepare();
-        const double begin_ms = processor_ms();
+        const Instant begin = Monotonic::now();
         timed();
-        times_ms.push_back(processor_ms() - begin_ms);
+        all.push_back(parts_per_ms * 1e-3 * to_us(Monotonic::now() - begin));
     }
-    std::sort(times_ms.begin(), times_ms.end());
-    return times_ms[times_ms.size() / 2];
+    return percentiles(all);
 }
 
 }  // namespace
@@ -155,26 +148,26 @@ MeshBench bench_mesh() {
     };
     MeshBench bench;
     bench.bytes_per_vertex = static_cast<double>(mesh.memory_bytes()) / all;
-    bench.jump_ms = median_ms(
-        15, [&] { go(all); }, [&] { go(few); });
-    bench.jump_back_ms = median_ms(
-        15, [&] { go(few); }, [&] { go(all); });
+    bench.jump_ms = times(
+        15, 1.0, [&] { go(all); }, [&] { go(few); });
+    bench.jump_back_ms = times(
+        15, 1.0, [&] { go(few); }, [&] { go(all); });
     go(few);
     std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
-    bench.copy_ms = median_ms(
-        15, [] {},
+    bench.copy_ms = times(
+        15, 1.0, [] {},
         [&] {
             std::memcpy(copy.data(), cut.vertex().data(), sizeof(PackedVertex) * few);
             std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
                         std::size_t{12} * cut.triangles());
         });
-    // Milliseconds of a walk of a thousand, times a thousand, are nanoseconds per change.
-    bench.ns_per_contraction = 1e3 * median_ms(
-                                         101, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
-    bench.ns_per_vertex_split = 1e3 * median_ms(
-                                          101, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
-    bench.changes_ms = median_ms(
-        101,
+    // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.
+    bench.ns_per_contraction = times(
+        101, 1e3, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
+    bench.ns_per_vertex_split = times(
+        101, 1e3, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
+    bench.changes_ms = times(
+        101, 1.0,
         [&] {
             go(half);
             cut.set_vertices(half - 1000);

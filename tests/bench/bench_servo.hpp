@@ -9,14 +9,14 @@
 
 #include <cstdint>
 
-#include "ipc/base/clock.hpp"
+#include "tests/bench/loop_thread.hpp"
 
 namespace tact {
 
 struct ServoBenchSettings {
     Duration period = std::chrono::milliseconds(1);
-    Duration spin_tail = std::chrono::microseconds(100);  // the default of deploy/tact.toml
-    int priority = 80;                                    // FIFO; 0: ordinary scheduling
+    Duration spin_tail = kServoSpinTail;
+    int priority = kServoPriority;
     double seconds = 3.0;
 };
 

@@ -5,9 +5,11 @@
 //          deep, 0.5 N/mm, 1000 positions per second for 4 s.
 // Tools    tool1000: 1000 points of a block of 16 x 8 x 12 mm, one side flat on the sphere; scaler1000: 1000 points of a
 //          dentist's scaler, on its tip
-// Method   touch_run.hpp; three passes. Jammed: cycles of runs of five or more in which the proxy is stuck.
-// Memory   about 4 GB for the largest, during baking
-// Fails by StartupError: tact-prep fails, a mesh or path cannot be read.
+// Method   touch_run.hpp; three passes. Jammed are cycles, five or more in a row, whose proxy stands.
+// Keys     TOOL_us_p50/p99/p999/max_SIZE: of a step, in one pass at 1 kHz, as the loop sees it; TOOL_us_best_of_3_...: of
+//          the least times of each step in three passes, what the code alone costs
+// Memory   some 4 GB for the largest, while it is baked
+// Fails by StartupError: tact-prep does not bake, a mesh or path cannot be read.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +26,8 @@ struct SurfaceWork {
     std::string unit = "mm";
     double radius_mm = 0.0;
 };
-// One line per position: t_s, force in N, microseconds, settled. 0.5 N/mm without friction and shading.
+// One line for each position: t_s, force in N, microseconds in one pass at 1 kHz, settled, least microseconds of three passes.
+// 0.5 N/mm without friction and shading.
 std::string surface_work_csv(const SurfaceWork& work);
 
 }  // namespace tact::launch

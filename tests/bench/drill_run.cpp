@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "ipc/base/error.hpp"
+#include "tests/bench/loop_thread.hpp"
 
 namespace tact::launch {
 namespace {
@@ -139,7 +140,7 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
     settings.tool.shaft_radius_m = 0.0;
     settings.force_n_max = 100.0;
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());
-    for (int pass = 0; pass < way.passes; ++pass) {
+    const auto go = [&](int pass) {
         if (pass > 0) bone.density = fresh;
         DrillBone drilled(bone.bricks, bone.density, revision);
         DrillModel model(plain_meta(), drilled, settings);
@@ -153,30 +154,43 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
         SolidVoxels solid(bone, revision);
         if (way.count_voxels) static_cast<void>(solid.lost());
         model.turn_burr({.burr_rad_s = way.burr_rad_s, .step_s = way.step_s});
+        LoopPace pace(way.paced && pass == 0 ? way.step_s : 0.0);
         for (std::size_t i = 0; i < path_m.size(); ++i) {
             tool.twist_world.linear_m_s =
                 i == 0 ? Vec3(Vec3::Zero()) : Vec3((path_m[i] - path_m[i - 1]) / way.step_s);
             tool.T_world_tool.p_m = path_m[i];
+            pace.wait();
             const Instant begin = Monotonic::now();
             const StepResult result = model.step(tool, {.fidelity = way.fidelity});
             const double us = to_us(Monotonic::now() - begin);
             DrillStep& step = steps[i];
-            step.us = std::min(step.us, us);
+            if (pass == 0) step.us = us;
+            step.best_us = std::min(step.best_us, us);
             step.force_n = result.wrench_world.force_n;
             step.removed_levels = model.removed_levels() - removed;
             removed = model.removed_levels();
             if (way.count_voxels) step.removed_voxels = solid.lost();
         }
+    };
+    for (int pass = 0; pass < way.passes; ++pass) {
+        if (way.paced && pass == 0)
+            run_as_loop(kServoPriority, [&] { go(0); });
+        else
+            go(pass);
     }
     return steps;
 }
 
-double percentile_us(const std::vector<DrillStep>& steps, double share) {
+Percentiles times_us(const std::vector<DrillStep>& steps) {
     std::vector<double> us;
     for (const DrillStep& s : steps) us.push_back(s.us);
-    if (us.empty()) return 0.0;
-    std::sort(us.begin(), us.end());
-    return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
+    return percentiles(us);
+}
+
+Percentiles best_times_us(const std::vector<DrillStep>& steps) {
+    std::vector<double> us;
+    for (const DrillStep& s : steps) us.push_back(s.best_us);
+    return percentiles(us);
 }
 
 }  // namespace tact::launch

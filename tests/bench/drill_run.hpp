@@ -1,11 +1,11 @@
 // Moves a burr along a stroke through bone, step by step, for measurements: forces, times and removed voxels.
 //
-// Method   whole steps of the servo's model, force and erosion together, on one core and without a servo. A stroke is
-//          repeated `passes` times, each time through fresh bone: the same steps, bit by bit. The minimum time of each
-//          step counts, which excludes other users of the machine.
-// Bone     a block made in code, or any raw volume. The block is bone up to 78 % of its height, with a wavy surface: a dense
-//          shell, and deeper air cells.
-// Frame    model metres, equal to world metres; voxel (0, 0, 0) is centred at half a voxel
+// Method   whole steps of the servo's model, force and erosion together, without a servo. A stroke is gone along `passes`
+//          times, each time through fresh bone: the same steps, bit by bit. The first pass is timed as a loop would see
+//          it, paced in a thread like the servo's where asked for; best_us is the least time of a step in all passes.
+// Bone     a block made in code, or any raw volume. Bone up to 78 % of its height, under a wavy surface: a dense shell, and
+//          air cells deeper.
+// Frame    model metres, as large as in the hand's space; voxel (0, 0, 0) is centred on half a voxel
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "rt/force/drilling/drill_model.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace tact::launch {
 
@@ -37,7 +38,8 @@ struct BoneSample {
 
 struct DrillStep {
     Vec3 force_n = Vec3::Zero();
-    double us = 1e300;
+    double us = 0.0;         // in the first pass
+    double best_us = 1e300;  // least of all passes
     std::uint64_t removed_levels = 0;
     std::uint64_t removed_voxels = 0;  // voxels that became empty
 };
@@ -52,13 +54,15 @@ struct DrillWay {
     double step_s = kDrillStepS;
     double burr_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     int passes = 1;
-    bool count_voxels = false;  // slower than the steps; not included in their time
+    bool paced = false;         // the first pass: see loop_thread.hpp; else steps follow each other at once
+    bool count_voxels = false;  // takes longer than the steps; not in their time
 };
 
 // bone: in the end as the last pass left it.
 [[nodiscard]] std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& path_m,
                                                  const DrillWay& way);
 
-[[nodiscard]] double percentile_us(const std::vector<DrillStep>& steps, double share);
+[[nodiscard]] Percentiles times_us(const std::vector<DrillStep>& steps);       // of the first pass
+[[nodiscard]] Percentiles best_times_us(const std::vector<DrillStep>& steps);  // of the best of all passes
 
 }  // namespace tact::launch

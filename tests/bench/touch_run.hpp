@@ -1,9 +1,10 @@
 // Steps a surface model along a path, for measurements: forces, times, and progress of the proxy.
 //
-// Method   whole steps of the servo's model, on one core and without a servo. The path is repeated `passes`
-//          times, and the minimum time of each position counts, which excludes other users of the machine.
-// Stands   the proxy is not settled and came no nearer to its goal
-// Fails by StartupError: tact-prep fails.
+// Method   whole steps of the servo's model, without a servo. A path is gone along `passes` times. The first pass is
+//          timed as a loop would see it, paced in a thread like the servo's where asked for; best_us is the
+//          least time of a step in all passes.
+// Stands   a proxy that is not where it should be and came no nearer
+// Fails by StartupError: tact-prep does not bake.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +14,14 @@
 
 #include "ipc/scene/mesh/surface_mesh.hpp"
 #include "rt/force/surface/surface_model.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace tact::launch {
 
 struct TouchStep {
     Vec3 force_n = Vec3::Zero();
-    double us = 1e300;
+    double us = 0.0;         // in the first pass
+    double best_us = 1e300;  // least of all passes
     bool settled = true, stands = false;
     bool adaptive = false;  // the step used the adaptive surface
 };
@@ -30,13 +33,15 @@ inline constexpr std::size_t kSlowUpdateEvery =
 // Bakes a scene with tact-prep and these arguments before -o, without a preview; returns its JSON output.
 nlohmann::json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene);
 
-// world_per_model: 1 is true size. forest: for mode chr; its slow update runs after every fourth step and is not
-// timed. The force has faded in when the path begins.
+// world_per_model: 1 is as large as in its file. forest: for mode chr, whose slow update runs between every
+// fourth step and the next, and not counted. The force has faded in when the path begins. paced: the first pass, see
+// loop_thread.hpp; else steps follow each other at once.
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
                                    const SurfaceSettings& settings, int passes, double world_per_model = 1.0,
-                                   const VertexForest* forest = nullptr);
+                                   const VertexForest* forest = nullptr, bool paced = false);
 
-double percentile_us(const std::vector<TouchStep>& steps, double share);
+Percentiles times_us(const std::vector<TouchStep>& steps);       // of the first pass
+Percentiles best_times_us(const std::vector<TouchStep>& steps);  // of the best of all passes
 std::uint64_t jammed_cycles(const std::vector<TouchStep>& steps);
 std::uint64_t unsettled_cycles(const std::vector<TouchStep>& steps);
 

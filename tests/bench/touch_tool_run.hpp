@@ -20,9 +20,9 @@ std::vector<Pose> tool_path(const std::vector<WanderPlace>& path, const TouchToo
 // surface: star-shaped about the origin.
 std::vector<Pose> tool_path(const std::vector<Vec3>& path_model_m, const TouchTool& tool);
 
-// The model has true size. forest: as in touch_along.
+// The model is as large as in its file. forest, paced: as touch_along.
 std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchTool& tool,
                                         const std::vector<Pose>& path, const SurfaceSettings& settings,
-                                        int passes, const VertexForest* forest = nullptr);
+                                        int passes, const VertexForest* forest = nullptr, bool paced = false);
 
 }  // namespace tact::launch

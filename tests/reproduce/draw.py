@@ -20,6 +20,7 @@ except ImportError:
 matplotlib.use("Agg")
 import matplotlib.image as mpimg  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
 # Okabe and Ito's colours, distinguishable with every kind of colour vision.
@@ -90,26 +91,77 @@ class Runs:
     def end(self, case):
         return self.case[case][-1]["t_s"]
 
+    @staticmethod
+    def part(row):
+        """Part of the run: start, no_load or load. Files of former versions do not name it."""
+        return row.get("part") or ("load" if row["external_load"] else "no_load")
+
+    @staticmethod
+    def reused(row):
+        """The updates of this window reused a part of their former work."""
+        return row.get("step_work_done_anew", 1.0) < 0.9995
+
     def load(self, case):
         """Begin and end of the external load; without one, infinity and the last time."""
         times = [r["t_s"] for r in self.case[case] if r["external_load"]]
         return (min(times), max(times)) if times else (math.inf, self.end(case))
 
 
+def worst_rows(rows):
+    """The row with the lowest rate of each part of a run, but for its start."""
+    worst = {}
+    for row in rows:
+        part = Runs.part(row)
+        if part != "start" and (part not in worst or row["force_rate_100ms_hz"] < worst[part]["force_rate_100ms_hz"]):
+            worst[part] = row
+    return worst
+
+
+def worst_label(worst):
+    def one(row):
+        rate, goal = row["force_rate_100ms_hz"], row["goal_hz"]
+        return f"{rate:.0f} Hz" + (f" ({100.0 * rate / goal:.0f} %)" if goal > 0 else "")
+    said = [f"{one(worst[part])} {name}" for part, name in (("no_load", "without load"), ("load", "with load")) if part in worst]
+    return "\nworst 0.1 s: " + ",\n".join(said) if said else ""
+
+
+def spans(rows, holds):
+    """Stretches of time whose windows have this property, joined where windows overlap."""
+    joined = []
+    for row in rows:
+        if holds(row):
+            begin, end = row["t_s"] - WINDOW_S, row["t_s"]
+            if joined and begin <= joined[-1][1]:
+                joined[-1][1] = end
+            else:
+                joined.append([begin, end])
+    return joined
+
+
 def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=None):
     """curves: (case, label, colour); goals: (Hz, label); until: case -> last time to draw."""
     figure, (rates, triangles) = start(title, runs.remark, 2)
-    disturbed = False
+    disturbed = reused = started = False
     for number, (case, label, colour) in enumerate(curves):
         rows = [r for r in runs.case[case] if r["t_s"] > SETTLE_S and r["t_s"] <= (until or {}).get(case, math.inf)]
-        time = [r["t_s"] for r in rows]
-        rates.plot(time, [r["force_rate_100ms_hz"] for r in rows], color=COLOURS[colour], label=label)
-        triangles.plot(time, [1e-3 * r["triangles"] for r in rows], color=COLOURS[colour])
-        for row in rows:
-            if row["disturbed"]:
-                disturbed = True
-                rates.axvspan(row["t_s"] - WINDOW_S, row["t_s"], 1.0 - 0.022 * (number + 1), 1.0 - 0.022 * number - 0.004, color=COLOURS[colour],
-                              linewidth=0)
+        settled = [r for r in rows if Runs.part(r) != "start"]
+        began = [r for r in rows if Runs.part(r) == "start"] + settled[:1]
+        worst = worst_rows(rows)
+        rates.plot([r["t_s"] for r in settled], [r["force_rate_100ms_hz"] for r in settled], color=COLOURS[colour],
+                   label=label + worst_label(worst))
+        if len(began) > 1:
+            started = True
+            rates.plot([r["t_s"] for r in began], [r["force_rate_100ms_hz"] for r in began], color=COLOURS[colour], linewidth=0.6)
+        rates.plot([r["t_s"] for r in worst.values()], [r["force_rate_100ms_hz"] for r in worst.values()], linestyle="none", marker="v",
+                   markersize=7, color=COLOURS[colour], markeredgecolor="white")
+        triangles.plot([r["t_s"] for r in rows], [1e-3 * r["triangles"] for r in rows], color=COLOURS[colour])
+        strip = {"color": COLOURS[colour], "linewidth": 0}
+        for begin, end in spans(rows, lambda r: r["disturbed"]):
+            disturbed = True
+            rates.axvspan(begin, end, 1.0 - 0.022 * (number + 1), 1.0 - 0.022 * number - 0.004, **strip)
+        for begin, end in spans(rows, Runs.reused):
+            reused = True
+            rates.axvspan(begin, end, 0.022 * number + 0.004, 0.022 * (number + 1), **strip)
     for hz, label in goals:
         rates.axhline(hz, color="#222222", linestyle=":", linewidth=1.4, label=label)
     handles, _ = rates.get_legend_handles_labels()
@@ -121,6 +173,11 @@ def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=No
             handles.append(Patch(color="#f0ece0", label="external load"))
     if disturbed:
         handles.append(Patch(color="#bbbbbb", label="strip above: disturbed by\nother programs"))
+    if reused:
+        handles.append(Patch(color="#bbbbbb", label="strip below: work partly reused\n(recomputed fraction below 1)"))
+    handles.append(Line2D([], [], color="#777777", marker="v", linestyle="none", label="worst 0.1 s of a part"))
+    if started:
+        handles.append(Line2D([], [], color="#777777", linewidth=0.6, label="thin: start of the run"))
     rates.set_ylabel("force updates per second (Hz)")
     triangles.set_ylabel("triangles drawn (thousands)")
     triangles.set_xlabel("time (s)")
@@ -312,8 +369,15 @@ def self_test():
             writer.writerow(header.split(","))
             writer.writerows(rows)
     with tempfile.TemporaryDirectory() as folder:
-        header = "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,disturbed,triangles"
-        rows = [[f"{case}, x", case, goal, 0.02 * i, int(with_load and i > 400), 900 - 300 * (with_load and i > 400), int(i % 50 < 3), 5000 + i]
+        # The worst window with load comes right after the load begins; without load at 5.2 s; the start does not count.
+        def rate(i, with_load):
+            return 100 if i < 40 else 700 if i == 260 else (450 if i < 420 else 600) if with_load and i > 400 else 900
+
+        def part(i, with_load):
+            return "load" if with_load and i > 400 else "start" if i < 100 else "no_load"
+        header = "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,step_work_done_anew,disturbed,triangles,part"
+        rows = [[f"{case}, x", case, goal, 0.02 * i, int(with_load and i > 400), rate(i, with_load), 1.0 if i % 70 < 40 else 0.5,
+                 int(i % 50 < 3), 5000 + i, part(i, with_load)]
                 for case, goal, with_load in (("off", 0, True), ("low", 800, False), ("high", 1200, False), ("on", 900, True))
                 for i in range(800 if with_load else 400)]
         write(folder, "rates.csv", header, rows)
@@ -329,6 +393,11 @@ def self_test():
         draw(folder)
         wanted = ["fig5_rates", "fig7_load_without_law", "fig8_load_with_law", "fig2a_force", "fig2b_error", "fig3_time", "fig4_growth", "table1",
                   "fig3_filters", "fig3_border"]
+        worst = worst_rows([r for r in Runs(folder).case["on"] if r["t_s"] > SETTLE_S])
+        rates = {part: row["force_rate_100ms_hz"] for part, row in worst.items()}
+        if rates != {"no_load": 700.0, "load": 450.0}:
+            print(f"FAIL worst windows {rates}")
+            return 1
         missing = [n for n in wanted if not os.path.exists(os.path.join(folder, n + ".png"))]
         for name in missing:
             print(f"FAIL {name}.png was not drawn")

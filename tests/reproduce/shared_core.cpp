@@ -202,6 +202,10 @@ void Run::summarize_with(double fast_s) {
     const double loaded_from = phase.load_on_s() + phase.resettle_s;
     free = summarize(samples, phase.settle_s, phase.load_on_s(), goal_hz, fast_s);
     loaded = summarize(samples, loaded_from, loaded_from + phase.loaded_s, goal_hz, fast_s);
+    const std::vector<RateRow> rows = rate_rows(samples, phase.settle_s, fast_s);
+    worst_start = worst_window(rows, RunPart::start);
+    worst_free = worst_window(rows, RunPart::no_load);
+    worst_loaded = worst_window(rows, RunPart::load);
     if (goal_hz <= 0.0) return;
     settled_free_s = settling_s(samples, 0.0, phase.load_on_s(), goal_hz);
     if (phase.loaded_s > 0.0)

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/reproduce/experiment_scene.hpp"
-#include "tests/reproduce/rate_samples.hpp"
+#include "tests/reproduce/rate_rows.hpp"
 
 namespace tact::launch {
 
@@ -33,10 +33,11 @@ struct Run {
     double display_goal_hz = 0.0;
     Phase phase{};
     std::vector<RateSample> samples{};
-    RateSummary free{}, loaded{};
-    double settled_free_s = -1.0, settled_loaded_s = -1.0;  // see settling_s()
-    double load_share = 0.0;                                // fraction of the core for the external load
-    // Computes the results from the samples; fast_s: time of an update on a fast core, 0: from this run
+    RateSummary free{}, loaded{};                             // once settled
+    WorstWindow worst_start{}, worst_free{}, worst_loaded{};  // of all windows of the part
+    double settled_free_s = -1.0, settled_loaded_s = -1.0;    // see settling_s()
+    double load_share = 0.0;                                  // of the core, that the external load got
+    // What follows from the samples; fast_s: of an update on a fast core, 0: the run's own
     // (rate_samples.hpp).
     void summarize_with(double fast_s);
 };

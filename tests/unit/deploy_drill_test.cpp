@@ -43,7 +43,9 @@ TEST(DrillRun, repeats_the_same_path_through_fresh_bone_in_every_pass) {
     }
     EXPECT_EQ(missing, levels);
     EXPECT_EQ(gone, voxels);
-    EXPECT_GT(percentile_us(a, 0.5), 0.0);
+    EXPECT_GT(times_us(a).p50, 0.0);
+    EXPECT_EQ(times_us(a).max, best_times_us(a).max);  // of one pass
+    for (const DrillStep& s : b) ASSERT_LE(s.best_us, s.us);
 }
 
 TEST(DrillRun, a_users_volume_is_drilled_along_a_users_path) {

@@ -286,14 +286,15 @@ TEST(BurrSight, blood_dust_and_bone_hide_the_head_and_water_does_not) {
 TEST(ParticlesBench, reports_the_cost_of_a_move_and_the_budget_error) {
     EXPECT_EQ(ParticlesBenchSettings{}.counts, (std::vector<std::uint32_t>{1000, 10000, 100000, 200000}));
     const auto all = bench_particles({.counts = {1000, 10000, 100000}, .steps = 8, .budget_s = 1e-5});
-    for (const char* const key :
-         {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99", "particle_ns_each_1000",
-          "particle_moves_10000", "particles_alive_100000"}) {
+    for (const char* const key : {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99",
+                                  "particle_ns_each_1000", "particle_moves_10000", "particles_alive_100000",
+                                  "particle_step_us_p50", "particle_step_us_p999_1000"}) {
         ASSERT_TRUE(all.contains(key)) << key;
         EXPECT_TRUE(std::isfinite(all[key].get<double>())) << key;
     }
     EXPECT_GT(all["particle_ns_each"], 0.0);
     EXPECT_LE(all["particle_moves_1000"], 1000.0);
+    EXPECT_LE(all["particle_step_us_p50_1000"], all["particle_step_us_max_1000"]);
     EXPECT_EQ(all["particle_budget_error"], all["particle_budget_error_100000"]);
 }
 
