@@ -151,7 +151,8 @@ void describe(CLI::App& app, int& exit_code) {
     const auto as_json = std::make_shared<bool>(false);
     std::vector<std::string> names;
     std::string help =
-        "Measurements to run; default: all but surface, drilling and governor. Percentiles (p50, p99, p999) and the "
+        "Measurements to run; default: all but surface, drilling and governor. Percentiles (p50, p99, p999) "
+        "and the "
         "maximum are of "
         "one pass in the order of time; the best of several passes is named so (best_of_3).";
     for (const Measure& m : kMeasures) {

@@ -172,9 +172,9 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
                         -off_percent(r.off.loaded.rate_mean_hz, r.on.goal_hz), r.on.settled_loaded_s,
                         fewer(r.on.loaded, r.off.loaded)),
                    r.on.loaded)}};
-    if (!r.on_seed.samples.empty())
-        rows.push_back({"8", "the same, law sensitus", "near its goal", held(r.on_seed, r.on_seed.loaded),
-                        disturbed("the seed's own law", r.on_seed.loaded)});
+    if (!r.on_published.samples.empty())
+        rows.push_back({"8", "the same, law sensitus", "near its goal", held(r.on_published, r.on_published.loaded),
+                        disturbed("the published law", r.on_published.loaded)});
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
             rows.push_back({"8", name, "not tried",
