@@ -173,7 +173,8 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
                         fewer(r.on.loaded, r.off.loaded)),
                    r.on.loaded)}};
     if (!r.on_published.samples.empty())
-        rows.push_back({"8", "the same, law sensitus", "near its goal", held(r.on_published, r.on_published.loaded),
+        rows.push_back({"8", "the same, law sensitus", "near its goal",
+                        held(r.on_published, r.on_published.loaded),
                         disturbed("the published law", r.on_published.loaded)});
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
